@@ -46,6 +46,7 @@ from reduction.prediction.hose_prediction import predict_from_plan
 from reduction.quantities.units import UnitSystem, parse_quantity
 from reduction.readers.raw_log import hash_source
 from reduction.record.errors import SettingsError
+from reduction.uncertainty.surface_errors import surfaces_between_runs
 
 _INTERVALS = {
     "": "95 % interval of one more run",
@@ -491,7 +492,9 @@ def fit_surface(
     Notes
     -----
     The covariance is that of the scatter, :math:`\sigma^2 (X^T X)^{-1}`: a table of runs says
-    nothing of errors that its runs share.
+    nothing of errors that its runs share, and an interval from the covariance does not hold what a
+    quadratic misses between the levels.  Half way between them, over ``point``, the dataset has
+    the values with their 95 % intervals, scatter and ``lack_of_fit_standard_uncertainty``.
     """
     loaded = None
     if spec is not None:
@@ -502,6 +505,8 @@ def fit_surface(
         found = fit_series(series, loaded, path)
     for text in notes_of_fit(series, found):
         python_warnings.warn(text, stacklevel=2)
+    between = surfaces_between_runs(found)
+    at_points = ("response", "point")
     variance = found.sigma[:, np.newaxis, np.newaxis] ** 2
     by_term, by_response = ("response", "term"), ("response",)
     return xr.Dataset(
@@ -525,6 +530,11 @@ def fit_surface(
             "lack_of_fit_p_value": (by_response, found.lack_of_fit.p_value),
             "low": (("factor",), found.low),
             "high": (("factor",), found.high),
+            "point_coded": (("point", "factor"), between.coded),
+            "point_value": (at_points, between.value),
+            "point_low": (at_points, between.low),
+            "point_high": (at_points, between.high),
+            "lack_of_fit_standard_uncertainty": (at_points, between.discrepancy),
         },
         {
             "response": list(found.response_names),

@@ -47,6 +47,7 @@ from reduction.experiments.surface_warnings import (
 )
 from reduction.quantities.units import UnitSystem, combined_unit, display_unit
 from reduction.record.errors import DataError, FitError, SettingsError
+from reduction.uncertainty.surface_errors import surfaces_between_runs
 
 _ROUNDING = 1e-9
 
@@ -344,6 +345,7 @@ def _surface_document(
     )  # fmt: skip
     reason = int(surfaces.reason[index])
     diagnostics, blocks = surfaces.diagnostics, surfaces.blocks
+    between = surfaces_between_runs(surfaces)
     return {
         "unit": runs.response_units[index] or None,
         "transform": surfaces.transform[index],
@@ -402,6 +404,14 @@ def _surface_document(
                 combined_unit(unit, runs.factor_units, powers.tolist()) if unit else None
                 for powers in surfaces.exponents
             ],
+        },
+        "between_runs": {
+            "coded": plain(between.coded),
+            "value": plain(between.value[index]),
+            "scatter_standard_uncertainty": plain(between.scatter_uncertainty[index]),
+            "lack_of_fit_standard_uncertainty": plain(between.discrepancy[index]),
+            "low": plain(between.low[index]),
+            "high": plain(between.high[index]),
         },
         "drift": {
             "per_run": plain(drift.slope[index]),
@@ -496,10 +506,25 @@ def _show_surfaces(
             f"{surfaces.degrees_of_freedom[index]} degrees of freedom"
         )
         _show_anova(surfaces, index, shown.scale, output)
+        _show_between_runs(surfaces, index, output)
         _show_stationary(surfaces, index, shown, runs, output)
         _show_equation(surfaces, index, shown, output)
         output.say("")
     output.say_each("note", notes)
+
+
+def _show_between_runs(surfaces: ResponseSurfaces, index: int, output: CommandOutput) -> None:
+    """What a quadratic may miss half way between the levels, which no standard error holds."""
+    between = surfaces_between_runs(surfaces)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = between.discrepancy[index] / np.abs(between.value[index])
+    if not np.isfinite(share).any():
+        return
+    output.say(
+        f"lack of fit between the levels (standard uncertainty, not in the standard errors): "
+        f"{100 * np.nanmedian(share):.2g} % of the value at the median, "
+        f"{100 * np.nanmax(share):.2g} % at most"
+    )
 
 
 def _show_terms(

@@ -43,7 +43,7 @@ from reduction.experiments.experiment import ExperimentResult, SharedSurfaces
 from reduction.experiments.fit_results import ResponseSurfaces
 from reduction.experiments.response_transform import back_transform, back_transformed_change
 from reduction.experiments.surface_discrepancy import discrepancy_of
-from reduction.experiments.surface_points import SurfaceValues
+from reduction.experiments.surface_points import SurfaceValues, evaluate_surfaces
 from reduction.quantities.names import SCALES
 from reduction.record.contributions import (
     combined_standard_uncertainty,
@@ -247,6 +247,48 @@ def with_shared_at_points(
         prediction_interval=interval(values.run_standard_uncertainty),
         simultaneous_interval=interval(own, is_everywhere=True),
     )
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class BetweenRuns:
+    """Surfaces at every combination of a quarter, half and three quarters of each range.
+
+    ``coded`` (n_points, n_factors); the others (n_responses, n_points), in the unit of each
+    response: value, standard uncertainty of the scatter of the runs and of what a quadratic may
+    miss, and the ends of the 95 % interval of both.
+    """
+
+    coded: Floats
+    value: Floats
+    scatter_uncertainty: Floats
+    discrepancy: Floats
+    low: Floats
+    high: Floats
+
+
+def surfaces_between_runs(surfaces: ResponseSurfaces) -> BetweenRuns:
+    """Values and intervals of surfaces of a table of runs, which says of nothing that runs share.
+
+    Examples
+    --------
+    >>> from reduction.experiments.response_surfaces import fit_surfaces
+    >>> found = fit_surfaces([[-1.0], [-1.0], [0.0], [0.0], [1.0], [1.0]],
+    ...     [[1.0, 2.0, 4.0, 5.0, 3.0, 4.0]], factor_names=["frequency"],
+    ...     response_names=["stiffness"], low=[0.1], high=[0.5], units="coded")
+    >>> between = surfaces_between_runs(found)
+    >>> print(between.coded.ravel(), between.discrepancy.round(2))
+    [-0.5  0.   0.5] [[0.33 0.   0.33]]
+    """
+    n_factors = surfaces.coded.shape[1]
+    steps = np.meshgrid(*[np.array([-0.5, 0.0, 0.5])] * n_factors, indexing="ij")
+    coded = np.stack([one.ravel() for one in steps], axis=1)
+    values = evaluate_surfaces(surfaces, coded, units="coded")
+    nothing = np.zeros((0, len(surfaces.response_names), len(surfaces.term_names)))
+    found = with_shared_at_points(surfaces, values, nothing, np.zeros(0))
+    own = np.sqrt(np.maximum(found.random_standard_uncertainty**2 - found.discrepancy**2, 0.0))
+    low, high = np.moveaxis(found.confidence_interval, -1, 0)
+    return BetweenRuns(coded, values.value, own, found.discrepancy, low, high)
 
 
 def with_shared_surfaces(result: ExperimentResult) -> ExperimentResult:
