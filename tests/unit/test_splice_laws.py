@@ -115,3 +115,46 @@ def test_two_marks_of_splices_that_saturate_keep_both_sides():
     found = fit_splice_laws(two)
     assert weight_of(found, "tension") == pytest.approx(0.5)
     assert not found.is_checked
+
+
+@pytest.mark.parametrize(("force", "tape"), [(60.0, 3e-3), (60.0, 5e-3), (80.0, 3e-3)])
+def test_an_exponent_that_the_marks_do_not_fix_is_as_uncertain_as_its_range(force, tape):
+    """Of saturated splices; between .3 and 1.9 an exponent is known without any mark."""
+    free = np.linspace(0.0, 2.0, 6)
+    tension = 300.0 * free * (1 - 0.25 * free + 0.09 * free**2)
+    splice = 0.15 * (1 - np.exp(-tension / force))
+    found = fit_splice_laws(
+        SpliceReadings(
+            free, splice, tension, np.zeros(6, int), free == 0, 0.45, tape, np.zeros((2, 2)),
+            tension_uncertainty=np.zeros(6),
+        )
+    )  # fmt: skip
+    bedded = next(law for law in found.laws if law.name == "bedded tension-driven")
+    assert bedded.values[5] == pytest.approx(0.3, abs=1e-3)
+    assert np.sqrt(bedded.covariance[5, 5]) <= 1.9 - 0.3
+    # splices of 15 % are not uncertain by more than they strain
+    assert np.sqrt(np.diag(found.covariance)[[0, 4]]).max() < 0.15
+
+
+@pytest.mark.parametrize(
+    "splice", [0.2 * (TENSION / 300) ** 1.2, 0.15 * (1 - np.exp(-TENSION / 300))]
+)
+def test_the_mean_carries_the_variance_of_its_laws(splice):
+    """Of a strain by the tension, the first-order variance is the mean of those of the laws."""
+    given = readings(splice)
+    found = fit_splice_laws(given)
+
+    def gradient(values, free, tension):
+        power = (tension / given.reference) ** values[5]
+        by_exponent = values[4] * power * np.log(tension / given.reference)
+        return np.array([1.0, free, free**2, free**3, power, by_exponent])
+
+    for place in (2, 5, 8):
+        at = FREE[place], TENSION[place]
+        by_mean = gradient(found.values, *at)
+        own = sum(
+            weight * gradient(law.values, *at) @ law.spread[:6, :6] @ gradient(law.values, *at)
+            for law, weight in zip(found.laws, found.weight, strict=True)
+        )
+        variance = by_mean @ found.covariance[:6, :6] @ by_mean
+        assert np.sqrt(variance) == pytest.approx(np.sqrt(own), rel=0.1)

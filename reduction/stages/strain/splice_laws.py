@@ -66,9 +66,12 @@ _DOUBT = 0.05  # chance of a misfit below which slip and single marks are looked
 
 _SLIPS = np.geomspace(0.5, 100.0, 16)  # of a reading of the tape
 
+_STEP = 0.01  # of the exponent, for the curvature of the misfit
+
 _EXPONENTS = np.linspace(0.3, 1.9, 9)
 
-_STEP = 0.01  # of the exponent, for the curvature of the misfit
+# of the exponent between those: a bend of the misfit that no range holds says nothing of it
+_FINE_EXPONENTS = np.linspace(0.3, 1.9, 33)
 
 _NOWHERE = 1e12
 
@@ -249,9 +252,11 @@ def fit_splice_laws(readings: SpliceReadings, *, specimen: str = "") -> SpliceAv
 
     .. math:: \sum w_k C_k + \sum w_k (\theta_k - \bar\theta)(\theta_k - \bar\theta)^T
 
-    ([1]_, eq. 4.9, without its square root).  Where readings of one test lie off together, the
-    splices have slipped between tests ([2]_, sec. 4.7): the variance between tests is the most
-    likely one, and each test has the offset that its own marks say, drawn towards none.
+    ([1]_, eq. 4.9, without its square root), where an exponent of one law is worth, in that of the
+    mean, as much as its law strains by the tension.  An exponent that the marks do not fix has the
+    variance that the misfit leaves it within its range.  Where readings of one test lie off
+    together, the splices have slipped between tests ([2]_, sec. 4.7): the variance between tests
+    is the most likely one, and each test has the offset that its own marks say, drawn towards none.
 
     Examples
     --------
@@ -303,12 +308,17 @@ def fit_splice_laws(readings: SpliceReadings, *, specimen: str = "") -> SpliceAv
     # powers of like exponents add up to one of their mean, weighed by what each strains
     share = weight * values[:, 4]
     mean[5] = share @ values[:, 5] / share.sum() if share.sum() > 0 else 1.0
-    away = values - mean
-    away[values[:, 4] == 0, 5] = 0.0
+    # what an exponent is off by is worth what its own law strains by the tension, and that of the
+    # mean what the mean strains by it
+    worth = np.ones_like(values)
+    if mean[4] > 0:
+        worth[:, 5] = values[:, 4] / mean[4]
+    away = (values - mean) * worth
+    spread = np.array([law.spread for law in laws]) * worth[:, :, None] * worth[:, None, :]
     offset, variance = _offsets(kept, laws[int(np.argmax(weight))], slip)
     return SpliceAverage(
         values=mean,
-        covariance=np.einsum("k,kij->ij", weight, np.array([law.spread for law in laws])),
+        covariance=np.einsum("k,kij->ij", weight, spread),
         between=np.einsum("k,ki,kj->ij", weight, away, away),
         reference=kept.reference,
         laws=tuple(laws),
@@ -426,9 +436,17 @@ def _law(readings: SpliceReadings, name: str, slip: float) -> FittedLaw | None:
     bend = (below.criterion - 2 * best + above.criterion) / _STEP**2
     slope = (above.values - below.values) / (2 * _STEP)
     slope[5] = 1.0
+    room = min(exponent - _EXPONENTS[0], _EXPONENTS[-1] - exponent)
+    if bend * room**2 > 2:  # one standard deviation is within the range
+        variance = 2 / bend
+    else:
+        misfit = np.array([criterion(float(one)) for one in _FINE_EXPONENTS])
+        likelihood = np.exp((misfit.min() - misfit) / 2)
+        away = _FINE_EXPONENTS - exponent
+        variance = float(likelihood @ away**2 / likelihood.sum())
     return replace(
         law,
-        covariance=law.covariance + 2 / max(bend, 1e-6) * np.outer(slope, slope),
+        covariance=law.covariance + variance * np.outer(slope, slope),
         criterion=law.criterion + 2.0,
         freedom=law.freedom - 1,
     )
