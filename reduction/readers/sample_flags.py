@@ -374,6 +374,8 @@ _MOVING_NOISE = 10.0
 
 _MOVING_SHARE = 1e-3
 
+_CODES_OF_RUN = 2.0
+
 # places in a run at which position is looked at; uneven, or cycles could hide in between
 _LOOKS = np.sort(np.arange(16) * (np.sqrt(5) - 1) / 2 % 1)
 
@@ -445,17 +447,44 @@ def _moves(position: Floats, runs: _Runs) -> Bools:
     low, high = finite_extremes(position)
     reach = np.fmax(high - position[0], position[0] - low)
     tolerance = _MOVING_NOISE * noise + _MOVING_SHARE * reach
+    return np.asarray(_range_beside(position, runs, 0) > tolerance)
+
+
+def _range_beside(values: Floats, runs: _Runs, lengths: int) -> Floats:
+    """Range of a series over each run, moved by so many of its lengths; of a few places in it."""
     length = (runs.stop - runs.start)[:, np.newaxis]
-    places = runs.start[:, np.newaxis] + (_LOOKS * length).astype(np.int64)
-    looks = take_samples(position, places)
-    travel = np.fmax.reduce(looks, axis=1) - np.fmin.reduce(looks, axis=1)
-    return np.asarray(travel > tolerance)
+    places = runs.start[:, np.newaxis] + ((_LOOKS + lengths) * length).astype(np.int64)
+    looks = take_samples(values, np.clip(places, 0, values.size - 1))
+    return np.asarray(np.fmax.reduce(looks, axis=1) - np.fmin.reduce(looks, axis=1))
+
+
+def _outlasts_one_code(tension: Floats, position: Floats, runs: _Runs) -> Bools:
+    """Whether the load should change by more than the step of its converter in each run.
+
+    By the travel in the run, and by what the load changes for it beside the run, where the
+    crosshead moves as far.  A code that ends a ramp, or lies at a rounded peak, lasts long; the
+    crosshead moves in it by what one code is worth, of slopes that differ by less than a factor of
+    two.
+    """
+    if not runs.start.size:
+        return np.empty(0, dtype=bool)
+    _, step = _noise_of(tension)
+    travel = _range_beside(position, runs, 0)
+    expected = np.full(travel.size, np.nan)
+    for way in (-1, 1):
+        # a window that hardly moves says what a load relaxes by
+        moved = _range_beside(position, runs, way)
+        moves = moved >= np.fmax(travel, np.finfo(float).tiny)
+        change = _range_beside(tension, runs, way)[moves] * (travel[moves] / moved[moves])
+        expected[moves] = np.fmax(expected[moves], change)
+    return np.asarray(~(expected <= _CODES_OF_RUN * step))
 
 
 def _find_stuck(tension: Floats, position: Floats, *, samples: int) -> Bools:
     """Where a load channel repeats one value while the crosshead moves."""
     runs = _constant_runs(tension, samples)
     runs = runs.where(_moves(position, runs))
+    runs = runs.where(_outlasts_one_code(tension, position, runs))
     if not runs.start.size:
         return runs.mask(tension)
     low, high = finite_extremes(tension)
@@ -492,6 +521,7 @@ def _find_saturated(tension: Floats, position: Floats) -> Bools:
             continue
         runs = runs.where(_comes_from_afar(tension, runs))
         runs = runs.where(_moves(position, runs))
+        runs = runs.where(_outlasts_one_code(tension, position, runs))
         starts.append(runs.start)
         stops.append(runs.stop)
     return _Runs(np.sort(np.concatenate(starts)), np.sort(np.concatenate(stops))).mask(tension)

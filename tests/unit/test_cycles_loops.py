@@ -581,6 +581,23 @@ def test_a_load_in_coarse_steps_is_not_taken_for_one_with_noise(noise, top):
     assert spread < 1.5
 
 
+def test_rounding_of_both_extremes_is_in_the_interval_of_the_amplitude():
+    """Each is off by q over the root of 12 at random, and half their range by that over root 2."""
+    time, wave, cycles = triangles(400, 40, 0.3)
+    rng = np.random.default_rng(5)
+    spreads, errors = [], []
+    for offset in rng.uniform(0, 5, 40):
+        tension = 200 + offset + 95 * wave
+        loops = close_loops(
+            time, 5 * np.round(tension / 5)[None], (0.2 * wave)[None], cycles, waveform="triangular"
+        )
+        found = summarise_amplitude(loops, area=[1e-3])
+        spreads.append(found.uncertainty["tension_amplitude"][0])
+        errors.append(found.tension_amplitude[0] - 95 * np.ptp(wave) / 2)
+    assert np.median(spreads) == pytest.approx(5 / 24**0.5, rel=0.1)
+    assert np.mean(np.abs(errors) < 1.96 * np.array(spreads)) >= 0.9
+
+
 def test_a_channel_that_creeps_keeps_the_period_of_the_machine():
     time, wave, cycles = triangles(50, 40, 0.2)
     strain = wave + 0.01 * np.ptp(wave) * np.arange(wave.size) / 50

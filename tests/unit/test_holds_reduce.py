@@ -438,3 +438,28 @@ def test_the_final_tension_is_that_of_the_last_reading_and_not_of_the_mean_befor
     spread = found.hold_final_tension_standard_uncertainty
     assert stretch.mean() - true > 10 * spread
     assert abs(found.hold_final_tension - true) < 2.5 * spread
+
+
+def in_codes(log, step):
+    """A log whose load went through a converter."""
+    time, position, load = log
+    return time, position, step * np.round(load / step)
+
+
+@pytest.mark.parametrize(("step", "late"), [(60.0, 0.5), (100.0, 0.1)])
+def test_the_steps_of_a_converter_are_no_slip_and_in_the_interval_of_the_initial_tension(
+    step, late
+):
+    # 50 readings a second, so that means of two make the series in which slips are looked for
+    fine, tension, log = superposed(lambda t: np.clip(t / 10, 0, 1), 0.02, late=late, duration=90)
+    (found,) = reduce(*in_codes(log, step), spans=((0, 20), (30, 1e9)))
+    assert not any(one.code == "hold-tension-steps" for one in found.refusals)
+    true = np.interp(30.0, fine, tension)
+    spread = found.hold_initial_tension_standard_uncertainty
+    assert abs(found.hold_initial_tension - true) < 2 * spread
+    assert spread < step
+    # a splice that lets go by several codes is told all the same
+    time, position, load = log
+    slipped = time, position, load - np.where(time > 80, 5 * step, 0.0)
+    (found,) = reduce(*in_codes(slipped, step), spans=((0, 20), (30, 1e9)))
+    assert any(one.code == "hold-tension-steps" for one in found.refusals)

@@ -171,3 +171,17 @@ def test_very_many_runs_take_no_memory_for_each():
     tracemalloc.stop()
     assert runs.start.size == 20_000
     assert peak < values.nbytes
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.7, 1.4])
+def test_a_code_that_ends_a_ramp_and_lasts_is_neither_stuck_nor_saturated(turn):
+    """A load of 120 N that relaxes by 1 N a second, in codes of 3 N read fifty times a second."""
+    time = np.arange(0, 60, 0.02)
+    position = 20 + np.clip(time - 10, 0, 12)
+    load = 10 * np.clip(time - 10, 0, 12) + turn - np.clip(time - 22, 0, None)
+    read = quantised(load, 3.0)
+    assert not _find_stuck(read, position, samples=50).any()
+    assert not _find_saturated(read, position).any()
+    # one that stays for as long as the ramp adds three codes has not read it
+    read[900:1000] = read[900]
+    assert _find_stuck(read, position, samples=50)[900:1000].all()

@@ -1669,6 +1669,10 @@ _COARSE, _FAR = 1.5, 12.0  # steps of a converter
 
 _OF_INNER = 0.4377  # of the mean square of normal values, that of the least four fifths of them
 
+_OF_BOTH_ENDS = 2.0
+"""Width that `Loops` takes over the root of 8, of two errors that leave half a range one over the
+root of 2. [1]"""
+
 
 def _without_noise(
     measured: Floats,
@@ -1963,9 +1967,8 @@ def close_loops(
                 # the step of a converter lifts no extreme, and moves it alike in all cycles; the
                 # greatest of some ten noisy readings scatters, and the mean of many is free of it
                 missed = measured[index, rows + 3]
-                np.hypot(
-                    missed, rounding_left(step, _OF_GREATEST * min(own, over_cycles)), out=missed
-                )
+                rounded = rounding_left(step, _OF_GREATEST * min(own, over_cycles))
+                np.hypot(missed, _OF_BOTH_ENDS * rounded, out=missed)
                 _without_noise(
                     measured[index, rows : rows + 4], series, cycles, reach=reach,
                     turn=turns[index], noise=own, way=way,

@@ -122,7 +122,7 @@ class _LevelAtEnd:
 
 
 def level_at_end(
-    since: Floats, values: Floats, *, noise: float, shortest: float = 0.0
+    since: Floats, values: Floats, *, noise: float, shortest: float = 0.0, step: float = 0.0
 ) -> _LevelAtEnd:
     """A series at time zero, of the longest line through its first samples that it follows.
 
@@ -136,6 +136,9 @@ def level_at_end(
         Standard deviation of one sample. [unit of the series]
     shortest : float, optional
         Time over which a machine may ring: the shortest line is as long. [s]
+    step : float, optional
+        Of a converter, where noise does not spread readings over several of its codes.
+        [unit of the series]
 
     Returns
     -------
@@ -155,7 +158,9 @@ def level_at_end(
     what the two differ by is carried: several times its bias where a series bends evenly, and of
     the size of its bias where the series bends most at its beginning, as a relaxation over
     decades of time does.  A machine that rings scatters its first samples more than their noise:
-    the scatter about a line counts where it is greater.
+    the scatter about a line counts where it is greater.  Readings of one code are rounded alike:
+    the rounding of a line is that of one reading, and of as many as it passes codes, of which the
+    end of a line has four times the variance of their mean.
 
     Examples
     --------
@@ -170,6 +175,7 @@ def level_at_end(
     x, y = since[:n_samples], values[:n_samples] - origin
     sums = [np.cumsum(one) for one in (x, y, x * x, x * y, y * y)]
     found: list[_LevelAtEnd] = []
+    spreads: list[float] = []
     count = min(max(FEWEST_ON_LINE, int(np.searchsorted(x, shortest))), n_samples)
     while True:
         sx, sy, sxx, sxy, syy = (float(one[count - 1]) for one in sums)
@@ -180,13 +186,17 @@ def level_at_end(
         scatter = max(noise, float(np.sqrt(left)))
         spread = scatter * float(np.sqrt(1 / count + (sx / count) ** 2 / power))
         if any(
-            abs(value - one.value) > _AGREEING * (spread + one.standard_uncertainty)
-            for one in found
+            abs(value - one.value) > _AGREEING * (spread + of_noise) + step / 2
+            for one, of_noise in zip(found, spreads, strict=True)
         ):
             largest = _LARGEST_SPREAD * found[-1].standard_uncertainty
             back = found[-1 - _STEPS_BACK :] if len(found) > _STEPS_BACK else found
             chosen = next(one for one in back if one.standard_uncertainty <= largest)
             break
+        spreads.append(spread)
+        if step:
+            codes = 1 + float(np.ptp(y[:count])) / step
+            spread = float(np.hypot(spread, step / 12**0.5 * min(2 / codes**0.5, 1.0)))
         chosen = _LevelAtEnd(value, spread, slope, count)
         found.append(chosen)
         if count == n_samples:

@@ -647,6 +647,11 @@ class Hold:
         return _noise_of(self.tension)
 
     @cached_property
+    def tension_step(self) -> float:
+        """Step of the converter of tension; 0 where noise spreads its readings over codes. [N]."""
+        return _step_of(self.tension)
+
+    @cached_property
     def motion(self) -> _Motion:
         """Of the crosshead since the end of the ramp, on blocks in the logarithm of time."""
         return _motion_of(self)
@@ -732,8 +737,9 @@ def _hold_ends(hold: Hold) -> _Ends:
     first = level_at_end(
         shifted(hold.time, hold.ramp_end_time),
         hold.tension,
-        noise=hold.tension_noise,
+        noise=reading_noise(hold.tension),
         shortest=0.0 if hold.ramp is None else _BESIDE * hold.ramp.length,
+        step=hold.tension_step,
     )
     u_initial = first.standard_uncertainty
     if hold.ramp is not None:
@@ -809,8 +815,13 @@ _LATE_MISSES = 2.0  # times the rise that the log shows: while it rises, the spe
 
 def _noise_of(series: Floats) -> float:
     """Standard deviation of one reading, its quantum included."""
-    noise, quantum = reading_noise(series), sample_noise(series)[1]
-    return float(np.hypot(noise, quantum / np.sqrt(12))) if noise < quantum / 2 else noise
+    return float(np.hypot(reading_noise(series), _step_of(series) / np.sqrt(12)))
+
+
+def _step_of(series: Floats) -> float:
+    """Step of a converter, where readings have less noise than half of it; else 0."""
+    quantum = sample_noise(series)[1]
+    return quantum if reading_noise(series) < quantum / 2 else 0.0
 
 
 @dataclass(frozen=True)
@@ -830,7 +841,7 @@ def _motion_of(hold: Hold) -> _Motion:
     """Motion of the crosshead since the end of the ramp, on blocks in the logarithm of time."""
     noise = _noise_of(hold.position)
     since = shifted(hold.time, hold.ramp_end_time)
-    begin = level_at_end(since, hold.position, noise=noise)
+    begin = level_at_end(since, hold.position, noise=noise, step=_step_of(hold.position))
     later = int(np.searchsorted(since, 0.0, side="right"))
     if since.size - later < 2:
         return _Motion(np.empty(0), np.empty(0), 0.0)
@@ -889,7 +900,7 @@ def _step_reason(hold: Hold) -> Note | None:
         return None
     parts = sample_blocks(whole, hold.tension, size=size * max(1, BLOCK // size))
     series = np.concatenate([hold.tension[part].reshape(-1, size).mean(axis=1) for part in parts])
-    steps = find_steps(series, false_alarm=STEP_FALSE_ALARM)
+    steps = find_steps(series, false_alarm=STEP_FALSE_ALARM, quantum=hold.tension_step)
     if not steps:
         return None
     largest = max(steps, key=lambda step: abs(step.size))

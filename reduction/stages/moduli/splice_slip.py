@@ -364,8 +364,13 @@ def _step_sizes(values: ArrayLike, steps: tuple[_SlipStep, ...]) -> tuple[Floats
 MOST_STEPS = 30
 
 
-def _refine(values: Floats, candidate: _Candidate, sigma: float) -> tuple[_SlipStep, bool]:
-    """Onset and extent by least squares around a candidate; False where a kink does as well."""
+def _refine(
+    values: Floats, candidate: _Candidate, sigma: float, quantum: float
+) -> tuple[_SlipStep, bool, float]:
+    """Onset and extent by least squares around a candidate; False where a kink does as well.
+
+    The last is the most that rounding to a quantum, half of it either way, makes of no step.
+    """
     reach = 2 * max(candidate.window, candidate.extent)
     first = max(0, candidate.onset - reach, candidate.onset // 2)
     last = min(values.size, candidate.onset + candidate.extent + reach)
@@ -389,6 +394,8 @@ def _refine(values: Floats, candidate: _Candidate, sigma: float) -> tuple[_SlipS
     kink, kink_power = _fit_kinks(local, onset=onsets)
     kink_gain = float(np.max(kink**2 / kink_power))
     is_step = float(gain[best]) - kink_gain > variance * 10 and extent[best] < widest
+    ramp = _without_parabola(_ramp_of(n_local, onset=onset[best], extent=extent[best]))
+    of_rounding = quantum / 2 * float(np.abs(ramp).sum() / power[best])
     step = _SlipStep(
         onset=int(onset[best]) + first,
         extent=int(extent[best]),
@@ -402,7 +409,7 @@ def _refine(values: Floats, candidate: _Candidate, sigma: float) -> tuple[_SlipS
         ),
         score=candidate.score,
     )
-    return step, bool(is_step)
+    return step, bool(is_step), of_rounding
 
 
 def _is_recovery(step: _SlipStep, earlier: list[_SlipStep], reach: int) -> bool:
@@ -441,7 +448,9 @@ def _joined(steps: list[_SlipStep]) -> tuple[_SlipStep, ...]:
     return tuple(joined)
 
 
-def find_steps(values: ArrayLike, *, false_alarm: float) -> tuple[_SlipStep, ...]:
+def find_steps(
+    values: ArrayLike, *, false_alarm: float, quantum: float | None = None
+) -> tuple[_SlipStep, ...]:
     """Steps of a series that neither drift, creep nor softening explains, in order.
 
     The likelihood ratio of a step of extent w against none, in a window of h samples
@@ -457,6 +466,9 @@ def find_steps(values: ArrayLike, *, false_alarm: float) -> tuple[_SlipStep, ...
         Chance that a series of white Gaussian noise on a smooth background shows a
         step: the threshold is Bonferroni's over all windows, extents and onsets, which
         makes it an upper bound. [1]
+    quantum : float, optional
+        Step of the digitizer, of a series of means that does not show it; from the series where
+        it is not given. [any unit]
 
     Returns
     -------
@@ -480,8 +492,8 @@ def find_steps(values: ArrayLike, *, false_alarm: float) -> tuple[_SlipStep, ...
     softening is as fast as a step.  A change that takes longer than twice the window, or
     that a change of slope explains as well, is drift.  An opposite change of less than
     half the size just after a step is its recovery, not a step.  Where the digitizer's
-    step is coarser than the noise, a drift moves in jumps of it, and nothing below one
-    and a half of them is a step.
+    step is coarser than the noise, a drift moves in jumps of it, and nothing is a step that
+    errors of half of it at every sample, with the signs of the kernel, could make.
 
     Examples
     --------
@@ -507,8 +519,9 @@ def find_steps(values: ArrayLike, *, false_alarm: float) -> tuple[_SlipStep, ...
     sigma = max(_neighbour_noise(remaining), 1e-9 * float(np.ptp(remaining)))
     if sigma == 0:
         return ()
-    _, quantum = sample_noise(series)
-    smallest = 1.5 * quantum if quantum > sigma else 0.0
+    if quantum is None:
+        _, quantum = sample_noise(series)
+        quantum = quantum if quantum > sigma else 0.0
     allowed = np.ones(series.size, dtype=bool)
     steps: list[_SlipStep] = []
     explained = 0
@@ -520,7 +533,9 @@ def find_steps(values: ArrayLike, *, false_alarm: float) -> tuple[_SlipStep, ...
         if candidate is None or abs(candidate.score) < threshold:
             break
         guess = _ramp_of(series.size, onset=[candidate.onset], extent=[candidate.extent])
-        step, is_step = _refine(_without_background(remaining, guess), candidate, sigma)
+        step, is_step, of_rounding = _refine(
+            _without_background(remaining, guess), candidate, sigma, quantum
+        )
         without = remaining - step.size * _ramp_of(
             series.size, onset=step.onset, extent=step.extent
         )
@@ -533,7 +548,7 @@ def find_steps(values: ArrayLike, *, false_alarm: float) -> tuple[_SlipStep, ...
             # What is left close to a step is its shape, not another one.
             blocked = (step.onset - step.extent - 2, step.onset + 2 * step.extent + 2)
             remaining = without
-            if abs(step.size) < smallest or _is_recovery(step, steps, 2 * candidate.window):
+            if abs(step.size) < of_rounding or _is_recovery(step, steps, 2 * candidate.window):
                 explained += 1
             else:
                 steps.append(step)
