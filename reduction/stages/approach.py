@@ -192,7 +192,9 @@ def find_approach(
     slow = left - left[ahead] < SLOW_SHARE * rate * passed
     slow &= (passed > 0) & (seconds <= latest)
     end = int(known[np.argmax(slow)]) if slow.any() else first
-    return _Approach(_at_corner(time, values, end, start, last, chord, rate), motion.reach, rate)
+    end = _at_corner(time, values, end, start, last, chord, rate)
+    end = _after_cut_step(motion.sign * values[: last + 1], end, noise_range)
+    return _Approach(end, motion.reach, rate)
 
 
 def _at_corner(
@@ -222,6 +224,23 @@ def _at_corner(
     corner = int(np.searchsorted(time[: last + 1], time[end] + meets))
     return min(max(corner, end), last)
 
+
+def _after_cut_step(left: Floats, end: int, noise_range: float) -> int:
+    """One sample later, where the channel goes on by more than noise and then stands at once.
+
+    Of a ramp that stops between two samples, so small a part of a step may be left that it passes
+    for slow.  What settles goes on for longer than one step.
+    """
+    later = left[end + 1 : end + 1 + _LEVEL_SAMPLES]
+    if later.size < _LEVEL_SAMPLES or not np.isfinite(later).all():
+        return end
+    ahead = float(left[end] - np.median(later))
+    unknown = _FROM_NOISE * noise_range
+    stands = abs(later[0] - np.median(later[1:])) < max(SLOW_SHARE * ahead, unknown)
+    return end + 1 if ahead > unknown and stands else end
+
+
+_FROM_NOISE = 0.25  # of its range: three of its deviations
 
 _FEWEST_ON_LINE = 4
 

@@ -463,7 +463,10 @@ def _still_intervals(
 def _from_approaches(
     time: Floats, values: Floats, first: Integers, last: Integers, *, noise: float
 ) -> tuple[Integers, Integers]:
-    """Standstills from the end of the approach to each.
+    """Standstills from the end of the approach to each until the channel leaves.
+
+    The first sample of the next ramp may lie within the tolerance.  Backward in time the way out is
+    an approach.
 
     Examples
     --------
@@ -473,14 +476,46 @@ def _from_approaches(
     >>> values = np.where(time < 10, 0.0995 * time, 1 - 0.005 * np.exp(-(time - 10) / 3))
     >>> print(_from_approaches(time, values, np.array([24]), np.array([59]), noise=1e-5))
     (array([10]), array([59]))
+
+    A hold that a ramp of 0.2 m a second leaves, whose first sample is 5 mm away.
+
+    >>> values = np.clip(0.1 * time, 0, 1) - np.clip(0.2 * (time - 39.975), 0, None)
+    >>> print(_from_approaches(time, values, np.array([10]), np.array([40]), noise=1e-5))
+    (array([10]), array([39]))
     """
-    starts = first.copy()
+    starts, stops = first.copy(), last.copy()
     for index, (one, end) in enumerate(zip(first.tolist(), last.tolist(), strict=True)):
         begin = int(last[index - 1]) + 1 if index else 0
         approach = find_approach(time, values, begin=begin, first=one, last=end, noise_range=noise)
         if approach is not None:
             starts[index] = approach.end
-    return starts, last
+        stop = int(first[index + 1]) if index + 1 < first.size else values.size
+        left = find_approach(
+            -time[one:stop][::-1], values[one:stop][::-1],
+            begin=0, first=stop - 1 - end, last=stop - 1 - one, noise_range=noise,
+        )  # fmt: skip
+        if left is not None:
+            stops[index] = _without_first_step(values, one, min(stop - 1 - left.end, end), noise)
+    return starts, stops
+
+
+def _without_first_step(values: Floats, first: int, last: int, noise: float) -> int:
+    """Last sample of a standstill, without one that the way out begins before.
+
+    A part of a step of the log passes for slow: it lies off those before by more than noise, on the
+    side of the next one.
+    """
+    before = values[max(first, last - _SAMPLES_BEFORE) : last]
+    if last + 1 >= values.size or not np.isfinite(before).any():
+        return last
+    off = values[last : last + 2] - np.nanmedian(before)
+    leaves = abs(off[0]) > _FROM_NOISE * noise and off[0] * (off[1] - off[0]) > 0
+    return last - 1 if leaves else last
+
+
+_SAMPLES_BEFORE = 8
+
+_FROM_NOISE = 0.25  # of its range: three of its deviations
 
 
 def _held_intervals(

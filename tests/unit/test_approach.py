@@ -135,3 +135,25 @@ def test_a_drop_is_that_of_one_length(shape):
     assert bool(settled) is (shape != "sharp")
     assert hold.ramp_end_tension == pytest.approx(hold.logged_peak_tension, rel=0.02)
     assert hold.prony_time == pytest.approx([30], rel=0.1)
+
+
+@pytest.mark.parametrize("left", [0.002, 0.005, 0.009])
+def test_a_ramp_that_stops_between_two_samples_ends_at_the_later_one(left):
+    """Of 0.1 m a second; what is left at the sample before is less than a tenth of a step."""
+    time = np.arange(0.0, 60.0)
+    place = np.clip(0.1 * (time - 10) - left, -1.0, 0.0)
+    assert place[10] == -left and place[11] == 0
+    found = find_approach(time, place, begin=0, first=20, last=59, noise_range=1e-5)
+    assert found.end == 11
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+@pytest.mark.parametrize("left", [0.002, 0.005])
+def test_the_first_sample_of_the_next_ramp_is_no_part_of_a_hold(left, way):
+    time = np.arange(0.0, 200.0)
+    place = np.interp(
+        time, [0, 20, 30, 100 - 10 * left, 110 - 10 * left, 200], [0, 0, 1, 1, 1 + way, 1 + way]
+    )
+    assert abs(place[100] - 1) == pytest.approx(left)
+    stand = find_standstills(time, place, [100 * place], settings=PhaseSettings(), is_held=True)
+    assert stand.end_time[1] == 99

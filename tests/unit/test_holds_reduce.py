@@ -7,7 +7,13 @@ from scipy.signal import lfilter
 from reduction.record.errors import DataError
 from reduction.record.settings import HoldSettings
 from reduction.stages.holds.prony_series import prony_tension
-from reduction.stages.holds.relaxation_and_creep import _value_at_times, reduce_holds
+from reduction.stages.holds.relaxation_and_creep import (
+    Hold,
+    _late_load,
+    _Ramp,
+    _value_at_times,
+    reduce_holds,
+)
 from reduction.stages.standstills import Standstills
 
 STEP = 0.1
@@ -454,6 +460,7 @@ def test_the_steps_of_a_converter_are_no_slip_and_in_the_interval_of_the_initial
     fine, tension, log = superposed(lambda t: np.clip(t / 10, 0, 1), 0.02, late=late, duration=90)
     (found,) = reduce(*in_codes(log, step), spans=((0, 20), (30, 1e9)))
     assert not any(one.code == "hold-tension-steps" for one in found.refusals)
+    assert not any(one.code == "hold-load-late" for one in (*found.refusals, *found.notes))
     true = np.interp(30.0, fine, tension)
     spread = found.hold_initial_tension_standard_uncertainty
     assert abs(found.hold_initial_tension - true) < 2 * spread
@@ -463,3 +470,14 @@ def test_the_steps_of_a_converter_are_no_slip_and_in_the_interval_of_the_initial
     slipped = time, position, load - np.where(time > 80, 5 * step, 0.0)
     (found,) = reduce(*in_codes(slipped, step), spans=((0, 20), (30, 1e9)))
     assert any(one.code == "hold-tension-steps" for one in found.refusals)
+
+
+@pytest.mark.parametrize(("codes", "is_late"), [(1, False), (3, True)])
+def test_a_load_in_coarse_steps_does_not_come_late_by_one_of_them(codes, is_late):
+    """Two levels that differ by nothing may be rounded to codes one step apart."""
+    time = np.arange(0.1, 60, 0.1)
+    load = 171.0 - 3 * np.round(time / 20)
+    load[1:8] += 3.0 * codes
+    ramp = _Ramp(-5.0, 0.0, -2.5, 5.0, 300.0)
+    hold = Hold(time, 0 * time, load, 1 + 0 * time, 0.0, ramp, 0.01, logged_peak=load.max())
+    assert (_late_load(hold, 171.0) is not None) is is_late

@@ -800,7 +800,8 @@ def _late_load(hold: Hold, initial: float) -> _LateLoad | None:
     at = int(np.argmax(value))
     rise = float(value[at]) - initial
     end_known_to = initial * hold.ramp.end_uncertainty / hold.ramp.length
-    told = SIGNIFICANT * float(np.hypot(hold.tension_noise, end_known_to))
+    # both levels may be rounded by half a step of the converter, away from each other
+    told = SIGNIFICANT * float(np.hypot(hold.tension_noise, end_known_to)) + hold.tension_step
     if not rise > max(told, _LATE_LEAST * initial):
         return None
     return _LateLoad(rise, float(blocks.value[at]), float(blocks.elapsed[at]))
