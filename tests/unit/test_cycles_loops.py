@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.signal import lfilter
 
 from reduction.record.errors import DataError
 from reduction.record.settings import CycleSettings, PhaseSettings
@@ -596,6 +597,41 @@ def test_rounding_of_both_extremes_is_in_the_interval_of_the_amplitude():
         errors.append(found.tension_amplitude[0] - 95 * np.ptp(wave) / 2)
     assert np.median(spreads) == pytest.approx(5 / 24**0.5, rel=0.1)
     assert np.mean(np.abs(errors) < 1.96 * np.array(spreads)) >= 0.9
+
+
+@pytest.mark.parametrize("decay", [0.15, 0.2])
+def test_what_decays_at_the_corner_of_a_rest_is_in_the_interval_of_the_amplitude(decay):
+    """Ramps of 3 s and rests of 2 s, read ten times a second in noise that hides the decay.
+
+    A term of 12 N and time constant t in a ramp of 3 s is 12 t / 3 (1 - exp(-3 / t)) at its end,
+    less what the ramp before has left of it.
+    """
+    fine, every, n_cycles = 0.01, 10, 10
+    time = np.arange(0, n_cycles * 10 + fine / 2, fine)
+    wave = np.interp(time % 10, [0, 1, 4, 6, 9, 10], [-1, -1, 1, 1, -1, -1])
+    keep = np.exp(-fine / decay)
+    term = lfilter([(1 - keep) * decay / fine], [1, -keep], np.diff(wave, prepend=-1))
+    tension = 300 + 40 * wave + 6 * term
+    later = slice(1000, None)
+    true = (tension[later].max() - tension[later].min()) / 2
+    left = np.exp(-np.array([2.0, 3.0]) / decay)
+    steady = 12 / 3 * decay * (1 - left[1]) / (1 + left[0] * left[1])
+    assert true == pytest.approx(40 + steady, rel=1e-3)
+    within = []
+    for seed in range(20):
+        rng = np.random.default_rng(seed)
+        at = np.arange(int(rng.integers(every)), time.size - every, every)
+        log = tension[at] + rng.normal(0, 0.3, at.size)
+        loops = close_loops(
+            time[at], log[None], 1 + 0.2 * wave[at][None], cycles_of(100, n_cycles - 1, at.size),
+            waveform="other",
+        )  # fmt: skip
+        found = summarise_amplitude(loops, area=[1e-3])
+        within.append(
+            (found.tension_amplitude[0] - true) / found.uncertainty["tension_amplitude"][0]
+        )
+    # one that is taken for level was off by 25 standard uncertainties
+    assert np.abs(within).max() < 6.0
 
 
 def test_a_channel_that_creeps_keeps_the_period_of_the_machine():

@@ -1311,8 +1311,8 @@ def _readings_at_turns(
             # a machine that dwells is at the level of its corner, and misses nothing
             upper = _plateau(values, peak - reach, after_peak, top)
             lower = _plateau(-values, np.maximum(end - reach, peak), stop, -last)
-            top, above = (top, above) if upper is None else (upper, 0 * above)
-            last, below = (last, below) if lower is None else (-lower, 0 * below)
+            top, above = (top, above) if upper is None else (upper[0], 0 * above)
+            last, below = (last, below) if lower is None else (-lower[0], 0 * below)
         top, last, missed = top + above / 2, last - below / 2, missed + (above + below) / 2
     elif turn == "rounded":
         above = missed_by_extreme(values, peak, top, sign=1)
@@ -1451,8 +1451,13 @@ _EITHER_WAY = np.sqrt(
 _LEAST_OF_GREATEST = 0.2  # of the noise: half the scatter of the greatest of hundreds of readings
 
 
-def _plateau(values: Floats, low: Integers, high: Integers, top: Floats) -> Floats | None:
+def _plateau(
+    values: Floats, low: Integers, high: Integers, top: Floats
+) -> tuple[Floats, float] | None:
     """Mean of the readings of a plateau, of which noise makes the greatest one too great.
+
+    With it, by how much the ends of the plateau may lie above that mean: a decay that noise hides
+    has its extreme there.
 
     None where a window has no plateau: its middle lies no higher than its ends, as that of a dome
     does, and its beginning no higher than its end, as of what relaxes.  The middle half is taken,
@@ -1483,8 +1488,35 @@ def _plateau(values: Floats, low: Integers, high: Integers, top: Floats) -> Floa
     clearly = mean > np.maximum(_CLEARLY * spread, _LEVEL * noise)
     if mean[_PARTS:].max() > _BENT * noise or clearly.any():
         return None
+    ends = np.array(
+        [1.5 * mean[0] - 0.5 * mean[1], 1.5 * mean[_PARTS - 1] - 0.5 * mean[_PARTS - 2]]
+    )
+    above = max(float((ends + spread[[0, _PARTS - 1]]).max()), 0.0)
     # of a cycle that begins or ends in its plateau little of it is left
-    return np.where(np.isfinite(level), level, top - np.nanmedian(top - level))
+    return np.where(np.isfinite(level), level, top - np.nanmedian(top - level)), above
+
+
+def _above_at_corner(
+    values: Floats, driven: Floats, low: Integers, high: Integers, level: Floats
+) -> float:
+    """By how much the approach of a series leads above its plateau, where the driven one rests.
+
+    Mean over the cycles.  What decays within a few readings is farthest there, and in noise its
+    plateau shows no decay.
+    """
+    found = []
+    noise = reading_noise(driven)
+    sign = float(np.sign(np.nanmedian(driven[high] - driven[low])))
+    for start, stop, mean in zip(low.tolist(), high.tolist(), level.tolist(), strict=True):
+        place = sign * driven[start : stop + 1]
+        step = np.diff(place).max(initial=0.0)
+        at = start + int(np.argmax(place > place.max() - max(_RESTS * step, _CLEAR * noise)))
+        rise = sign * (driven[at - 1] - driven[at - 2])
+        if at - 2 < start or not rise > _STEEP * noise:
+            continue
+        share = min(max(sign * float(driven[at] - driven[at - 1]) / float(rise), 0.0), 1.0)
+        found.append(values[at - 1] + share * (values[at - 1] - values[at - 2]) - mean)
+    return max(float(np.nanmean(found)), 0.0) if found else 0.0
 
 
 def _mean_of_rest(values: Floats, at: Integers, greatest: Floats, *, within: Floats) -> Floats:
@@ -1494,6 +1526,10 @@ def _mean_of_rest(values: Floats, at: Integers, greatest: Floats, *, within: Flo
 
 
 _OF_A_STEP = 0.05  # of the mean step of a branch
+
+_RESTS, _CLEAR, _STEEP = 0.05, 3.0, 10.0
+"""Of the greatest step of a driven channel, and noise of its readings: within which it rests; noise
+by which its steps show a ramp. [1]"""
 
 
 def _held_levels(
@@ -1510,7 +1546,7 @@ def _held_levels(
     )  # fmt: skip
     if first is None or top is None or last is None:
         return None
-    return -way * first, way * top, -way * last
+    return -way * first[0], way * top[0], -way * last[0]
 
 
 def _places(values: Floats, low: Integers, high: Integers) -> Integers:
@@ -1685,6 +1721,7 @@ def _without_noise(
     way: int,
     may_dwell: bool,
     of_corners: float,
+    driven: Floats,
 ) -> None:
     """Valleys of cycles that touch made one, and what noise adds to extremes taken off.
 
@@ -1710,8 +1747,16 @@ def _without_noise(
         upper = _plateau(way * values, begin, end, way * top)
         lower = _plateau(-way * values, peak, after, -way * last)
         if upper is not None and lower is not None:
-            top[:], last[:] = way * upper, -way * lower
+            top[:], last[:] = way * upper[0], -way * lower[0]
             first[touch] = last[touch - 1]
+            leads = (
+                _above_at_corner(sign * values, driven, low, high, level)
+                for sign, low, high, level in (
+                    (way, begin, peak, way * top), (-way, peak, end, -way * last),
+                )
+            )  # fmt: skip
+            above = sum(max(one) for one in zip((upper[1], lower[1]), leads, strict=True))
+            np.hypot(missed, _EITHER_WAY * above / 2, out=missed)
             return
     noise = _within_scatter(noise, top)
     (of_peak, peak_falls), (of_valley, valley_falls) = (
@@ -1972,7 +2017,7 @@ def close_loops(
                 _without_noise(
                     measured[index, rows : rows + 4], series, cycles, reach=reach,
                     turn=turns[index], noise=own, way=way,
-                    may_dwell=waveform == "other", of_corners=of_corners,
+                    may_dwell=waveform == "other", of_corners=of_corners, driven=moved,
                 )  # fmt: skip
         shapes = None
         if waveform == "other":
