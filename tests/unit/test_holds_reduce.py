@@ -7,6 +7,7 @@ from scipy.signal import lfilter
 from reduction.record.errors import DataError
 from reduction.record.settings import HoldSettings
 from reduction.stages.holds.prony_series import prony_tension
+from reduction.stages.holds.ramp_end import level_at_end
 from reduction.stages.holds.relaxation_and_creep import (
     Hold,
     _late_load,
@@ -481,3 +482,18 @@ def test_a_load_in_coarse_steps_does_not_come_late_by_one_of_them(codes, is_late
     ramp = _Ramp(-5.0, 0.0, -2.5, 5.0, 300.0)
     hold = Hold(time, 0 * time, load, 1 + 0 * time, 0.0, ramp, 0.01, logged_peak=load.max())
     assert (_late_load(hold, 171.0) is not None) is is_late
+
+
+@pytest.mark.parametrize(("fast", "slow"), [((10, 2), (30, 60)), ((15, 3), (20, 40))])
+def test_noise_that_hides_a_fast_term_leaves_the_initial_tension_without_much_of_a_bias(fast, slow):
+    """Two terms of some newtons in noise of 4 N, of 200 generated holds."""
+    since = np.arange(0.05, 120, 0.1)
+    true = 300.0 + fast[0] + slow[0]
+    fall = sum(size * -np.expm1(-since / time) for size, time in (fast, slow))
+    away = []
+    for seed in range(200):
+        read = true - fall + np.random.default_rng(seed).normal(0, 4, since.size)
+        level = level_at_end(since, read, noise=4.0, shortest=0.25)
+        away.append((level.value - true) / level.standard_uncertainty)
+    assert abs(np.mean(away)) < 0.25
+    assert np.mean(np.abs(away) < 1.96) > 0.93

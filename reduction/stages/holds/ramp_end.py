@@ -24,7 +24,8 @@ FEWEST_ON_LINE, MOST_ON_LINE = 3, 1 << 14
 
 _GROWTH = 1.4
 
-_AGREEING = 2.0  # standard uncertainties
+# standard uncertainties together: those of lines through the same first samples differ by less
+_AGREEING = 1.0
 
 _LARGEST_SPREAD = 3.0  # of so many fewer samples in noise; more is a line across a ringing
 
@@ -153,7 +154,7 @@ def level_at_end(
     Notes
     -----
     Method of [1]_: lines through 3, 5, 7, 10, ... samples, each 1.4 times as long, until the
-    value at zero of one differs from that of any before by more than twice their standard
+    value at zero of one differs from that of any before by more than their standard
     uncertainties together.  That of a third as many samples as the last before it is taken, and
     what the two differ by is carried: several times its bias where a series bends evenly, and of
     the size of its bias where the series bends most at its beginning, as a relaxation over
