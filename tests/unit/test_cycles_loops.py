@@ -1128,6 +1128,8 @@ def test_rests_that_part_the_cycles_take_nothing_from_amplitudes_and_no_drift_in
     ):  # fmt: skip
         spread = found.uncertainty[name][0]
         assert abs(getattr(found, name)[0] - value) < 2.5 * spread + 4e-4 * value < 0.1 * value
+    # a rest that every cycle has is a part of the wave, however long
+    assert found.frequency[0] == pytest.approx(1 / (10 + at_top + at_valley), rel=2e-3)
 
 
 def in_step(waveform, channel, *, n_codes, noise, seed, per_cycle=40, n_cycles=25):

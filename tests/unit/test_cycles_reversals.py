@@ -6,7 +6,14 @@ import numpy as np
 import pytest
 
 from reduction.record.errors import DataError
-from reduction.stages.cycles.cycle_search import _first_pass, _typical_range, find_reversals
+from reduction.record.settings import CycleSettings, PhaseSettings
+from reduction.stages.cycles.cycle_search import (
+    _first_pass,
+    _typical_range,
+    find_cycles,
+    find_reversals,
+)
+from reduction.stages.standstills import find_standstills
 
 
 def sequential(values, band):
@@ -156,3 +163,21 @@ def test_band_of_a_hold_is_its_noise():
 def test_a_band_needs_samples():
     with pytest.raises(DataError, match="too few samples to tell noise from movement"):
         _first_pass([1.0, 2.0, np.nan])
+
+
+@pytest.mark.parametrize(
+    ("fast", "top_rest", "is_few"), [(2, 0, True), (8, 0, False), (5, 40, False)]
+)
+def test_a_stroke_of_a_few_samples_is_told_but_not_where_a_rest_follows_it(fast, top_rest, is_few):
+    # a sawtooth of 38 samples up, and a pulse that rises and falls at once and rests at both turns
+    corners = [0, fast, fast + top_rest, 2 * fast + top_rest, 2 * (fast + top_rest)]
+    if not top_rest:
+        corners, levels = [0, 38, 38 + fast], [0, 1, 0]
+    else:
+        levels = [0, 1, 1, 0, 0]
+    time = np.arange(10 * corners[-1], dtype=float)
+    wave = 2 + np.interp(time % corners[-1], corners, levels)
+    tension = 100 * wave[None]
+    stands = find_standstills(time, wave, tension, settings=PhaseSettings())
+    cycles = find_cycles(time, wave, tension, stands, settings=CycleSettings())
+    assert ("few-samples-a-stroke" in [one.code for one in cycles.notes]) == is_few

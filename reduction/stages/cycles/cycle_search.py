@@ -1018,7 +1018,7 @@ def find_cycles(
             needed="an ascending and a descending half cycle of similar range",
             hint=_hint(time, values),
         )
-    notes += _refuse_coarse(time, first, last)
+    notes += _refuse_coarse(time, first, branch_first[:, 1], last)
     if first.size == 1:
         notes.append(note("one-cycle"))
     n_made = first.size + (n_unsteady if counted_by == "reversals" else 0)
@@ -1053,13 +1053,15 @@ def find_cycles(
     )
 
 
-def _refuse_coarse(time: Floats, first: Indices, last: Indices) -> list[Note]:
+def _refuse_coarse(
+    time: Floats, first: Indices, leaves_peak: Indices, last: Indices
+) -> list[Note]:
     """Refuse a log with too few samples in its cycles; a note where they are few.
 
     Examples
     --------
     >>> time = np.arange(0.0, 30.0, 4.0)
-    >>> _refuse_coarse(time, np.array([0, 3]), np.array([3, 6]))
+    >>> _refuse_coarse(time, np.array([0, 3]), np.array([2, 5]), np.array([3, 6]))
     Traceback (most recent call last):
     reduction.record.errors.DataError: too few samples in a cycle; found 3 in cycle 1, which lasts
     12 s; needed 4 or more, and 12 for sound peaks and loops. Log every 1 s or faster, or take the
@@ -1079,6 +1081,17 @@ def _refuse_coarse(time: Floats, first: Indices, last: Indices) -> list[Note]:
         )
     if usual < ENOUGH_SAMPLES:
         return [note("few-samples-a-cycle", n_samples=usual, needed=ENOUGH_SAMPLES, step=wanted)]
+    # of the faster stroke, with the rest after it: what turns between its samples is in no reading
+    goes_on = np.append(first[1:], last[-1])
+    faster = np.minimum(leaves_peak - first, goes_on - leaves_peak)
+    fewest = float(np.median(faster))
+    if fewest < ENOUGH_SAMPLES / 2:
+        wanted = f"{period * fewest / usual / (ENOUGH_SAMPLES / 2):.3g} s or faster"
+        return [
+            note(
+                "few-samples-a-stroke", n_samples=fewest, needed=ENOUGH_SAMPLES // 2, step=wanted
+            )
+        ]
     return []
 
 

@@ -223,8 +223,7 @@ def _follow(time: Floats, cycles: Cycles, duration: Floats) -> Bools:
     rest = take_samples(time, cycles.first[1:]) - take_samples(time, cycles.last[:-1])
     usual = float(np.median(rest)) if rest.size else 0.0
     alike = np.abs(rest - usual) <= _ALIKE * float(np.median(duration))
-    follows = alike & (usual < float(np.median(duration)))
-    return np.asarray(touching(cycles) | np.concatenate([[False], follows]))
+    return np.asarray(touching(cycles) | np.concatenate([[False], alike]))
 
 
 def _flank_to_flank(
