@@ -1053,9 +1053,7 @@ def find_cycles(
     )
 
 
-def _refuse_coarse(
-    time: Floats, first: Indices, leaves_peak: Indices, last: Indices
-) -> list[Note]:
+def _refuse_coarse(time: Floats, first: Indices, leaves_peak: Indices, last: Indices) -> list[Note]:
     """Refuse a log with too few samples in its cycles; a note where they are few.
 
     Examples
@@ -1088,9 +1086,7 @@ def _refuse_coarse(
     if fewest < ENOUGH_SAMPLES / 2:
         wanted = f"{period * fewest / usual / (ENOUGH_SAMPLES / 2):.3g} s or faster"
         return [
-            note(
-                "few-samples-a-stroke", n_samples=fewest, needed=ENOUGH_SAMPLES // 2, step=wanted
-            )
+            note("few-samples-a-stroke", n_samples=fewest, needed=ENOUGH_SAMPLES // 2, step=wanted)
         ]
     return []
 

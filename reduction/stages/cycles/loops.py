@@ -1272,14 +1272,16 @@ def _readings_at_turns(
     after_peak = np.minimum(branch_first[:, 1] + reach, end)
 
     def extreme(of: np.ufunc, low: Integers, high: Integers) -> Floats:
-        pairs = np.column_stack([np.maximum(low, begin), np.minimum(high, end)]).ravel()
-        stop = int(end[-1])
+        # noise puts the turns at which a rest parts the cycles a reading or two beside its corners
+        low = np.maximum(low, np.maximum(begin - _REACH, 0))
+        high = np.minimum(high, np.minimum(end + _REACH, values.size - 1))
+        pairs, stop = np.column_stack([low, high]).ravel(), int(high[-1])
         found = of.reduceat(values[:stop], np.minimum(pairs[:-1], stop - 1))[::2]
-        return np.asarray(of(found, values[np.minimum(high, end)]))
+        return np.asarray(of(found, values[high]))
 
     top = extreme(np.maximum, peak - reach, after_peak)
-    first = extreme(np.minimum, begin, begin + reach)
-    last = extreme(np.minimum, end - reach, end)
+    first = extreme(np.minimum, begin - reach, begin + reach)
+    last = extreme(np.minimum, end - reach, end + reach)
     missed = np.zeros(top.size)
     if turn == "sharp":
         # what creeps while its channel rests is farthest after the turn that ends the cycle
@@ -1549,6 +1551,12 @@ def _held_levels(
     return -way * first[0], way * top[0], -way * last[0]
 
 
+def _farther(values: Floats, one: Integers, other: Integers) -> Integers:
+    """Of two turns at either end of a rest, those at which a series is greater in the mean."""
+    levels = [float(np.nanmean(take_samples(values, at))) for at in (one, other)]
+    return one if levels[0] >= levels[1] else other
+
+
 def _places(values: Floats, low: Integers, high: Integers) -> Integers:
     """Sample of the greatest value in each of some windows."""
     known = np.where(np.isfinite(values), values, -np.inf)
@@ -1761,7 +1769,15 @@ def _without_noise(
     noise = _within_scatter(noise, top)
     (of_peak, peak_falls), (of_valley, valley_falls) = (
         noise_in_extreme(values, turn, reach=reach, sign=sign, noise=noise)
-        for turn, sign in ((peak, way), (cycles.first[touch], -way))
+        for turn, sign in (
+            (_farther(way * values, peak, cycles.branch_first[:, 1]), way),
+            (
+                cycles.first[touch]
+                if touch.size
+                else _farther(-way * values, cycles.first, cycles.last),
+                -way,
+            ),
+        )
     )
     either = _EITHER_WAY * (of_peak + of_valley) / 2
     if of_corners and 0 < noise < _LIKE_CORNERS * of_corners * np.nanmedian(np.abs(top - first)):
