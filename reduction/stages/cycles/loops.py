@@ -69,7 +69,7 @@ References
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Literal
 
@@ -1952,6 +1952,8 @@ def close_loops(
         duration, turn_spread = own_periods(
             time, moved, cycles, duration, noise=reading_noise(moved)
         )
+    if waveform != "sinusoidal":
+        cycles = _into_rests(cycles, moved)
     measured = empty_like(tension, shape=(tension.shape[0], len(MEASURED), cycles.n_cycles))
     noises = [(reading_noise(force), reading_noise(stretch)) for force, stretch in
               zip(tension, strain, strict=True)]  # fmt: skip
@@ -2072,6 +2074,45 @@ def close_loops(
     uncertainty["frequency"][:] = turn_spread / duration**2 * np.sqrt(2)
     release_pages(*tables.values(), *uncertainty.values())
     return Loops(**tables, uncertainty=uncertainty)
+
+
+def _into_rests(cycles: Cycles, driven: Floats) -> Cycles:
+    """Cycles that rests part, begun and ended as far inside these as noise hides of their ramps.
+
+    Within the tolerance of a rest the first readings of a ramp belong to it, and a loop without
+    them is cut off at its ends.
+
+    Examples
+    --------
+    Ramps of 100 readings between rests, found 3 readings late and early in noise of .5 %:
+
+    >>> wave = np.interp(np.arange(900) % 300, [0, 50, 150, 200, 300], [0, 0, 1, 1, 0])
+    >>> noisy = wave + np.random.default_rng(1).normal(0, 0.005, 900)
+    >>> ends = np.array([[53, 200], [353, 500], [653, 800]])
+    >>> to = np.array([[150, 297], [450, 597], [750, 897]])
+    >>> cycles = Cycles(ends[:, 0], to[:, 1], ends, to, np.ones((3, 2)), np.zeros(900),
+    ...     np.zeros(900), np.zeros(900), 0.1)
+    >>> found = _into_rests(cycles, noisy)
+    >>> print(found.first, found.last)
+    [ 48 348 648] [302 602 899]
+    """
+    follows = touching(cycles)
+    if cycles.n_cycles < 2 or 2 * np.count_nonzero(follows) >= follows.size - 1:
+        return cycles
+    begin, end = cycles.branch_first[:, 0], cycles.branch_last[:, 0]
+    ramp = take_samples(driven, end) - take_samples(driven, begin)
+    step = float(np.nanmedian(np.abs(ramp) / (end - begin)))
+    reach = 1 + int(np.ceil(_ON_PLATEAU * reading_noise(driven) / step)) if step > 0 else 1
+    # no farther than the middle of a rest
+    room = np.concatenate([[cycles.first[0]], (cycles.first[1:] - cycles.last[:-1]) // 2])
+    first = cycles.first - np.minimum(reach, room)
+    room = np.append((cycles.first[1:] - cycles.last[:-1]) // 2, driven.size - 1 - cycles.last[-1])
+    last = cycles.last + np.minimum(reach, room)
+    branch_first, branch_last = cycles.branch_first.copy(), cycles.branch_last.copy()
+    branch_first[:, 0], branch_last[:, 1] = first, last
+    return replace(
+        cycles, first=first, last=last, branch_first=branch_first, branch_last=branch_last
+    )
 
 
 _REACH_OF_TURN = 0.25  # of the shorter branch, in which its extremes are sought
