@@ -1553,8 +1553,9 @@ def _held_levels(
 
 def _farther(values: Floats, one: Integers, other: Integers) -> Integers:
     """Of two turns at either end of a rest, those at which a series is greater in the mean."""
-    levels = [float(np.nanmean(take_samples(values, at))) for at in (one, other)]
-    return one if levels[0] >= levels[1] else other
+    apart = take_samples(values, one) - take_samples(values, other)
+    known = apart[np.isfinite(apart)]
+    return other if known.size and known.mean() < 0 else one
 
 
 def _places(values: Floats, low: Integers, high: Integers) -> Integers:
@@ -1756,7 +1757,7 @@ def _without_noise(
         lower = _plateau(-way * values, peak, after, -way * last)
         if upper is not None and lower is not None:
             top[:], last[:] = way * upper[0], -way * lower[0]
-            first[touch] = last[touch - 1]
+            first[1:] = last[:-1]
             leads = (
                 _above_at_corner(sign * values, driven, low, high, level)
                 for sign, low, high, level in (
