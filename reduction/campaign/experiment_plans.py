@@ -510,7 +510,7 @@ def _read_cells(path: Path) -> _CellSheet:
     ]
     if questions:
         count = f"{len(questions)} values are" if len(questions) > 1 else "1 value is"
-        raise in_toml(path, listed(f"{count} still '?', first {questions[0]}", questions))
+        raise in_toml(path, listed(f"{count} still '?'", questions))
     return _CellSheet(path, tuple(row for row, _ in rows), tuple(columns), first)
 
 

@@ -355,7 +355,7 @@ def read_toml(
     places = _open_questions(path.parent, table)
     if places:
         count = f"{len(places)} values are" if len(places) > 1 else "1 value is"
-        raise in_toml(path, listed(f"{count} still '?', first {places[0]}", places))
+        raise in_toml(path, listed(f"{count} still '?'", places))
     try:
         return model.model_validate(table)
     except ValidationError as error:

@@ -151,10 +151,10 @@ def one_line_of(lines: Sequence[LineSource], quantity: str, name: str | None) ->
         parts = [line for line in lines if name in (line.name.split(" ")[-1], *line.specimens)]
         having = [line for line in parts if quantity in line.quantities]
     if not having and len(named) > 1:
+        there = dict.fromkeys(name for line in named for name in line.quantities)
         raise SettingsError(
             f"none of {len(named)} lines has {quantity}",
-            needed="one of "
-            + ", ".join(dict.fromkeys(name for line in named for name in line.quantities)),
+            needed=f"one of {', '.join(there)}" if there else None,
         )
     if len(having) > 1:
         raise SettingsError(
@@ -351,14 +351,15 @@ def list_sources(source: str, search: Mapping[str, Any], *, output: CommandOutpu
     _fold_last(table)
     # what is copied into the next command is never broken
     table.columns[0].no_wrap = True
-    table.columns[-1].min_width = 1 + max(len(name) for line in lines for name in line.quantities)
+    widths = (len(name) for line in lines for name in line.quantities)
+    table.columns[-1].min_width = 1 + max(widths, default=0)
     for line in lines:
         table.add_row(
             line.name, line.source, line.material, line.construction, line.condition,
             short(factor * line.diameter, 4),
             short(scale * line.rated_break_strength)
             + (f"\n({line.strength_of})" if line.strength_of else ""),
-            ", ".join(line.quantities),
+            ", ".join(line.quantities) or ("none is printed" if line.is_printed else "none"),
         )  # fmt: skip
     output.show(table)
     for line in lines:
@@ -780,7 +781,7 @@ def _show_consistent(
             one.slow_pull: one.greatest for one in refitted_surfaces(line) if one.quantity == K_1
         }
         table = table_of(
-            f"mean tension\n[{force}]", "K_0 by", f"K_0\n[{force}]", "greatest z\nof printed K_1",
+            f"mean tension\n[{force}]", "K_0 from", f"K_0\n[{force}]", "greatest z\nof printed K_1",
             texts=0,
         )  # fmt: skip
         for of, values in _slow_pulls_at(line, points):
@@ -802,7 +803,7 @@ def _show_consistent(
         " three-parameter model:"
     )
     table = table_of(
-        *heads, "K_0 by", *(f"{name}\n[{force}]" for name in ("K_ap", "K_0")),
+        *heads, "K_0 from", *(f"{name}\n[{force}]" for name in ("K_ap", "K_0")),
         f"K_1 {stated}\n[{force}]", f"K_1 solved\n[{force}]", f"tau {stated}\n[s]",
         "tau solved\n[s]", "remark", texts=0,
     )  # fmt: skip
@@ -1080,12 +1081,9 @@ def _show_difference(
     if output.is_text:
         output.show(_difference_table(first, found, points, unit, factor, output.system))
     output.say("differ: the 95 % interval of the difference excludes zero")
+    output.say("the 95 % interval of the difference is for the specimens that were tested")
     output.say(
-        "the 95 % interval of the difference is for these specimens: the surfaces or curves that"
-        " were tested"
-    )
-    output.say(
-        "these specimens: the two surfaces of those tested; the kinds, another specimen of each:"
+        "these specimens: the means of those tested; the kinds, another specimen of each:"
         " including the scatter between specimens, where a source states it"
     )
     for note in found.notes:

@@ -381,8 +381,7 @@ def _whoicable_text(line: ExportLine, *, form: WhoiCableForm = "expression") -> 
     tension = _expression(start, powers)
     remarks = [
         f"expressions: {smooth.start.size} cubic pieces, greatest error "
-        f"{plain_number(smooth.error, 3)} N, "
-        f"{smooth.share:.2e} of the greatest tension; {local_words(smooth)}; beyond strain "
+        f"{plain_number(smooth.error, 3)} N, {local_words(smooth)}; beyond strain "
         f"{smooth.end:.6g} and below zero a straight line goes on and nothing is known"
     ]
     if form == "table":
@@ -623,7 +622,6 @@ def closeness_of(line: ExportLine, to: str, form: str | None) -> tuple[str, ...]
     damping = line.damping if form == "damped-table" else None
     return (
         *(() if damping is None else (damping_words(damping),)),
-        f"{doubt}the written curve is off by up to {plain_number(found.error, 3)} N, "
-        f"{found.share:.2e} of the "
-        f"greatest tension; {local_words(found)}",
+        f"{doubt}the written curve differs from the computed one by at most "
+        f"{plain_number(found.error, 3)} N, {local_words(found)}",
     )

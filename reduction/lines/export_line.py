@@ -369,9 +369,11 @@ class ExportLine:
             )  # fmt: skip
             found = f"{1000 * diameter:.4g} mm, of the displaced volume"
             return diameter, f"diameter: {found}, from {words}{nominal}"
+        is_solid = "rubber" in self.material.lower()
         return (
             self.needed("diameter"),
-            "diameter: nominal; the displaced volume of a fibre rope is smaller",
+            "diameter: nominal"
+            + ("" if is_solid else "; the displaced volume of a fibre rope is smaller"),
         )
 
     def needed(self, name: str) -> float:
@@ -448,6 +450,8 @@ _DIGITS = 10
 
 
 class _Close(Protocol):
+    @property
+    def share(self) -> float: ...
     @property
     def local(self) -> float: ...
 
@@ -752,7 +756,9 @@ def thin_curve(strain: ArrayLike, tension: ArrayLike, *, most: int) -> ThinnedCu
 
 
 def local_words(curve: _Close) -> str:
-    """How far a curve is off at small tensions.
+    """How far a curve is off, over the greatest tension and over that of each point.
+
+    A tension below `LEAST_SHARE` of the greatest counts as that much.
 
     Parameters
     ----------
@@ -770,7 +776,8 @@ def local_words(curve: _Close) -> str:
         If it is no such curve.
     """
     return (
-        f"{curve.local:.2e} of the local tension (or of {LEAST_SHARE:g} of the greatest, if larger)"
+        f"{100 * curve.share:.2g} % of the greatest tension and {100 * curve.local:.2g} % of the "
+        "local tension"
     )
 
 

@@ -446,13 +446,14 @@ def _of_points(values: tuple[ConsistentValues, ...]) -> tuple[str, ...]:
 
     sums = " or ".join(
         f"{of(one.quasi_static_spring_constant + one.of_surfaces[K_1])} ({one.slow_pull}; "
-        f"z {_shown(float((one.excess / one.excess_uncertainty).ravel()[worst]))})"
+        f"{_shown(float((one.excess / one.excess_uncertainty).ravel()[worst]))} standard errors"
+        " lower)"
         for one in values
     )
     solved = " or ".join(of(one.dissipation_spring_constant) for one in values)
     return (
         f"the printed numbers are inconsistent at {int(everywhere.sum())} of "
-        f"{everywhere.size} points: K_ap of a line is at most K_0 + K_1, and is "
+        f"{everywhere.size} points: K_ap cannot exceed K_0 + K_1, but is printed as "
         f"{of(values[0].of_surfaces[K_AP])} where K_0 + K_1 is {sums}; K_ap and H need a K_1 of "
         f"{solved}, printed is {of(values[0].of_surfaces[K_1])}",
     )
@@ -469,7 +470,7 @@ def column_warnings(
     unit = quantity_of(name).unit
     given = " or ".join(
         f"{plain_number(one.consistent[worst], 4)} {unit} ({one.slow_pull}; "
-        f"z {_shown(abs(one.z[worst]))})"
+        f"{_shown(abs(one.z[worst]))} standard errors away)"
         for one in own
     )
     return (

@@ -240,6 +240,11 @@ def _refuse_slack(line: LineSource, loads: _CycleLoads) -> None:
         )
 
 
+def _at(flags: Bools) -> str:
+    """At how many points something is so; nothing where it is so everywhere."""
+    return "" if flags.all() else f"at {int(flags.sum())} of {flags.size} points "
+
+
 def _design_values(
     line: LineSource,
     of: LineSurface | LineCurve | LineLevels,
@@ -264,9 +269,15 @@ def _design_values(
     elif isinstance(of, LineCurve):
         notes.append("no interval is given: the source does not state the scatter of this curve")
     if loads.is_above_rule.any():
-        notes.append(f"the peak tension exceeds the limit of the source: {line.rule}")
+        notes.append(
+            f"{_at(loads.is_above_rule)}the peak tension exceeds the limit of the source:"
+            f" {line.rule}"
+        )
     if loads.is_slack.any() and loads.peak_tension.max() > 0:
-        notes.append("the minimum is zero: a snap load, which breaks fibres (CG-D-39-80, sec. 5.0)")
+        notes.append(
+            f"{_at(loads.is_slack)}the minimum is zero: a snap load, which breaks fibres"
+            " (CG-D-39-80, sec. 5.0)"
+        )
     below = int(np.sum(numbers["value"] < 0))
     if below:
         notes.append(
@@ -614,7 +625,7 @@ def _refuse_outside(
         f"outside the tested range of {surface.quantity} of {line.name}: "
         f"{int((~inside).sum())} of {inside.size} points",
         found="; ".join(told),
-        needed="levels inside the tested range, the range of usefulness of the source",
+        needed="levels inside the tested range",
         hint=_HOW_FLAGGED,
     )
 
@@ -700,7 +711,8 @@ def look_up(
         why = line.absent.get(quantity)
         raise SettingsError(
             f"{line.name} has no {quantity}" + (f": {why}" if why else ""),
-            needed="one of " + ", ".join(line.quantities),
+            needed="one of " + ", ".join(line.quantities) if line.quantities else None,
+            hint=None if line.quantities else "No quantity is printed for this line.",
         )
     curves = [one for one in curves if one.variable in given]
     if not curves:

@@ -97,7 +97,7 @@ def find_lines(
         sizes = [] if diameter is None else [f"diameter {1e3 * diameter:.4g} mm within "
                                              f"{100 * tolerance:.3g} %"]  # fmt: skip
         raise SettingsError(
-            "no line is so",
+            "no line matches",
             found="; ".join([*(f"{name} '{text}'" for name, text in words.items()), *sizes]),
             needed=_there_is(known),
         )
@@ -188,7 +188,7 @@ def in_conditions(
         warning = f"NOT TESTED at {found}: the value is of {tested}"
         return replace(line, warnings=(warning, *line.warnings))
     raise DataError(
-        f"{quantity} of {line.name} was not tested so", found=found, needed=tested,
+        f"{quantity} of {line.name} was not tested in these conditions", found=found, needed=tested,
         hint="Stiffness depends on it; --extrapolate flag gives what was tested, flagged.",
     )  # fmt: skip
 

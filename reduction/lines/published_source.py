@@ -131,10 +131,10 @@ def _rate_note() -> str:
         )
     )
     return (
-        f"K_0 is of the pull it was taken in: in App. D a pull at three times the rate gives "
-        f"{fast / slow:.2f} times, one without a day of rest {early / fast:.2f} times, both "
-        f"{early / slow:.2f} times. That is one line, not named, each pulled once: no scatter is "
-        "known, and nothing is corrected by it"
+        f"K_0 depends on how the line is pulled: in App. D it was {fast / slow:.2f} times as high "
+        f"at three times the rate, {early / fast:.2f} times as high without a day of rest, and "
+        f"{early / slow:.2f} times as high with both. These are single pulls of one line that is "
+        "not named; no scatter is known, and no correction is applied"
     )
 
 

@@ -217,7 +217,7 @@ def _other_table(first: str, second: str, data: str) -> tuple[str, ...]:
         by_marks = _marked_line(tether).ratio if test == _MARKED else 1.0
         chords.append(_printed_chord(tether, _rows(name, other)[0]) / by_marks)
     return (
-        f"the row of Table {TABLE_OF_DATA[other]} is open: its printed loads and strains give "
+        f"the row of Table {TABLE_OF_DATA[other]} is ambiguous: its printed loads and strains give "
         f"{chords[0] / 1e6:.3f} MPa (first) and {chords[1] / 1e6:.3f} MPa (second) by the same "
         f"strain, ratio {chords[1] / chords[0]:.2f}",
     )

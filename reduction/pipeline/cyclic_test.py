@@ -62,7 +62,7 @@ def _compare_specimens(
             curves, curves, numerator_specimen=index, denominator_specimen=0,
             numerator_name=specimen.name, denominator_name=first.name,
         )  # fmt: skip
-        pair = f"{specimen.name} over {first.name}"
+        pair = f"ratio {specimen.name}/{first.name}"
         unequal = _unequal(first, specimen, index, history)
         notes = tuple(replace(one, subject=pair) for one in unequal)
         ratios.append(replace(ratio, notes=(*ratio.notes, *notes)))

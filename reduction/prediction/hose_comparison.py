@@ -172,7 +172,7 @@ def _identify_directions(
     ...     value=[1.0, 1.0], contribution=np.zeros((0, 2)), misfit=0.0,
     ... )
     >>> print(found.is_identified, found.words)
-    False cord_load_scale +7.1 % with cord_strain_scale -7.1 % changes the curve by 0.00 % alone
+    False cord_load_scale +7.1 % with cord_strain_scale -7.1 % changes the curve by only 0.00 %
     """
     slopes = np.asarray(sensitivity, dtype=np.float64)
     level = np.asarray(tension, dtype=np.float64)
@@ -237,7 +237,7 @@ def _words(
         for k in range(len(names))
         if size[k] >= _NAMED * size.max()
     ]
-    return f"{' with '.join(parts)} changes the curve by {100 * change:.2f} % alone"
+    return f"{' with '.join(parts)} changes the curve by only {100 * change:.2f} %"
 
 
 def _step(name: str, step: float, value: float) -> str:

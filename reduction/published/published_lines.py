@@ -534,12 +534,17 @@ _SAME_STRENGTH = 1.0
 """Difference of two strengths that are one. [N]"""
 
 
+def _place(table: str) -> str:
+    """Where a number is printed: ``Table 2``, ``sec. 6.3.2``."""
+    return table.replace("sec ", "sec. ") if table.startswith("sec ") else f"Table {table}"
+
+
 def strength_notes(line: PublishedLine) -> tuple[str, ...]:
     """What is said of the strength, where the tables do not agree."""
     found = sorted({round(one.value) for one in line.stated_strengths})
     if len(found) < 2:
         return ()
-    listed = ", ".join(f"{one.value:.0f} N (Table {one.table})" for one in line.stated_strengths)
+    listed = ", ".join(f"{one.value:.0f} N ({_place(one.table)})" for one in line.stated_strengths)
     return (
         f"the break strength is printed as {listed}; the tested levels are shares of "
         f"{line.rated_break_strength:.0f} N",
@@ -578,7 +583,7 @@ def own_strength(line: PublishedLine) -> tuple[float, tuple[str, ...]]:
     whose = "this condition" if age == line.condition else f"{age} (none of {line.condition})"
     share = 100 * found.tensile_strength / line.rated_break_strength
     return found.tensile_strength, (
-        f"lines in {whose} break at {found.tensile_strength:.0f} N (Table {found.table}), "
+        f"lines in {whose} break at {found.tensile_strength:.0f} N ({_place(found.table)}), "
         f"{share:.0f} % of the strength that %RBS and the tested levels refer to; the rule is "
         "judged by it",
     )

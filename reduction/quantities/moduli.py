@@ -112,7 +112,7 @@ OF_MODULI: tuple[Quantity, ...] = (
             "mean strain to which the cycles are shifted before averaging the curves",
             "a choice of reference; see mean_strain_drift",
             tables=("trend",),
-            page=("means", "mean strain of the aligned cycles"),
+            page=("means", "mean strain to which the cycles are shifted"),
             percent=True,
         ),
         group="curves",

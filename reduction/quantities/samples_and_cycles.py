@@ -432,7 +432,7 @@ OF_RECORD: tuple[Quantity, ...] = (
         measured(
             "splice_offset",
             "1",
-            "splice strain from slip, or from letting out at first loading",
+            "permanent splice strain, from slip or from setting at first loading",
             tables=("splice_coefficients",),
         ),
         measured(
@@ -773,7 +773,7 @@ OF_RECORD: tuple[Quantity, ...] = (
             "storage spring constant, mean over the test",
             shares_errors=True,
             tables=("amplitude",),
-            page=("means", "E', storage spring constant"),
+            page=("means", "storage spring constant"),
         ),
         measured(
             "test_loss_spring_constant",
@@ -781,7 +781,7 @@ OF_RECORD: tuple[Quantity, ...] = (
             "loss spring constant, mean over the test",
             shares_errors=True,
             tables=("amplitude",),
-            page=("means", "E'', loss spring constant"),
+            page=("means", "loss spring constant"),
         ),
         measured(
             "test_dynamic_modulus",

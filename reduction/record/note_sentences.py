@@ -70,11 +70,21 @@ def _unknown_mass(mass: float, usual: float, effect: float, cell: str) -> str:
     )
 
 
+def _millimetres(length: float) -> str:
+    """A length that is known to about 10 mm, in a survey and in a test alike."""
+    whole = 1000 * length
+    return f"{whole if whole < 50 else round(whole, -1):.0f} mm"
+
+
+def _share(error: float) -> str:
+    return "below 0.05%" if error < 5e-4 else f"{error:.1%}"
+
+
 def _unknown_friction(size: float, of_energy: float, of_constant: float) -> str:
     return (
         "no mark was read during unloading: if friction makes the extension of the splices"
-        f" {size:.0%} larger there than during loading, the hysteresis energy is {of_energy:.0%}"
-        f" and EA {of_constant:.1%} too large. Read marks during unloading"
+        f" {size:.0%} larger there than during loading, the hysteresis energy is too large by"
+        f" {of_energy:.0%} and EA by {of_constant:.1%}. Read marks during unloading"
         ' (hold "centre down"), or state splice_friction in [uncertainty]'
     )
 
@@ -651,7 +661,8 @@ _OF_MODULI: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         lambda effect, error, is_coarse: (
             "the difference between the mean slopes of the two branches does not match the tension"
             f" lost over a cycle: residual {effect:+.1%} of the modulus (standard error"
-            f" {error:.1%}). Possible causes: channel lag, a dwell at the reversals, slip or slack"
+            f" {_share(error)}). Possible causes: channel lag, a dwell at the reversals, slip or"
+            " slack"
             f"{', or too few samples for the curvature' if is_coarse else ''}"
         ),
     ),
@@ -661,7 +672,7 @@ _OF_MODULI: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "splice-slipped": (
         "warning",
         lambda cycles, length, excess, effect: (
-            f"the splices slipped at {cycles}, by at least {1000 * length:.0f} mm in all"
+            f"the splices slipped at {cycles}, by about {_millimetres(length)} or more in all"
             + ("" if excess != excess else
                f": from there on, and in later tests without marks of their own, strain is at least"
                f" {100 * excess:.1f} percentage points too large ({effect:.1%} of the mean strain)")
@@ -671,7 +682,7 @@ _OF_MODULI: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "splice-slipped-before": (
         "warning",
         lambda length, excess, effect: (
-            f"before this test the splices slipped by at least {1000 * length:.0f} mm, and no"
+            f"before this test the splices slipped by about {_millimetres(length)} or more, and no"
             " marks were read in it"
             + ("" if excess != excess else
                f": strain is at least {100 * excess:.1f} percentage points too large"
@@ -689,7 +700,7 @@ _OF_MODULI: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "two specimens step at cycle {cycle}: check the crosshead before the splices",
     ),
     "no-common-strain": ("refusal", "{above} and {below} have no common strain range"),
-    "unequal-condition": ("note", "different condition before the campaign: {told}"),
+    "unequal-condition": ("note", "the conditions before the campaign differ: {told}"),
     "history-without-order": (
         "note", "the effect of earlier tests on either specimen is not known: no order is given",
     ),

@@ -20,6 +20,7 @@ from reduction.quantities.names import BRANCH_NAMES, quantity
 from reduction.quantities.units import UnitSystem, display_unit
 from reduction.record.errors import ReductionError
 from reduction.record.measurement import Floats
+from reduction.record.notes import Note
 from reduction.report.test_view import (
     DRAWN,
     TestView,
@@ -212,7 +213,11 @@ def design_modulus_table(tests: Sequence[TestView]) -> PageTable | None:
     ]  # fmt: skip
     columns, found = _without_empty(columns, found, ["EA/MBL"])
     tangents = "EA of the tangent" if is_of_lines else "tangent modulus"
-    whole = "" if is_of_lines else " Whole cycle: stress amplitude over strain amplitude."
+    whole = (
+        ""
+        if is_of_lines
+        else " Whole cycle: dynamic modulus, stress amplitude over strain amplitude."
+    )
     return make_table(
         f"Design {'stiffness' if is_of_lines else 'moduli'}. EA: tension amplitude over strain"
         f" amplitude.{whole} Ascending, descending: {tangents} at mid-strain. Means over the"
@@ -224,8 +229,8 @@ def design_modulus_table(tests: Sequence[TestView]) -> PageTable | None:
                 factors_of(found), [view for view, rows in by_test if rows],
                 [_OF_ROPE, *([] if is_of_lines else [_WHOLE]), _TANGENT],
             ),
-            "Cycles used: for the whole cycle, then for the tangents if different; which ones, and"
-            " whether EA had settled: its mean over the last half of them is inside its interval."
+            "Cycles used: how many (after a semicolon for the tangents, if different) and, in"
+            " brackets, which. Settled: mean EA of the last half of them is inside the interval."
             f" {NOT_GIVEN}: no trustworthy value on that branch; the section of the test says why."
             " A modulus holds for the strain range of its test; another amplitude or mean gives"
             " another modulus. Status 'check': a problem could shift a result by more than its"
@@ -303,7 +308,7 @@ def _pull_rows(view: TestView, *, is_of_lines: bool) -> Iterator[list[TableCell]
         yield [
             words(name), words(f"{view.id} (earlier run)" if view.is_of_earlier_run else view.id),
             words("break" if is_break else "peak load"), *ends, line,
-            *([] if is_of_lines else [material]), _status(view),
+            *([] if is_of_lines else [material]), _status(view, name),
         ]  # fmt: skip
 
 
@@ -416,7 +421,8 @@ def _hold_rows(view: TestView) -> Iterator[list[TableCell]]:
             )
         yield [
             words(name), words(f"{view.id} (earlier run)" if view.is_of_earlier_run else view.id),
-            *cells[:2], number(float(lasted[place]) / 3600.0, digits=3), *cells[2:], _status(view),
+            *cells[:2], number(float(lasted[place]) / 3600.0, digits=3), *cells[2:],
+            _status(view, name),
         ]  # fmt: skip
 
 
@@ -598,13 +604,23 @@ def _rows(view: TestView, *, is_of_lines: bool) -> Iterator[list[TableCell]]:
                 + _which(view, place, float(constant[place]), float(of_constant.half[place])),
                 str(averaged[place]), is_number=True,
             ),
-            _status(view),
+            _status(view, view.specimens[place]),
         ]  # fmt: skip
 
 
-def _status(view: TestView) -> TableCell:
-    is_doubted = any(one.severity == "warning" for one in view.notes)
+def _status(view: TestView, specimen: str) -> TableCell:
+    """Return whether a warning is of the specimen, or of the whole test."""
+    others = [name for name in view.specimens if name != specimen]
+    is_doubted = any(
+        one.severity == "warning" and not any(_is_of(one, name) for name in others)
+        for one in view.notes
+    )
     return words("check" if is_doubted else "reduced")
+
+
+def _is_of(note: Note, specimen: str) -> bool:
+    """Return whether a note is of one specimen: by its first words, or by its stage."""
+    return str(note).startswith(f"{specimen}: ") or note.stage.endswith(f" {specimen}")
 
 
 def _tangents(

@@ -412,8 +412,8 @@ def _identified(view: ComparisonView) -> list[str]:
             f" {needed:.2g} % is needed."
         ]
     return [
-        f"The curve does not determine the fitted numbers: {view.text('identifiability')}, where"
-        f" {needed:.2g} % is needed{_TAKE_NONE}."
+        f"The curve does not determine the fitted numbers: {view.text('identifiability')};"
+        f" at least {needed:.2g} % is needed to determine them{_TAKE_NONE}."
     ]
 
 

@@ -105,7 +105,7 @@ def _similar(shown: SummaryFinding, alike: Sequence[SummaryFinding]) -> str:
     if not others:
         return ""
     notes = f"{len(others)} similar note{'' if len(others) == 1 else 's'}"
-    return f". {notes}: {', '.join(_names(others))}"
+    return f". {notes} in {', '.join(_names(others))}"
 
 
 def grouped_notes(view: TestView) -> list[tuple[str, list[str]]]:
@@ -178,7 +178,9 @@ def tiles(
     n_failures = sum(one.severity == "failure" for one in faults)
     n_tests = len({view.id for view in tests} | {row.test for row in statuses})
     n_specimens = len({name for view in tests for name in view.specimens})
-    n_cycles = sum(view.n_cycles for view in tests)
+    # the cycles of a part are in the log of the whole test too
+    whole = {view.id for view in tests}
+    n_cycles = sum(view.n_cycles for view in tests if view.attribute("part_of") not in whole)
     found = [
         _tile(n_tests, "test", "tested"),
         _tile(n_specimens, "specimen", "tested"),

@@ -33,7 +33,7 @@ from reduction.experiments.surface_points import (
     evaluate_surfaces,
     greatest_leverage,
 )
-from reduction.quantities.names import QUANTITIES, RESPONSES
+from reduction.quantities.names import QUANTITIES, RESPONSES, SCALES
 from reduction.record.contributions import coverage_factor, effective_degrees_of_freedom
 from reduction.record.measurement import Bools, Floats, Integers
 from reduction.record.notes import urgency
@@ -1032,11 +1032,15 @@ def answer_table(view: ExperimentView, surfaces: ResponseSurfaces) -> PageTable 
     middle = evaluate_surfaces(surfaces, centre, units="coded")
     lows, highs = _interval_of_surfaces(view, surfaces, centre)
     names = surfaces.response_names
-    bent = {_base_response(one) for one in names if one != _base_response(one)}
+    # of several surfaces of a response, the one that a look-up uses
+    used = {
+        next(f"{scale}{base}" for scale in (*SCALES, "") if f"{scale}{base}" in names)
+        for base in map(_base_response, names)
+    }
     kept = [
         (k, _base_response(name), response_unit(_base_response(name), view.units))
         for k, name in enumerate(names)
-        if np.isfinite(middle.value[k, 0]) and not (name in bent and least[k] < 0)
+        if np.isfinite(middle.value[k, 0]) and name in used
     ]
     cells = [
         with_interval(

@@ -279,11 +279,13 @@ class Sheet:
         corner: str = "what, with its unit",
         *,
         remarks: Sequence[str] = (),
+        optional: Container[str] = (),
     ) -> PageTable:
         """Return the table with a row for each column; ``heads`` stand above what were rows."""
         rows = [
             [words(heading), *column]
             for heading, column in zip(self.headings, self.columns, strict=True)
+            if heading not in optional or any(cell.text != NOT_GIVEN for cell in column)
         ]
         return make_table(caption, (corner, *heads), rows, remarks=remarks)
 

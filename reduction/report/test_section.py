@@ -275,7 +275,7 @@ def segment_table(tests: Sequence[TestView]) -> PageTable | None:
     sheet = Sheet.stack(_segments(view) for view in tests if "segment_modulus" in view.data)
     of = " of the rubber" if any(view.is_rubber for view in tests) else ""
     return sheet.table(
-        f"Elastic modulus{of}, piecewise linear, from trimmed branches.", tall=16,
+        f"Elastic modulus{of}: slopes of the straight segments of each trimmed branch.", tall=16,
         remarks=[plus_minus_of_tests(sheet.factors, tests, ["segment_modulus"])],
     )  # fmt: skip
 
@@ -312,10 +312,10 @@ def _summary_table(view: TestView) -> PageTable | None:
             )
             if factors_of([column]) and not shared_sources([view], [name])
         ]
-        said += [f"Scatter alone: {'; '.join(own)}."] if own else []
+        said += [f"For {', '.join(own)}, ± is the scatter alone."] if own else []
     return sheet.turned(
         "Means over the cycles of the test, and what changed over them.", view.specimens,
-        remarks=said,
+        remarks=said, optional=("mean strain to which the cycles are shifted [%]",),
     )  # fmt: skip
 
 
@@ -364,9 +364,9 @@ def _identity_table(view: TestView) -> PageTable | None:
         .numbers("median residual", [np.median(row) for row in ends], PERCENT, 2)
         .numbers("greatest residual", [np.max(row) for row in ends], PERCENT, 2)
         .table(
-            "Check: in every cycle, the stroke-mean modulus ascending minus descending must equal"
-            " the tension lost, divided by area and strain stroke. Residuals relative to the"
-            " stroke-mean modulus."
+            "Check: in every cycle, the mean modulus over the unloading stroke minus that over the"
+            " loading stroke must equal the tension lost over the cycle, divided by area and strain"
+            " stroke. Residuals are relative to the mean modulus of both strokes."
         )
     )
 

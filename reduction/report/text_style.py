@@ -519,6 +519,8 @@ FROM_READINGS = frozenset(
 )
 """Sources that follow from readings of the tests, not from what is stated of the instruments."""
 
+_NAMES = {"window": "regression window"}
+
 _MEANINGS = {
     RANDOM: "scatter between cycles, noise, regression",
     "run_to_run": "scatter of runs at one point of the plan",
@@ -528,7 +530,7 @@ _MEANINGS = {
     "splice_method": "splice law that was asked for",
     "splice_law": "which law the splices follow",
     "splice_friction": "friction in the splices",
-    "window": "blur by the regression window",
+    "window": "blur by its width",
     "gauge_length": "gauge length",
     "strain_gain": "error of the strain method itself",
     "quasi_static_fit": "fit of the slow pull that gives K_0",
@@ -560,7 +562,7 @@ def source_words(name: str) -> str:
     >>> source_words("tension_gain")
     'tension gain'
     """
-    return name.replace("_", " ")
+    return _NAMES.get(name, name.replace("_", " "))
 
 
 def source_meanings(names: Iterable[str]) -> str:

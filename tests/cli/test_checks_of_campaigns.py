@@ -22,7 +22,7 @@ PLANTED = (
     ("tmt-synthetic", "T-4-extended", "splices of one tether let out line from cycle 600 and 1,500",
      "new: the splices slipped at cycles 599 and 1,501"),
     ("tmt-synthetic", "T-4-extended-end, overnight-hold", "the same, with marks from before them",
-     "new: before this test the splices slipped by at least 98 mm"),
+     "new: before this test the splices slipped by about 100 mm or more"),
     ("tmt-synthetic", "T-4", "tension logged 20 ms late: without it the residual is half as large",
      "Possible causes: channel lag"),
     ("nylon-synthetic", "R05", "amplitude greater than the mean: no tension in each cycle",
@@ -40,7 +40,7 @@ PLANTED = (
     ("hose-synthetic", "comparison H68-dynamic", "cords that carry 1.4 times their slow load",
      "the shape of the difference has a probability of only"),
     ("hose-synthetic", "comparison H64-too-many", "four fitted numbers, of which a curve has two",
-     "changes the curve by 0.02 % alone"),
+     "changes the curve by only 0.02 %"),
     ("hose-synthetic", "comparison H64-break", "one pull without a way back: above its mean curve",
      "the shape of the difference has a probability of only"),
     ("buoy-technology-1997", "static", "printed length and elongation of 1325 disagree",
@@ -57,7 +57,7 @@ JUSTIFIED = (
     ("nylon-synthetic", "experiment nylon", "a quadratic of H is negative inside the range",
      "this surface falls to"),
     ("hose-synthetic", "L-64", "the static cycles begin and end slack: amplitudes are no EA",
-     "include the slack part. 1 similar note: L-68"),
+     "include the slack part. 1 similar note in L-68"),
     ("hose-synthetic", "comparison H64-dynamic", "angle and cord load do the same to one curve",
      "The curve does not determine the fitted numbers"),
     ("hose-synthetic", "comparison H68-dynamic", "cord load and the others do the same to it",
@@ -96,7 +96,7 @@ def test_planted_faults_are_checks_and_every_other_check_is_justified(campaign):
     )
     assert found == Counter(rows_of(name))
     doubted = {test for where, _ in rows_of(name) for test in where.split(", ")}
-    similar = re.findall(r"\. \d+ similar notes?: (.+)", "\n".join(words for _, words in doubts))
+    similar = re.findall(r"\. \d+ similar notes? in (.+)", "\n".join(words for _, words in doubts))
     doubted |= {test for names in similar for test in names.split(", ")}
     assert {test for test, one in status.items() if one == "check"} == doubted
 

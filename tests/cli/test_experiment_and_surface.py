@@ -290,7 +290,7 @@ def test_levels_beside_the_plan_ask_for_the_unit(fit):
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (('"6400 lbf"', '"?"'), "1 value is still '?', first experiment.rated_break_strength"),
+        (('"6400 lbf"', '"?"'), "experiment.rated_break_strength"),
         (('"6400 lbf"', '"6400 ft"'), "experiment.rated_break_strength: unit 'ft' is not a unit"),
         (('"6400 lbf"', '"-1 lbf"'), "experiment.rated_break_strength: is not positive"),
         (('"2 %"', '"0 %"'), "experiment.sigma: sigma is not above zero"),

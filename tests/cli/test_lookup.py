@@ -69,6 +69,13 @@ def test_ends_of_the_tension_and_the_rule_are_in_every_answer(command):
     assert "rule: a rubber tether must not go slack" in text
 
 
+def test_a_line_of_which_nothing_is_printed_is_listed(command):
+    for listed in ((), ("--list",)):
+        done = command("lookup", "nylon-8-strand-plaited-0.8125in-new", *listed)
+        assert done.returncode == 0
+        assert "none is printed" in done.stdout
+
+
 def test_a_search_leaves_the_lines_that_are_so(command):
     words = ("--material", "nylon", "--construction", "double braid", "--condition", "new")
     done = command("lookup", "published", "--list", *words, "--diameter", "0.5 in", "--json")
@@ -105,7 +112,7 @@ def test_a_search_in_a_campaign(command, two_tests):
     assert {one["kind"] for one in lines} == {"rubber tether"}
     none = command("lookup", two_tests, "--list", "--material", "nylon")
     assert none.returncode == 2
-    assert "no line is so; found material 'nylon'; needed material Natsyn rubber" in none.stderr
+    assert "no line matches; found material 'nylon'; needed material Natsyn rubber" in none.stderr
     assert "condition new or used" in none.stderr
 
 
@@ -285,7 +292,11 @@ def test_what_there_is(command):
             2,
             "several values of a level need a table",
         ),
-        (("published", "--list", "--material", "steel"), 2, "no line is so; found material 'steel'"),
+        (
+            ("nylon-8-strand-plaited-0.8125in-new", "--quantity", "K_ap", *LEVELS), 2,
+            "not printed for this line. No quantity is printed for this line.",
+        ),
+        (("published", "--list", "--material", "steel"), 2, "no line matches; found material 'steel'"),
         (("published", "--tolerance", "3 %"), 2, "a tolerance needs a diameter"),
         (("published", "--quantity", "relaxation_time", *LEVELS), 2, "a search that matches one"),
         ((NYLON, "--quantity", "relaxation_time", *LEVELS, "--out", "a.xls"), 2, "names no format"),

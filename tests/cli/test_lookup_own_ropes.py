@@ -183,7 +183,7 @@ def test_wet_and_dry_tests_are_not_one_line():
         assert float(found.value) == 1e3
         # Student's, of five degrees of freedom
         assert float(found.surface_high) == pytest.approx(1e3 + 10 * stats.t.ppf(0.975, 5))
-    with pytest.raises(DataError, match="not tested so"):
+    with pytest.raises(DataError, match="not tested in these conditions"):
         in_conditions(line, "apparent_spring_constant", {"temperature": "25 degC"})
 
 

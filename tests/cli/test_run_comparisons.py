@@ -140,7 +140,7 @@ order = 1
     notes = [row["note"] for row in table(tables, "notes") if row["note_stage"] == "comparison"]
     assert not any("b over a: unequal" in note for note in notes)
     assert (
-        "c over a: different condition before the campaign: 'two years at sea' against 'new'"
+        "ratio c/a: the conditions before the campaign differ: 'two years at sea' against 'new'"
         in notes
     )
 

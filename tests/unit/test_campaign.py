@@ -376,7 +376,7 @@ def test_open_questions_are_named_wherever_they_stand(folder):
         "[layouts.l.ch", 'missing = ["?"]\n[layouts.l.ch'
     )
     first, below = faults(folder, 'tests = "tests.csv"\n' + text)
-    assert first.endswith("campaign.toml: 7 values are still '?', first campaign.title")
+    assert first.endswith("campaign.toml: 7 values are still '?'")
     assert below == [
         "campaign.title",
         "specimens.?",
@@ -391,7 +391,7 @@ def test_open_questions_are_named_wherever_they_stand(folder):
 def test_one_open_question_is_told_before_other_faults(folder):
     text = BASE.replace('title = "t"', 'title = "?"') + "colour = 1\n" + TEST
     assert faults(folder, text) == (
-        f"{folder / 'campaign.toml'}: 1 value is still '?', first campaign.title",
+        f"{folder / 'campaign.toml'}: 1 value is still '?'",
         ["campaign.title"],
     )
 
@@ -399,7 +399,7 @@ def test_one_open_question_is_told_before_other_faults(folder):
 def test_more_than_ten_open_questions_are_counted(folder):
     steps = "".join(f"[[tests.T.steps]]\nname='s{n}'\nfrom=1\nto='?'\n" for n in range(12))
     first, below = faults(folder, BASE + TEST + steps)
-    assert "12 values are still '?', first tests.T.steps.0.to" in first
+    assert "12 values are still '?'" in first
     assert below[9:] == ["tests.T.steps.9.to", "and 2 more"]
 
 

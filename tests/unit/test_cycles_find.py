@@ -65,7 +65,7 @@ def test_the_return_to_slack_is_cut_at_the_valley_and_the_history_says_so(twenty
     assert position[cycles.last[-1]] == pytest.approx(4.0, abs=0.03)
     assert cycles.notes == ()
     assert cycles.made == (
-        "half cycles at the end of a run, cut where they pass their neighbours' level: 1, "
+        "half cycles at the end of a run of cycles, cut where they go beyond the level of their neighbours: 1, "
         f"first near {time[cycles.branch_last[-1, 0]]:g} s",
     )
 
@@ -186,7 +186,7 @@ def test_a_broken_first_half_cycle_is_noted():
     assert cycles.n_cycles == 19
     assert cycles.notes == ()
     assert cycles.made == (
-        "half cycles at the end of a run, short of their neighbours' level, not counted: 1, "
+        "half cycles at the end of a run of cycles, short of the level of their neighbours, not counted: 1, "
         f"first near {time[20 + np.argmin(position[20:30])]:g} s",
     )
 

@@ -107,8 +107,8 @@ def test_results_come_by_hold_and_then_by_specimen_without_rests():
     )
     assert [hold.specimen for hold in holds] == ["a", "b", "a", "b"]
     assert [hold.hold_start_time for hold in holds] == pytest.approx([25, 25, 150, 150])
-    assert "what an earlier hold has left to relax goes on under this one" in holds[2].made
-    assert "what an earlier hold has left to relax goes on under this one" not in holds[0].made
+    assert "relaxation from an earlier hold continues during this one" in holds[2].made
+    assert "relaxation from an earlier hold continues during this one" not in holds[0].made
 
 
 def test_a_scaled_tension_scales_tensions_and_leaves_shares():

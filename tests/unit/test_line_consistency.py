@@ -269,7 +269,7 @@ def test_a_look_up_warns_at_the_point_and_not_where_the_numbers_hold():
     strength = line.rated_break_strength
     at = {"frequency": 0.3, "mean_tension": 0.3 * strength, "tension_amplitude": 0.085 * strength}
     (first, second) = look_up(line, K_AP, **at).warnings
-    assert "K_ap of a line is at most K_0 + K_1" in first
+    assert "K_ap cannot exceed K_0 + K_1" in first
     assert "B6" in second
     assert look_up(line, K_AP, **{**at, "mean_tension": 0.12 * strength}).warnings == ()
     assert look_up(line, "dashpot_coefficient", **at).warnings == (first, second)

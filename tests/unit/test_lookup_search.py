@@ -72,7 +72,7 @@ def test_a_diameter_is_found_within_the_tolerance(diameter, tolerance, count):
     if count:
         assert len(find_lines(LINES, diameter=diameter, tolerance=tolerance)) == count
     else:
-        with pytest.raises(SettingsError, match="no line is so; found diameter"):
+        with pytest.raises(SettingsError, match="no line matches; found diameter"):
             find_lines(LINES, diameter=diameter, tolerance=tolerance)
 
 

@@ -45,8 +45,8 @@ FACTS = {
         ),
         "warning",
     ),
-    "new: stress at 50 % not given: 1 samples within 10 % before it": (
-        note("stress-at-strain-not-given", "new", level=0.5, reason="1 samples within 10 % before it"),
+    "new: stress at 50 % not given: samples between 40 and 50 % strain: 1; needed 4": (
+        note("stress-at-strain-not-given", "new", level=0.5, reason="samples between 40 and 50 % strain: 1; needed 4"),
         "refusal",
     ),
     "new: the slack rows scatter 1.6 times as much as tape reading explains (chi-square 26.5 with "
@@ -61,8 +61,8 @@ FACTS = {
     "amplitudes, slopes and energies": (
         note("cycles-drift", "new", n_far=3, n_cycles=10, limit=0.2), "warning",
     ),
-    "K_1 and tau not given in 2 of 3 cases: a measured quantity of the loop is missing": (
-        note("no-line", n_lines=2, n_all=3, reason="a measured quantity of the loop is missing"),
+    "K_1 and tau not given in 2 of 3 cases: a value of the loop, such as K_ap or H, is missing": (
+        note("no-line", n_lines=2, n_all=3, reason="a value of the loop, such as K_ap or H, is missing"),
         "refusal",
     ),
     "R05: the line goes slack in every cycle": (

@@ -99,6 +99,6 @@ def test_unequal_or_unknown_histories_are_told(past, told):
 def test_another_condition_before_the_campaign_is_an_unequal_history():
     equal = history([1.2, 1.2], [10.0, 10.0])
     told = remarks(Specimen("a", condition="new"), Specimen("b", condition="used"), equal)
-    assert told[0] == "b over a: different condition before the campaign: 'used' against 'new'"
+    assert told[0] == "ratio b/a: the conditions before the campaign differ: 'used' against 'new'"
     told = remarks(Specimen("a"), Specimen("b", condition="used"), equal)
     assert "'used' against not stated" in told[0]

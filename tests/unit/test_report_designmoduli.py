@@ -12,6 +12,7 @@ from reduction.report.answer_tables import (
     pull_table,
     unlike_tests_table,
 )
+from reduction.report.campaign_summary import tiles
 from reduction.report.test_view import OF_NO_TEST, Status, TestView
 from reduction.report.text_style import NOT_GIVEN
 
@@ -281,3 +282,20 @@ def test_a_relaxation_test_has_its_longest_hold_and_others_have_neither_table():
     ]
     assert pull_table([view]) is None
     assert pull_table([make_view()]) is None and hold_table([make_view()]) is None
+
+
+def test_a_warning_of_one_specimen_leaves_the_other_as_it_is():
+    def status(*note):
+        view = make_view(notes=[(*note, "warning")])
+        return [row[-1] for row in texts(design_modulus_table([view]))]
+
+    assert status("moduli", "new: the splices slipped") == ["check", "reduced"]
+    assert status("hold 2 used", "drifts") == ["reduced", "check"]
+    assert status("cycles", "the load cell drifts") == ["check", "check"]
+
+
+def test_cycles_of_a_part_are_counted_in_the_whole_test_only():
+    whole, part = make_view("T-1"), make_view("T-1-end")
+    part.data.attrs["part_of"] = "T-1"
+    assert "10" in [tile.number for tile in tiles([whole, part], [], [])]
+    assert "10" in [tile.number for tile in tiles([part], [], [])]

@@ -333,7 +333,7 @@ def test_notes_that_differ_in_numbers_alone_stand_once_on_top_and_all_in_their_s
     told = replace(rich_test, notes=tuple(map(plain, notes)))
     page = report(told, renamed(rich_test, "T-2"))
     text = "".join(page.text)
-    assert text.count("of strain. 4 similar notes: T-1") == 1
+    assert text.count("of strain. 4 similar notes in T-1") == 1
     assert all(text.count(note) >= 1 for note in notes)
 
 

@@ -142,7 +142,7 @@ def test_the_words_under_a_table_are_true_of_what_is_stated_and_of_what_reaches_
 
 def test_means_say_which_of_them_hold_scatter_alone():
     table = _summary_table(make_view())
-    assert table.remarks[1] == "Scatter alone: peak tension per decade of cycles."
+    assert table.remarks[1] == "For peak tension per decade of cycles, ± is the scatter alone."
     # a line over ten cycles: t of eight degrees of freedom is 2.306
     assert texts(table)[1] == ["peak tension per decade of cycles [N]", "7.0 ± 2.3"]
 

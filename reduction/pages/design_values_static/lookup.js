@@ -89,7 +89,7 @@ function valuesOfSurface(line, surface, levels, flag) {
     });
     throw new Refusal(`outside the tested range of ${surface.quantity} of ${line.name}: 1 of 1 points`, {
       found: told.join("; "),
-      needed: "levels inside the tested range, the range of usefulness of the source",
+      needed: "levels inside the tested range",
       hint: FLAG_HINT,
     });
   }

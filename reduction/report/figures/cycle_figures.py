@@ -279,9 +279,10 @@ def draw_amplitude_pairs(tests: Sequence[TestView]) -> list[Figure]:
                     drawn[specimen] = order
         if len(drawn) > 1:
             data += [_entry(specimen, order) for specimen, order in drawn.items()]
+        of_whole = " (whole cycle)" if name == "test_dynamic_modulus" else ""
         figure = make_figure(
             f"campaign-{name}", f"{words.capitalize()} of each test",
-            f"{words.capitalize()}, mean over the cycles of a test, against mean strain."
+            f"{words.capitalize()}{of_whole}, mean over the cycles of a test, against mean strain."
             " Horizontal bars: strain range of the cycles. Colour and shape of a marker: test;"
             " filling: specimen (grey in the legend)."
             " " + plus_minus_of_tests(factors, [*seen.values()], [name], mark="Upright bar, ±"),

@@ -198,8 +198,8 @@ def draw_tension_position(view: TestView) -> list[Figure]:
     if drawn.size:
         cycles = ", ".join(f"{cycle:.0f}" for cycle in drawn)
         caption = (
-            "Tension against crosshead position: the record outside the cycles, and of the"
-            f" {view.n_cycles:,} cycles numbers {cycles}."
+            "Tension against crosshead position: the record outside the cycles, and cycles"
+            f" {cycles} of the {view.n_cycles:,}."
         )
     return [
         make_figure(
@@ -364,12 +364,11 @@ def _figure(view: TestView, place: int, model: StrainModel, marks: _Marks) -> Fi
     return make_figure(
         f"{view.key}-splices-{place}", f"{view.id}: splice correction, {model.specimen}",
         "Above: length of both splices (position minus free length read at the marks) against"
-        f" {by}, and the method {model.method} (95 %, {factor_words([NORMAL])}, of its"
-        " coefficients). Below: strain by the method minus strain at the marks, in percentage"
-        " points; shaded: the same 95 %. Filled: marks read in this test; open: those of the"
-        " specimen's"
-        f" other tests. Dotted: range of this test. Free length at zero tension: {relaxed}"
-        f" {length.unit}.",
+        f" {by}, and the curve of the method {model.method} (band: 95 %, {factor_words([NORMAL])},"
+        " from its coefficients). Below: strain by the method minus strain at the marks, in"
+        " percentage points; shaded: the same 95 %. Filled: marks read in this test; open: those of"
+        f" the specimen's other tests. Dotted: range of this test. Free length at zero tension:"
+        f" {relaxed} {length.unit}.",
         [
             *_upper(model, marks, np.append(reach, marks.along), length, across),
             *_lower(model, marks, percent, across),

@@ -622,10 +622,11 @@ def find_half_cycles(
     short = [at for run in runs for at in run.short]
     paced = [at for run in runs for at in run.paced]
     made = [
-        f"half cycles at the end of a run{what}: {len(samples)}, first near {time[samples[0]]:g} s"
+        f"half cycles at the end of a run of cycles{what}: {len(samples)}, first near"
+        f" {time[samples[0]]:g} s"
         for samples, what in (
-            (cut, ", cut where they pass their neighbours' level"),
-            (short, ", short of their neighbours' level, not counted"),
+            (cut, ", cut where they go beyond the level of their neighbours"),
+            (short, ", short of the level of their neighbours, not counted"),
             (paced, " that are no part of the sine, not counted"),
         )
         if samples

@@ -450,10 +450,16 @@ def _rate_per_decade(blocks: _LogBlocks, *, ramp_duration: float) -> _Rate:
     elapsed, value, weight = blocks.elapsed[kept], blocks.value[kept], blocks.weight[kept]
     span = float(np.log10(elapsed[-1] / elapsed[0])) if elapsed.size else 0.0
     if elapsed.size < FEWEST_BLOCKS or span < SHORTEST_SPAN:
+        is_short = span < SHORTEST_SPAN
         raise DataError(
-            f"the hold is too short for a rate per decade: {span:.2f} decades and {elapsed.size} "
-            f"blocks after {RAMP_TIMES_LEFT_OUT:g} ramp times of {ramp_duration:.3g} s",
-            needed=f"{SHORTEST_SPAN:g} decades and {FEWEST_BLOCKS} blocks",
+            f"the hold is too short for a rate per decade: after {RAMP_TIMES_LEFT_OUT:g} ramp times"
+            f" ({RAMP_TIMES_LEFT_OUT:g} x {ramp_duration:.3g} s)"
+            + (
+                f" {span:.2f} decades of time remain; needed {SHORTEST_SPAN:g}"
+                if is_short
+                else f" {elapsed.size} means over equal steps of log time remain; needed"
+                f" {FEWEST_BLOCKS}"
+            )
         )
     x = np.log10(elapsed)
     share = weight / weight.sum()
@@ -1296,7 +1302,7 @@ def _describe(hold: Hold, rate: _Rate | None, *, follows_hold: bool) -> None:
             note("hold-samples-left-out", n_left_out=left_out, n_samples=hold.n_logged)
         )
     if follows_hold:
-        hold.made.append("what an earlier hold has left to relax goes on under this one")
+        hold.made.append("relaxation from an earlier hold continues during this one")
 
 
 def _with_delay(

@@ -410,7 +410,10 @@ def stress_at_strain(
         joined = np.concatenate([np.cumsum(np.diff(used)[::-1] > 1)[::-1] == 0, [True]])
         x, y = stretch[used][near & joined] - level, load[used][near & joined]
         if x.size < _FEWEST:
-            reasons[index] = f"samples within 10 % below it: {x.size}; needed {_FEWEST}"
+            reasons[index] = (
+                f"samples between {100 * (level - _SPAN):g} and {100 * level:g} % strain:"
+                f" {x.size}; needed {_FEWEST}"
+            )
             continue
         mean, square = x.mean(), float(np.sum((x - x.mean()) ** 2))
         slope = float(np.sum((x - mean) * y)) / square

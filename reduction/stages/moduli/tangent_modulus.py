@@ -496,8 +496,8 @@ def tangent_curves(
         if grid.cycles_pooled == 1
         else (
             f"a window holds too few samples of one cycle: each curve pools {grid.cycles_pooled} "
-            f"consecutive cycles ({groups.first.size} curves), and a curve by cycle is that of "
-            "the group that begins with the cycle",
+            f"consecutive cycles ({groups.first.size} curves); the curve listed under a cycle is "
+            "that of the group that starts with it",
         ),
     )
 

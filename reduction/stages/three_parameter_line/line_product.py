@@ -26,8 +26,8 @@ REASONS: dict[int, str] = {
     0: "",
     1: "the quasi-static spring constant at this mean tension is not known",
     2: "the quasi-static spring constant is not positive",
-    3: "a measured quantity of the loop is missing",
-    4: "a measured quantity of the loop is not positive",
+    3: "a value of the loop, such as K_ap or H, is missing",
+    4: "a value of the loop, such as K_ap or H, is not positive",
     5: "the loop is too wide: the loss spring constant reaches the apparent one",
     6: "the storage spring constant does not exceed the quasi-static one",
 }
