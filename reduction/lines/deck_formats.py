@@ -381,7 +381,7 @@ def _whoicable_text(line: ExportLine, *, form: WhoiCableForm = "expression") -> 
     tension = _expression(start, powers)
     remarks = [
         f"expressions: {smooth.start.size} cubic pieces, greatest error "
-        f"{plain_number(smooth.error, 3)} N, {local_words(smooth)}; beyond strain "
+        f"{plain_number(smooth.error, 3)} N {local_words(smooth)}; beyond strain "
         f"{smooth.end:.6g} and below zero a straight line goes on and nothing is known"
     ]
     if form == "table":
@@ -623,5 +623,5 @@ def closeness_of(line: ExportLine, to: str, form: str | None) -> tuple[str, ...]
     return (
         *(() if damping is None else (damping_words(damping),)),
         f"{doubt}the written curve differs from the computed one by at most "
-        f"{plain_number(found.error, 3)} N, {local_words(found)}",
+        f"{plain_number(found.error, 3)} N {local_words(found)}",
     )

@@ -35,7 +35,11 @@ def real_number(value: float) -> str:
 def one_line(text: str) -> str:
     """Text that every grammar takes as a remark: one line, ASCII, no comment or rule signs."""
     plain = " ".join(text.split()).encode("ascii", "replace").decode()
-    return re.sub("-{2,}", "-", re.sub(r"[#!%*\\\"|{}&]", " ", plain.replace("%", " percent")))
+    return re.sub(
+        "-{2,}",
+        "-",
+        re.sub(r"[#!%*\\\"|{}&]", " ", plain.replace(" %", "%").replace("%", " percent")),
+    )
 
 
 def header_lines(line: ExportLine, curve: ThinnedCurve | None, *remarks: str) -> list[str]:
@@ -49,7 +53,7 @@ def header_lines(line: ExportLine, curve: ThinnedCurve | None, *remarks: str) ->
             f"Range: {range_of(line)}. The curve ends at strain {curve.strain[-1]:.6g} and "
             f"tension {plain_number(curve.tension[-1], 6)} N; not known beyond",
             f"{curve.strain.size} points of {line.strain.size}; greatest error "
-            f"{plain_number(curve.error, 3)} N, {local_words(curve)}",
+            f"{plain_number(curve.error, 3)} N {local_words(curve)}",
         ]
         if curve.words:
             told.append(f"At the start: {curve.words}")

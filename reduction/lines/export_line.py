@@ -776,8 +776,8 @@ def local_words(curve: _Close) -> str:
         If it is no such curve.
     """
     return (
-        f"{100 * curve.share:.2g} % of the greatest tension and {100 * curve.local:.2g} % of the "
-        "local tension"
+        f"({100 * curve.share:.2g} % of the greatest tension, {100 * curve.local:.2g} % of the "
+        "local tension)"
     )
 
 

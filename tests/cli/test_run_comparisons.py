@@ -138,7 +138,7 @@ order = 1
     assert np.median(ratios["b", "a"]) == pytest.approx(1.2, rel=0.01)
     assert np.median(ratios["c", "a"]) == pytest.approx(0.8, rel=0.01)
     notes = [row["note"] for row in table(tables, "notes") if row["note_stage"] == "comparison"]
-    assert not any("b over a: unequal" in note for note in notes)
+    assert not any("ratio b/a: unequal" in note for note in notes)
     assert (
         "ratio c/a: the conditions before the campaign differ: 'two years at sea' against 'new'"
         in notes

@@ -45,7 +45,7 @@ def history(strain, cycles):
 
 def remarks(first, other, past):
     (ratio,) = _compare_specimens(curves(1e6, 1e6), (first, other), past)
-    return [note for note in map(str, ratio.notes) if note.startswith("b over a: ")]
+    return [note for note in map(str, ratio.notes) if note.startswith("ratio b/a: ")]
 
 
 def test_three_specimens_give_two_ratios_over_the_first():
@@ -61,8 +61,8 @@ def test_unequal_flexing_is_named_and_softening_is_said_of_rubber_alone():
     hoses = (Specimen("a", kind="stretch hose"), Specimen("b", kind="stretch hose"))
     found = remarks(*hoses, past)
     assert found == [
-        "b over a: different test histories: not known against 1000000 earlier flex cycles",
-        "b over a: different test histories: maximum earlier strain 130% against 100%",
+        "ratio b/a: different test histories: not known against 1000000 earlier flex cycles",
+        "ratio b/a: different test histories: maximum earlier strain 130% against 100%",
     ]
     assert remarks(Specimen("a"), Specimen("b"), past)[-1].endswith(
         "rubber is softer below what it has seen"
