@@ -8,10 +8,10 @@ from reduction.lines.deck_formats import FORMATS, FORMS, closeness_of, export_li
 @pytest.mark.parametrize("to", [to for to in FORMS if to != "raft"])
 def test_what_is_said_of_a_curve_is_what_its_header_says(to, tmp_path):
     (words,) = closeness_of(line(), to, None)
-    error = words.split("off by up to ")[1].split(";")[0]
+    error = words.split("by at most ")[1].replace(" %", " percent")
     *_, path = export_line(line(), to, tmp_path / "x.dat")
     bare = " ".join(path.read_text().replace("*", " ").replace("/", " ").replace("#", " ").split())
-    assert f"greatest error {error};" in bare
+    assert f"greatest error {error}" in bare
 
 
 def test_a_step_that_a_smooth_function_cannot_follow_is_doubtful():
@@ -19,7 +19,7 @@ def test_a_step_that_a_smooth_function_cannot_follow_is_doubtful():
         strain=np.array([0.0, 0.5, 0.5 + 1e-7, 1.0]), tension=np.array([0.0, 10.0, 1e3, 1.1e3])
     )
     assert closeness_of(one, "whoi-cable", None)[0].startswith("DOUBTFUL")
-    assert "up to 0 N" in closeness_of(one, "whoi-cable", "table")[0]
+    assert "at most 0 N" in closeness_of(one, "whoi-cable", "table")[0]
 
 
 def test_where_no_curve_is_thinned_nothing_is_said():

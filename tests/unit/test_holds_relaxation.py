@@ -55,7 +55,9 @@ def test_curvature_widens_the_uncertainty():
 @pytest.mark.parametrize(("ramp_duration", "last"), [(200.0, 1000), (2.0, 15)])
 def test_a_hold_too_short_for_a_rate_is_refused(ramp_duration, last):
     blocks = logarithmic_blocks(TIME[:last], TIME[:last])
-    with pytest.raises(DataError, match="too short for a rate per decade: .* needed 0.5 decades"):
+    with pytest.raises(
+        DataError, match="too short for a rate per decade: .* decades of time remain; needed 0.5"
+    ):
         _rate_per_decade(blocks, ramp_duration=ramp_duration)
 
 
