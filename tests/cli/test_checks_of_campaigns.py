@@ -21,7 +21,7 @@ CAMPAIGNS = {
 PLANTED = (
     ("tmt-synthetic", "T-4-extended", "splices of one tether let out line from cycle 600 and 1,500",
      "new: the splices slipped at cycles 599 and 1,501"),
-    ("tmt-synthetic", "T-4-extended-end, overnight-hold", "the same, with marks from before them",
+    ("tmt-synthetic", "overnight-hold", "the same, with marks from before them",
      "new: before this test the splices slipped by about 100 mm or more"),
     ("tmt-synthetic", "T-4", "tension logged 20 ms late: without it the residual is half as large",
      "Possible causes: channel lag"),

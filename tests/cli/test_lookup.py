@@ -494,7 +494,7 @@ def test_a_curve_without_an_interval_says_why(command):
 def test_a_difference_says_of_which_lines_its_interval_is(command):
     text = command("lookup", f"{PLAIT}-new", "--against", f"{PLAIT}-4-years", "--quantity", "K_ap",
                    *LEVELS).stdout  # fmt: skip
-    assert "the 95 % interval of the difference is for these specimens" in text
+    assert "the 95 % interval of the difference is for the specimens that were tested" in text
 
 
 def test_an_interval_that_reaches_below_zero_is_not_told_from_zero(command):
