@@ -1272,16 +1272,14 @@ def _readings_at_turns(
     after_peak = np.minimum(branch_first[:, 1] + reach, end)
 
     def extreme(of: np.ufunc, low: Integers, high: Integers) -> Floats:
-        # noise puts the turns at which a rest parts the cycles a reading or two beside its corners
-        low = np.maximum(low, np.maximum(begin - _REACH, 0))
-        high = np.minimum(high, np.minimum(end + _REACH, values.size - 1))
-        pairs, stop = np.column_stack([low, high]).ravel(), int(high[-1])
+        pairs = np.column_stack([np.maximum(low, begin), np.minimum(high, end)]).ravel()
+        stop = int(end[-1])
         found = of.reduceat(values[:stop], np.minimum(pairs[:-1], stop - 1))[::2]
-        return np.asarray(of(found, values[high]))
+        return np.asarray(of(found, values[np.minimum(high, end)]))
 
     top = extreme(np.maximum, peak - reach, after_peak)
-    first = extreme(np.minimum, begin - reach, begin + reach)
-    last = extreme(np.minimum, end - reach, end + reach)
+    first = extreme(np.minimum, begin, begin + reach)
+    last = extreme(np.minimum, end - reach, end)
     missed = np.zeros(top.size)
     if turn == "sharp":
         # what creeps while its channel rests is farthest after the turn that ends the cycle
@@ -1314,6 +1312,8 @@ def _readings_at_turns(
             upper = _plateau(values, peak - reach, after_peak, top)
             lower = _plateau(-values, np.maximum(end - reach, peak), stop, -last)
             top, above = (top, above) if upper is None else (upper[0], 0 * above)
+            if lower is not None:  # it is held at one level at both ends of a cycle
+                first = np.append(-lower[0][0], -lower[0][:-1])
             last, below = (last, below) if lower is None else (-lower[0], 0 * below)
         top, last, missed = top + above / 2, last - below / 2, missed + (above + below) / 2
     elif turn == "rounded":
