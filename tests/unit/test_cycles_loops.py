@@ -1175,3 +1175,39 @@ def test_steps_of_a_converter_in_step_with_the_wave_are_carried(waveform, noise,
             errors.append((getattr(found, name)[0] - value) / spread)
     assert np.percentile(np.abs(errors), 85) < 2.2
     assert np.abs(errors).max() < 3.5
+
+
+@pytest.mark.parametrize("rest", [0.2, 0.4])
+@pytest.mark.parametrize("control", ["load", "position"])
+@pytest.mark.parametrize("seed", range(3))
+def test_a_machine_that_rests_at_its_peak_alone_still_misses_its_valley(rest, control, seed):
+    rng, n_cycles = np.random.default_rng(seed), 14
+    period = 6 + rest
+    time = rng.uniform(0, 0.1) + np.arange(0, n_cycles * period, 0.1)
+    fine = np.arange(-2 * period, n_cycles * period + 1, 1e-3)
+    wave = np.interp(fine % period, [0, 3, 3 + rest, period], [-1, 1, 1, -1])
+    inner, keep = np.zeros_like(wave), np.exp(-1e-3 / 0.5)
+    for step in range(1, wave.size):
+        inner[step] = inner[step - 1] * keep + (1 - keep) * wave[step]
+    # a spring with a Kelvin or a Maxwell element of 0.5 s
+    answer = wave + 0.1 * inner if control == "load" else wave + 0.1 * (wave - inner)
+    half = np.ptp(answer[-2 * int(1000 * period) :]) / 2
+    wave, answer = (np.interp(time, fine, one) for one in (wave, answer))
+    load, strain = (wave, answer) if control == "load" else (answer, wave)
+    load, strain = 9000 + 4000 * load, 0.05 + 0.02 * strain
+    stands = (
+        find_tension_stands(time, strain, load[None], settings=PhaseSettings())
+        if control == "load"
+        else find_standstills(time, strain, load[None], settings=PhaseSettings())
+    )
+    settings = CycleSettings(control=control)
+    cycles = find_cycles(time, strain, load[None], stands, settings=settings)
+    loops = close_loops(
+        time, load[None], strain[None], cycles, waveform="other", control=control,
+        driven=load if control == "load" else strain,
+    )  # fmt: skip
+    found = summarise_amplitude(loops, area=[1e-4])
+    tension, stretch = (4000, 0.02 * half) if control == "load" else (4000 * half, 0.02)
+    for name, value in (("tension_amplitude", tension), ("strain_amplitude", stretch)):
+        spread = found.uncertainty[name][0]
+        assert abs(getattr(found, name)[0] - value) < 2.5 * spread + 3e-4 * value < 0.04 * value

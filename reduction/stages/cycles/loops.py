@@ -1291,17 +1291,22 @@ def _readings_at_turns(
         above = level_of_turn(values, peak, top, sign=1) - top
         below = last - level_of_turn(values, end, last, sign=-1)
         noise = _within_scatter(reading_noise(moved), moved[peak])
-        rests = rests_at_turns(moved, peak)
+        # a machine may rest at one of its turns alone
+        lowest = _places(-moved, np.maximum(end - reach, peak), stop)
+        rests, rests_below = rests_at_turns(moved, peak), rests_at_turns(-moved, lowest)
         of_peak, of_valley = (
-            np.abs(level_at_corner(values, moved, at, sign=sign, noise=noise, rests=rests) - level)
-            for at, sign, level in ((at_top, 1, top), (at_last, -1, last))
+            np.abs(level_at_corner(values, moved, at, sign=sign, noise=noise, rests=rest) - level)
+            for at, sign, level, rest in ((at_top, 1, top, rests), (at_last, -1, last, rests_below))
         )
+        # lines beside a rest cross above it, and of its readings noise makes one the greatest
+        step = (top - last) / (end - peak)
         if rests:
-            # lines beside a rest cross above it, and of its readings noise makes one the greatest
-            above, below = np.zeros((2, top.size))
+            above = np.zeros(top.size)
             if not answers:
-                step = (top - last) / (end - peak)
                 top = _mean_of_rest(values, at_top, top, within=_OF_A_STEP * step)
+        if rests_below:
+            below = np.zeros(top.size)
+            if not answers:
                 last = -_mean_of_rest(-values, at_last, -last, within=_OF_A_STEP * step)
         if answers:
             excess = np.fmax(of_peak - above, 0), np.fmax(of_valley - below, 0)
