@@ -1789,7 +1789,9 @@ def _without_noise(
     if of_corners and 0 < noise < _LIKE_CORNERS * of_corners * np.nanmedian(np.abs(top - first)):
         np.hypot(missed, either, out=missed)
         return
-    if may_dwell and max(peak_falls, valley_falls) > _FALLS * noise:
+    # the mean of noisy corners is blunt, and what it says of the noise too much
+    dwells = float(np.median(cycles.branch_first[:, 1] - peak)) > 1
+    if may_dwell and (dwells or max(peak_falls, valley_falls) > _FALLS * noise):
         np.hypot(missed, either, out=missed)
     top -= way * of_peak
     first += way * of_valley
