@@ -71,7 +71,7 @@ def test_a_log_that_changes_while_the_campaign_runs_is_found_out_though_size_and
     done = run(command, older, "--test", "A")
     assert done.returncode == 3
     assert "raw/A.csv: the file changed while the campaign ran; found sha256" in done.stderr
-    assert "as it was read. The product before is kept." in done.stderr
+    assert "as it was read. The earlier archive is kept." in done.stderr
     assert (older / "processed/short/A.nc").read_bytes() == before
 
 

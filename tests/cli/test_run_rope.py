@@ -183,7 +183,7 @@ def test_own_surfaces_stand_beside_the_k_1_and_tau_of_their_k_ap_and_h(run, trut
         assert one["of_surfaces"][name] == pytest.approx(centre[name] * unit, rel=0.03)
         assert one["apart"][name] is False
     shown = " ".join(command(*ask).stdout.split())
-    assert "by the surfaces, and K_1 and tau from K_ap, H and K_0" in shown
+    assert "K_1 and tau of their own surfaces, and solved from K_ap, H and K_0" in shown
     assert one["slow_pull"] in shown
 
 

@@ -39,7 +39,12 @@ def settings(*, tape=TAPE, model=MODEL, of_pull=MODEL, load_cell="A"):
         specimens={"new": Specimen("new")},
         experiments={"e": SimpleNamespace(runs={"R": ()}, quasi_static={"new": "P"})},
     )  # fmt: skip
-    pull = SimpleNamespace(strain_coefficient=np.zeros(4), tension_low=1.0, tension_high=2.0)
+    pull = SimpleNamespace(
+        curve_coefficient=np.zeros(4),
+        strain_coefficient=np.zeros(4),
+        tension_low=1.0,
+        tension_high=2.0,
+    )
     origin = PullOrigin(InstrumentErrors("new"), of_pull)
     return _settings_json(campaign, Survey(plan), [model], None, [pull], [origin])
 

@@ -85,7 +85,7 @@ def test_a_level_may_be_below_the_water_and_currents_may_oppose(load):
         ('"3.57 s"', '"3.57 m"', "wave_load.wave_period: unit 'm' is not a unit of time"),
         ('"1.25 g/cm^3"', '"1.25 g"', "wave_load.wall_density: unit 'g' is not a unit of density"),
         ('"10 m/s"', '"10 s"', "wave_load.wind_velocity: unit 's' is not a unit of velocity"),
-        ('"6 m"', '"?"', r"1 value is still '\?', first wave_load.water_depth"),
+        ('"6 m"', '"?"', r"1 value is still '\?'\s+wave_load.water_depth"),
         ('"airy"', '"linear"', "'wave_load.wave_theory'"),
         ("[wave_load]", '[wave_load]\nvertical_width = "all"', "'wave_load.vertical_width'"),
         ("[wave_load]", "[wave_load]\ndepth = 1", "wave_load.depth: is not a known key"),

@@ -95,5 +95,5 @@ def test_a_line_of_four_years_is_held_against_the_strain_of_five():
 
 
 def test_what_is_open_is_not_said_to_be_replaced():
-    with pytest.raises(SettingsError, match="whose slope would take its place, is open"):
+    with pytest.raises(SettingsError, match="whose slope would take its place, is ambiguous"):
         look_up(published_sources()["polyester-8-strand-plaited-0.5in-new"], REST, mean_tension=1e3)
