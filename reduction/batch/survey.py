@@ -563,7 +563,8 @@ def _splice_slips(located: Located, plan: TestPlan) -> dict[str, list[SpliceSlip
     times = located.record.time[cycles.first[found.slip_cycle - 1]]
     slips: dict[str, list[SpliceSlip]] = {}
     for name, time, length in zip(found.specimen, times, found.slip_length, strict=True):
-        slips.setdefault(name, []).append(SpliceSlip(float(time), float(length)))
+        if not length < 0:  # a splice lets out, and what steps up is none
+            slips.setdefault(name, []).append(SpliceSlip(float(time), float(length)))
     return slips
 
 

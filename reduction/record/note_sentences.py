@@ -471,8 +471,8 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "few-samples-a-stroke": (
         "warning",
         "{n_samples:g} samples in the faster stroke; {needed} are needed for reliable peaks and"
-        " loops. Peaks between samples are missed, and cycles may be. Log every {step}, or use the"
-        " log before thinning",
+        " loops. Peaks between samples are missed; whole cycles may be missed too. Log every"
+        " {step}, or use the log before thinning",
     ),
     "cycles-not-as-planned": (
         "warning", "{n_found} complete cycles found, {n_planned} planned",

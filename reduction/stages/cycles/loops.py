@@ -616,6 +616,12 @@ def _part_means(values: Floats, basis: _CycleBasis, middles: Integers) -> Floats
     return np.array(means)
 
 
+def _are_parted(cycles: Cycles) -> bool:
+    """Whether rests part most cycles from the next one."""
+    follows = touching(cycles)
+    return bool(2 * np.count_nonzero(follows) < follows.size - 1)
+
+
 def _drift_between_rests(top: Floats, valley: Floats, ends: Floats) -> Floats:
     """Steady drift of a series over each cycle where a rest parts it from the next one.
 
@@ -956,7 +962,7 @@ def _quantities_of_cycles(
     peak, valley = row["peak"], row["valley"]
     force_cos, strain_cos = row["force_cosine"], row["strain_cosine"]
     follows = touching(cycles)
-    is_parted = waveform != "sinusoidal" and 2 * np.count_nonzero(follows) < follows.size - 1
+    is_parted = waveform != "sinusoidal" and _are_parted(cycles)
     force_drift, strain_drift = (
         _drift_between_rests(row[f"{name}_top"], row[f"{name}_begin"], ends)
         if is_parted
@@ -1578,8 +1584,8 @@ def _noise_and_step(values: Floats, noise: float) -> tuple[float, float]:
     .. math:: \sigma^2 = s^2 - q^2 / 12
 
     The median of third differences is itself a number of steps where these are coarse: there it is
-    their mean square that says what the noise is.  The step is zero where
-    noise of more than a step leaves nothing of it.
+    their mean square that says what the noise is.  The step is zero where noise of more than a step
+    leaves nothing of it.
 
     Examples
     --------
@@ -1605,10 +1611,10 @@ def _codes_of_branches(values: Floats, cycles: Cycles, step: float) -> list[Floa
     Noise puts a turn a reading early or late: each row begins where it is most like the others.
     """
     found = []
-    some = slice(_CYCLES_OF_SHAPE)
-    for begin, end in zip(cycles.branch_first[some].T, cycles.branch_last[some].T, strict=True):
+    for begin, end in zip(cycles.branch_first.T, cycles.branch_last.T, strict=True):
         n = int(np.median(end - begin)) + 1
         begin = begin[(begin > 0) & (begin + n < values.size)]
+        begin = begin[: max(min(_CYCLES_OF_SHAPE, _BLOCK // n), 2)]
         if n < _FEWEST_ON_PLATEAU or not begin.size:
             continue
         places = begin[:, None, None] + np.array([-1, 0, 1])[:, None] + np.arange(n)
@@ -1680,8 +1686,10 @@ def _rounding_of_branches(values: Floats, cycles: Cycles, step: float) -> float:
     for codes in _codes_of_branches(values, cycles, step):
         along = np.linspace(-1, 1, codes.shape[1])
         branch = np.polynomial.Polynomial.fit(along, codes.mean(axis=0), 3)(along)
-        place = np.linspace(0, 1, 16, endpoint=False)[:, None] + branch
-        errors.append(np.mean(np.round(place) - place, axis=1))
+        errors += [
+            np.mean(np.round(level + branch) - level - branch)
+            for level in np.linspace(0, 1, 16, endpoint=False)
+        ]
     return step * float(np.sqrt(np.mean(np.square(errors)))) if errors else 0.0
 
 
@@ -1694,7 +1702,7 @@ def _energy_of_rounding(
     ranges: Floats,
     *,
     waveform: Waveform,
-) -> Floats:  # fmt: skip
+) -> Floats:
     """Standard uncertainty of the energy of each cycle by the steps of both converters.
 
     Of every reading by itself, by the norm of the steps of strain, and of the branches together.
@@ -2102,20 +2110,18 @@ def _into_rests(cycles: Cycles, driven: Floats) -> Cycles:
     ...     np.zeros(900), np.zeros(900), 0.1)
     >>> found = _into_rests(cycles, noisy)
     >>> print(found.first, found.last)
-    [ 48 348 648] [302 602 899]
+    [ 53 348 648] [302 602 897]
     """
-    follows = touching(cycles)
-    if cycles.n_cycles < 2 or 2 * np.count_nonzero(follows) >= follows.size - 1:
+    if not _are_parted(cycles):
         return cycles
     begin, end = cycles.branch_first[:, 0], cycles.branch_last[:, 0]
     ramp = take_samples(driven, end) - take_samples(driven, begin)
     step = float(np.nanmedian(np.abs(ramp) / (end - begin)))
     reach = 1 + int(np.ceil(_ON_PLATEAU * reading_noise(driven) / step)) if step > 0 else 1
-    # no farther than the middle of a rest
-    room = np.concatenate([[cycles.first[0]], (cycles.first[1:] - cycles.last[:-1]) // 2])
-    first = cycles.first - np.minimum(reach, room)
-    room = np.append((cycles.first[1:] - cycles.last[:-1]) // 2, driven.size - 1 - cycles.last[-1])
-    last = cycles.last + np.minimum(reach, room)
+    # no farther than the middle of a rest; before the first cycle and after the last may be a ramp
+    room = np.minimum(reach, (cycles.first[1:] - cycles.last[:-1]) // 2)
+    first = cycles.first - np.append(0, room)
+    last = cycles.last + np.append(room, 0)
     branch_first, branch_last = cycles.branch_first.copy(), cycles.branch_last.copy()
     branch_first[:, 0], branch_last[:, 1] = first, last
     return replace(
