@@ -70,10 +70,12 @@ def _unknown_mass(mass: float, usual: float, effect: float, cell: str) -> str:
     )
 
 
-def _millimetres(length: float) -> str:
-    """A length that is known to about 10 mm, in a survey and in a test alike."""
+def _length_let_out(length: float) -> str:
+    """About a length that is known to some 10 mm, in a survey and in a test alike."""
+    if length != length:
+        return "an unknown length"
     whole = 1000 * length
-    return f"{whole if whole < 50 else round(whole, -1):.0f} mm"
+    return f"about {whole if whole < 50 else round(whole, -1):.0f} mm or more"
 
 
 def _share(error: float) -> str:
@@ -672,7 +674,7 @@ _OF_MODULI: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "splice-slipped": (
         "warning",
         lambda cycles, length, excess, effect: (
-            f"the splices slipped at {cycles}, by about {_millimetres(length)} or more in all"
+            f"the splices slipped at {cycles}, by {_length_let_out(length)} in all"
             + ("" if excess != excess else
                f": from there on, and in later tests without marks of their own, strain is at least"
                f" {100 * excess:.1f} percentage points too large ({effect:.1%} of the mean strain)")
@@ -682,7 +684,7 @@ _OF_MODULI: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "splice-slipped-before": (
         "warning",
         lambda length, excess, effect: (
-            f"before this test the splices slipped by about {_millimetres(length)} or more, and no"
+            f"before this test the splices slipped by {_length_let_out(length)}, and no"
             " marks were read in it"
             + ("" if excess != excess else
                f": strain is at least {100 * excess:.1f} percentage points too large"

@@ -1060,6 +1060,22 @@ def test_strain_that_creeps_while_the_load_rests_is_farthest_where_it_leaves(per
     assert found.tension_amplitude[0] == pytest.approx(4000, rel=4e-3)
 
 
+def summary_of_log(time, load, strain, control):
+    """A log whose cycles and rests are found as in a run, and its amplitudes."""
+    stands = (
+        find_tension_stands(time, strain, load[None], settings=PhaseSettings())
+        if control == "load"
+        else find_standstills(time, strain, load[None], settings=PhaseSettings())
+    )
+    settings = CycleSettings(control=control)
+    cycles = find_cycles(time, strain, load[None], stands, settings=settings)
+    loops = close_loops(
+        time, load[None], strain[None], cycles, waveform="other", control=control,
+        driven=load if control == "load" else strain,
+    )  # fmt: skip
+    return summarise_amplitude(loops, area=[1e-4])
+
+
 def parted_by_rests(control, *, drift, at_top=20.0, at_valley=20.0, n_cycles=16, seed=5):
     """Ramps of 5 s with rests between them, 10 Hz, and a specimen that creeps or relaxes there.
 
@@ -1110,18 +1126,7 @@ def test_rests_that_part_the_cycles_take_nothing_from_amplitudes_and_no_drift_in
     time, load, strain, energy, (half_load, half_strain) = parted_by_rests(
         control, drift=drift, at_top=at_top, at_valley=at_valley
     )
-    settings = CycleSettings(control=control)
-    stands = (
-        find_tension_stands(time, strain, load[None], settings=PhaseSettings())
-        if control == "load"
-        else find_standstills(time, strain, load[None], settings=PhaseSettings())
-    )
-    cycles = find_cycles(time, strain, load[None], stands, settings=settings)
-    loops = close_loops(
-        time, load[None], strain[None], cycles, waveform="other", control=control,
-        driven=load if control == "load" else strain,
-    )  # fmt: skip
-    found = summarise_amplitude(loops, area=[1e-4])
+    found = summary_of_log(time, load, strain, control)
     for name, value in (
         ("tension_amplitude", half_load), ("strain_amplitude", half_strain),
         ("apparent_spring_constant", half_load / half_strain), ("hysteresis_energy", energy),
@@ -1195,18 +1200,7 @@ def test_a_machine_that_rests_at_its_peak_alone_still_misses_its_valley(rest, co
     wave, answer = (np.interp(time, fine, one) for one in (wave, answer))
     load, strain = (wave, answer) if control == "load" else (answer, wave)
     load, strain = 9000 + 4000 * load, 0.05 + 0.02 * strain
-    stands = (
-        find_tension_stands(time, strain, load[None], settings=PhaseSettings())
-        if control == "load"
-        else find_standstills(time, strain, load[None], settings=PhaseSettings())
-    )
-    settings = CycleSettings(control=control)
-    cycles = find_cycles(time, strain, load[None], stands, settings=settings)
-    loops = close_loops(
-        time, load[None], strain[None], cycles, waveform="other", control=control,
-        driven=load if control == "load" else strain,
-    )  # fmt: skip
-    found = summarise_amplitude(loops, area=[1e-4])
+    found = summary_of_log(time, load, strain, control)
     tension, stretch = (4000, 0.02 * half) if control == "load" else (4000 * half, 0.02)
     for name, value in (("tension_amplitude", tension), ("strain_amplitude", stretch)):
         spread = found.uncertainty[name][0]
