@@ -38,7 +38,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import product
+from itertools import compress, product
 from math import degrees, pi
 from typing import Any, Literal, NamedTuple
 
@@ -440,18 +440,14 @@ def _cord_curve_errors(
     >>> print(bool(np.all(np.abs(rows) < 1e-6)))
     True
     """
-    trials = replace(design, cord_load_scale=np.array([_number_of(design, "cord_load_scale")]))
     open_curve = _open_cord_of(design.cord)
-    rows, where = [], []
-    for name, _ in open_curve.apart:
-        for place in range(design.cord.strain.size - 1):
-            size = np.zeros((1, len(open_curve.apart), design.cord.strain.size + 1))
-            size[0, open_curve.place_of(name), place + 1] = 1.0
-            row = _load_between_points(trials, strain, open_curve, size, load)[0]
-            if row.any():
-                rows.append(row)
-                where.append((name, place))
-    return (np.array(rows) if rows else np.zeros((0, strain.size))), tuple(where)
+    where = tuple(
+        product((name for name, _ in open_curve.apart), range(len(design.cord.strain) - 1))
+    )
+    one = replace(design, cord_load_scale=np.array([_number_of(design, "cord_load_scale")]))
+    rows = _load_of_intervals(one, strain, open_curve, where, load)
+    is_felt = np.any(rows, axis=1)
+    return rows[is_felt], tuple(compress(where, is_felt.tolist()))
 
 
 class _OpenCord(NamedTuple):
@@ -461,9 +457,16 @@ class _OpenCord(NamedTuple):
     strain: Floats
     apart: tuple[tuple[str, Floats], ...]
 
-    def place_of(self, name: str) -> int:
-        """Which of the curves has a name."""
-        return [own for own, _ in self.apart].index(name)
+    def sizes(self, where: Sequence[tuple[str, int]], error: Floats) -> Floats:
+        """Errors (n_trial, n_where) in place, (n_trial, n_curve, n_points + 1).
+
+        The first interval is slack and the last broken, where there is nothing.
+        """
+        names = [name for name, _ in self.apart]
+        size = np.zeros((error.shape[0], len(names), self.point.size + 1))
+        for (name, place), own in zip(where, error.T, strict=True):
+            size[:, names.index(name), place + 1] = own
+        return size
 
 
 def _open_cord_of(points: CordCurve) -> _OpenCord:
@@ -486,21 +489,34 @@ def _load_between_points(
 ) -> Floats:
     """Load of trials with other curves through the points of the cord, less that with its own.
 
-    ``size`` (n_trial, n_curve, n_points + 1) is how much of each curve is in each interval, the
-    first of them slack and the last broken, where there is nothing.  The load of a hose is
-    proportional to that of its cords, so that the difference is that of the difference.
+    ``size`` is how much of each curve is in each interval, as of `_OpenCord.sizes`; one trial
+    goes with any number of them.  The load of a hose is proportional to that of its cords, so
+    that the difference is that of the difference.
     """
     numbers = numbers_of(trials).column(slice(None))
     stretch = 1 + strain / numbers.free_share
     cord_stretch = cord_stretch_ratio(stretch, np.reshape(trials.wrap_angle, (-1, 1)))
     of_cord = (cord_stretch - 1) / numbers.strain_scale
     interval = np.searchsorted(cord.point, of_cord)
-    above = np.zeros(of_cord.shape)
+    trial = np.arange(len(size))[:, None]
+    above = np.zeros((len(size), strain.size))
     for place, (_, apart) in enumerate(cord.apart):
-        weight = np.take_along_axis(size[:, place], interval, axis=1)
+        weight = size[trial, place, interval]
         above += weight * np.interp(of_cord, cord.strain, apart, left=0.0, right=0.0)
     cords = loads_at(numbers, stretch, cord_stretch, numbers.load_scale * above)
     return cords.cord_axial_load if load == "tension" else cords.fill_pressure
+
+
+def _load_of_intervals(
+    hose: HoseDesign,
+    strain: Floats,
+    cord: _OpenCord,
+    where: Sequence[tuple[str, int]],
+    load: _Load,
+) -> Floats:
+    """What each other curve does to one trial in its interval alone, (n_where, n_strain)."""
+    size = cord.sizes(where, np.eye(len(where)))
+    return _load_between_points(hose, strain, cord, size, load)
 
 
 def _other_curves(points: CordCurve, strain: Floats) -> dict[str, Floats]:
@@ -560,6 +576,10 @@ _DIFFERENCE = 1e-3  # of a plausible error, for derivatives
 _NEAR_BOUND = 1e-4  # of the width between the bounds
 
 _POLISHING_STEPS = 30
+
+_TOLERANCE = 1e-10  # of a search
+
+_ROUGH = 1e-6  # of one that another follows
 
 _LEAST = 1e-14  # information below this part of the greatest is rounding
 
@@ -641,52 +661,75 @@ class _FitProblem:
         """Judged curve, shape (n_strain,). [N]."""
         return self.measured.tension_of(self.measured.judged)
 
+    @property
+    def n_followed(self) -> int:
+        """Numbers and traced errors of which the tension is no linear function."""
+        return self.n_traced - len(self.between)
+
     def tension_at(self, traced: Floats) -> Floats:
         """Tension of trials (n_trial, n_traced) as the test shows it, (n_trial, n_used). [N]."""
-        p, q = len(self.names), len(self.held)
-        of_cord = p + q + len(self.moved)
+        moved, of_cord = self._errors_of(traced)
+        numbers = self._numbers_of(traced)
+        size = self.open_cord.sizes(self.between, of_cord)
+        node = self.measured.reading.node
+        tension = np.empty((traced.shape[0], self.noise.size))
+        axes, which = np.unique(moved, axis=0, return_inverse=True)
+        for k, axis in enumerate(axes):
+            trials = which.ravel() == k
+            strain = node - axis @ self.moved
+            # a record that is read low has strains just below zero: the curve goes on there
+            there = np.abs(strain)
+            names = (*self.names, *self.held)
+            curve = _trial_load(self.design, names, numbers[trials], there, self.load)
+            if self.between:
+                hoses = self._hoses_of(numbers[trials])
+                curve += _load_between_points(hoses, there, self.open_cord, size[trials], self.load)
+            tension[trials] = self._read(np.sign(strain) * curve)
+        return tension
+
+    def _numbers_of(self, traced: Floats) -> Floats:
+        """Fitted and held numbers of trials, (n_trial, n_numbers + n_held)."""
+        p = len(self.names)
         values = [traced[:, :p] * self.unit]
         for k, (name, spread) in enumerate(self.held.items()):
             at = self.held_at[name] + spread * traced[:, p + k]
             values.append(np.clip(at, *_range_of(name))[:, None])
-        numbers, names = np.hstack(values), (*self.names, *self.held)
-        node = self.measured.reading.node
-        tension = np.empty((traced.shape[0], self.noise.size))
-        used = self.used
-        axes, which = np.unique(traced[:, p + q : of_cord], axis=0, return_inverse=True)
-        for k, size in enumerate(axes):
-            trials = which.ravel() == k
-            strain = node - size @ self.moved
-            # a record that is read low has strains just below zero: the curve goes on there
-            there = np.abs(strain)
-            curve = _trial_load(self.design, names, numbers[trials], there, self.load)
-            if self.between:
-                curve += self._between_points(
-                    names, numbers[trials], there, traced[trials, of_cord:]
-                )
-            tension[trials] = self.measured.reading.of(np.sign(strain) * curve)[:, used]
-        return tension
+        return np.hstack(values)
 
-    def _between_points(
-        self, names: Sequence[str], numbers: Floats, strain: Floats, error: Floats
-    ) -> Floats:
-        """What errors of the cord between its points do to trials, (n_trial, n_strain)."""
-        cord = self.open_cord
-        size = np.zeros((numbers.shape[0], len(cord.apart), cord.point.size + 1))
-        for (name, place), own in zip(self.between, error.T, strict=True):
-            size[:, cord.place_of(name), place + 1] = own
-        trials = _design_with(self.design, {name: numbers[:, k] for k, name in enumerate(names)})
-        return _load_between_points(trials, strain, cord, size, self.load)
+    def _errors_of(self, traced: Floats) -> tuple[Floats, Floats]:
+        """Errors of strain and of the cord between its points, of trials."""
+        first = len(self.names) + len(self.held)
+        return traced[:, first : self.n_followed], traced[:, self.n_followed :]
+
+    def _hoses_of(self, numbers: Floats) -> HoseDesign:
+        names = (*self.names, *self.held)
+        return _design_with(self.design, {name: numbers[:, k] for k, name in enumerate(names)})
+
+    def _read(self, curve: Floats) -> Floats:
+        """Curves at the nodes as the test shows them where it measured."""
+        return np.asarray(self.measured.reading.of(curve)[:, self.used])
 
     def slopes(self, traced: Floats) -> Floats:
         """Derivative of tension by each number and traced error, (n_used, n_traced)."""
-        step = _DIFFERENCE * np.eye(traced.size)
+        step = _DIFFERENCE * np.eye(self.n_followed, traced.size)
         ends = np.vstack([traced - step, traced + step])
         p = len(self.names)
         ends[:, :p] = np.clip(ends[:, :p], self.low, self.high)
         below, above = np.split(self.tension_at(ends), 2)
-        width = np.diagonal(ends[traced.size :] - ends[: traced.size])
-        return np.asarray((above - below) / width[:, None]).T
+        width = np.diagonal(ends[self.n_followed :] - ends[: self.n_followed])
+        followed = (above - below) / width[:, None]
+        if not self.between:
+            return np.asarray(followed).T
+        at = traced[None, :]
+        strain = self.measured.reading.node - self._errors_of(at)[0][0] @ self.moved
+        rows = _load_of_intervals(
+            self._hoses_of(self._numbers_of(at)),
+            np.abs(strain),
+            self.open_cord,
+            self.between,
+            self.load,
+        )
+        return np.vstack([followed, self._read(np.sign(strain) * rows)]).T
 
     def error_slopes(self, x: Floats) -> Floats:
         """What one standard uncertainty of each error does, shape (n_error, n_used). [N]."""
@@ -724,8 +767,8 @@ class _FitProblem:
         cost = np.sum(error**2, axis=1) + 1e-3 * np.sum(offsets**2, axis=1)
         return np.asarray(tried[int(np.argmin(cost))])
 
-    def solve(self, first: Floats, noise: Floats) -> Floats:
-        """Least sum of squares, from these numbers; shared errors begin at zero.
+    def solve(self, first: Floats, noise: Floats, tolerance: float = _TOLERANCE) -> Floats:
+        """Least sum of squares, from these numbers and errors.
 
         Raises
         ------
@@ -734,19 +777,19 @@ class _FitProblem:
         """
         k = self.n_error
         margin = 1e-6 * (self.high - self.low)  # a search may not begin on a bound
-        inside = np.clip(first[: self.unit.size], self.low + margin, self.high - margin)
-        x0 = np.concatenate([inside, np.zeros(k)])
+        numbers, errors = np.split(first, [self.unit.size])
+        inside = np.clip(numbers, self.low + margin, self.high - margin)
         found = scipy.optimize.least_squares(
             self.residual,
-            x0,
+            np.concatenate([inside, errors]),
             jac=self.jacobian,
             bounds=(
                 np.concatenate([self.low, np.full(k, -np.inf)]),
                 np.concatenate([self.high, np.full(k, np.inf)]),
             ),
-            xtol=1e-10,
-            ftol=1e-10,
-            gtol=1e-10,
+            xtol=tolerance,
+            ftol=tolerance,
+            gtol=tolerance,
             args=(noise,),
         )
         if not found.success:
@@ -756,15 +799,20 @@ class _FitProblem:
                 needed="a least sum of squares",
                 hint="Fit fewer numbers.",
             )
-        return self._polished(np.asarray(found.x), noise)
+        return np.asarray(found.x)
 
     def solve_from(self, begins: Sequence[Floats], noise: Floats) -> Floats:
-        """The least of the sums of squares that several starts lead to: the curve has kinks."""
-        found = [self.solve(one, noise) for one in begins]
+        """The least of the sums of squares that several starts lead to: the curve has kinks.
+
+        Errors begin at zero.  It is a start itself, so that a rough one will do.
+        """
+        zero = np.zeros(self.n_error)
+        apart = np.unique(begins, axis=0)
+        found = [self.solve(np.append(one, zero), noise, _ROUGH) for one in apart]
         squares = [float(np.sum(self.residual(one, noise) ** 2)) for one in found]
         return found[int(np.argmin(squares))]
 
-    def _polished(self, x: Floats, noise: Floats) -> Floats:
+    def polished(self, x: Floats, noise: Floats) -> Floats:
         """Gauss-Newton steps while they get shorter.
 
         A search stops where the sum of squares no longer changes, at half the digits of the
@@ -921,7 +969,7 @@ def _calibrate_hose(
     excess = remainder @ remainder / (remainder.size - p) - np.mean(problem.noise**2)
     model_error = float(np.sqrt(np.maximum(excess, 0.0)))
     noise = np.hypot(problem.noise, model_error)
-    best = problem.solve(first, noise)
+    best = problem.polished(problem.solve(first, noise), noise)
     value = best[:p] * problem.unit
     fitted = _design_with(design, dict(zip(names, value.tolist(), strict=True)))
     spread = _spread_of(problem, best, noise)
