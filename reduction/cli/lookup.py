@@ -68,21 +68,22 @@ def lines_of_source(source: str) -> list[LineSource]:
     if source in published:
         return [published[source]]
     # xarray and the archive, which published lines do without, are half of the time of a look-up
-    from reduction.lines.archive_source import lines_of_archive, lines_of_folder
+    from reduction.lines.archive_source import (
+        archives_of_lines,
+        lines_of_archive,
+        lines_of_folder,
+    )
 
     path = Path(source)
-    if path.is_file():
-        lines = lines_of_archive(path)
+    if path.is_file() or (path.is_dir() and archives_of_lines(path)):
+        lines = lines_of_folder(path) if path.is_dir() else lines_of_archive(path)
         if not lines:
+            contains = "archives contain" if path.is_dir() else "archive contains"
             raise ArchiveError(
-                "the archive contains nothing that can be looked up", found=str(path),
+                f"the {contains} nothing that can be looked up", found=str(path),
                 needed="moduli of a cyclic test, a slow pull, or surfaces of an experiment",
             )  # fmt: skip
         return lines
-    if path.is_dir():
-        lines = lines_of_folder(path)
-        if lines:
-            return lines
     if _is_path(source):
         raise _no_products(path)
     words = source.lower().replace("-", " ").split()
@@ -117,7 +118,7 @@ def _is_path(source: str) -> bool:
 def _no_products(path: Path) -> SettingsError:
     """Why a path has nothing to look up, and which command makes it."""
     if path.is_dir():
-        problem, found = "the folder holds no archive with values to look up", str(path)
+        problem, found = "the folder holds no archive of a campaign", str(path)
     else:
         problem, found = "there is no such folder or archive", str(path)
     campaign = path.parent.name if path.suffix == ".nc" else path.name

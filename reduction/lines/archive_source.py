@@ -430,7 +430,7 @@ def _joined(parts: Sequence[LineLevels]) -> LineLevels:
         degrees_of_freedom=rows("degrees_of_freedom"),
         tests=tuple(test for one in parts for test in one.tests),
         component=shared.component,
-        contribution=shared.values["value"].reshape(len(shared.component), -1),
+        contribution=shared.values["value"].reshape(len(shared.component), rows("value").size),
         conditions=tuple(own for one in parts for own in one.conditions),
         notes=tuple(dict.fromkeys(text for one in parts for text in one.notes)),
     )
@@ -499,14 +499,16 @@ def lines_of_open_archive(
             else one
             for one in made
         ]
-    if not any(name in archive for name in CURVES):
+    # a rope without a diameter has levels, and no curve
+    if not any(name in archive for name in (*CURVES, *(f"test_{one}" for one in _AT_LEVELS))):
         return []
     names = archive.variables["specimen"].values.astype(str).tolist()
-    found = [(place, name, _curves_of_specimen(archive, place)) for place, name in enumerate(names)]
-    # of a specimen whose curves were refused the notes of its test say why: it is no line
-    return [
-        _line_of_curves(archive, place, name, curves) for place, name, curves in found if curves
+    found = [
+        _line_of_curves(archive, place, name, _curves_of_specimen(archive, place))
+        for place, name in enumerate(names)
     ]
+    # of a specimen whose curves were refused the notes of its test say why: it is no line
+    return [line for line in found if line.curves or line.levels]
 
 
 _OF_A_CYCLE = {"frequency", "mean_tension", "tension_amplitude"}

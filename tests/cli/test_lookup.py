@@ -458,7 +458,7 @@ def test_products_that_are_not_made_yet_are_told_with_the_command_that_makes_the
     assert "`reduction run raw/nylon-synthetic/campaign.toml` makes" in done.stderr
     assert "polyester" not in done.stderr
     empty = command("lookup", tmp_path)
-    assert "the folder holds no archive with values to look up" in empty.stderr
+    assert "the folder holds no archive of a campaign" in empty.stderr
 
 
 @pytest.mark.parametrize(

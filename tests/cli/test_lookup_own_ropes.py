@@ -224,3 +224,59 @@ def test_the_levels_of_one_run_of_an_experiment_may_be_left_out(tmp_path_factory
     assert done.exit_code == 0 and "95 % interval, the tests" in " ".join(done.output.split()), (
         done.output
     )
+
+
+ROPE = """
+[campaign]
+id = "laid"
+title = "A rope of unknown diameter"
+[specimens.rope-1]
+kind = "rope"
+rated_break_strength = "100 kN"
+gauge_length = "2 m"
+[layouts.log]
+format = "delimited"
+[layouts.log.channels]
+time = { column = "t", unit = "s" }
+crosshead_position = { column = "x", unit = "mm", datum = "displacement", reference_length = "2 m" }
+tension.1 = { column = "load", unit = "kN" }
+[defaults]
+layout = "log"
+specimens = ["rope-1"]
+waveform = "sinusoidal"
+[tests.low]
+file = "low.csv"
+order = 1
+[tests.high]
+file = "high.csv"
+order = 2
+"""
+
+
+@pytest.fixture(scope="module")
+def without_diameter(tmp_path_factory):
+    """Two tests of a rope of which neither a diameter nor an instrument error is stated."""
+    folder = tmp_path_factory.mktemp("laid")
+    (folder / "campaign.toml").write_text(ROPE)
+    time = np.arange(0, 120, 0.05)
+    noise = np.random.default_rng(5).normal(0, 0.002, (2, time.size))
+    for (name, mean), scatter in zip({"low": 40.0, "high": 60.0}.items(), noise, strict=True):
+        stroke = mean - 20 * np.cos(2 * np.pi * 0.1 * time)
+        rows = zip(time, stroke, 0.3 * stroke + scatter, strict=True)
+        text = "".join(f"{t:.2f},{x:.4f},{load:.4f}\n" for t, x, load in rows)
+        (folder / f"{name}.csv").write_text(f"t,x,load\n{text}")
+    reduction.run(
+        folder / "campaign.toml", processed=folder / "processed", reports=folder / "reports"
+    )
+    return folder / "processed" / "laid"
+
+
+def test_a_rope_without_a_diameter_is_looked_up_at_its_levels(without_diameter):
+    (line,) = lines_of_folder(without_diameter)
+    assert line.name == "rope-1" and not line.curves
+    with pytest.raises(DataError, match="the nearest is"):
+        look_up(line, K_AP, frequency=0.1, mean_tension=30e3, tension_amplitude=6e3)
+    # 0.3 kN/mm on 2 m
+    found = look_up(line, K_AP, frequency=0.1, mean_tension=[12e3, 18e3], tension_amplitude=6e3)
+    assert found.value == pytest.approx(600e3, rel=2e-3)
+    assert np.all(found.surface_low < found.value) and np.all(found.value < found.surface_high)

@@ -165,7 +165,7 @@ def test_original_stiffness_falls_back_to_the_first_cycle():
     assert "of the first cycle" in cycle.reason
     assert (cycle.low_tension, cycle.high_tension) == (40.0, 75.0)
     (none,) = named([step("C", holds=(HOLD,))], "original stiffness")
-    assert "the first step has no curve of its first rise" in none.reason
+    assert "the first step has no curve of its first loading" in none.reason
     (empty,) = named([], "original stiffness")
     assert empty.reason == "there is no step"
 

@@ -381,8 +381,8 @@ def _on_first_rise(rise: FirstRise | None, cycles: BeddingCycles) -> StepNumber 
 _HELD = "the rise was held on its way: what it gained meanwhile is in it"
 
 _NO_RISE = (
-    "the first step has no curve of its first rise, which a log that begins slack gives, of "
-    "another step than bedding-in with a diameter"
+    "the first step has no curve of its first loading: its log must begin slack and, unless it is "
+    "a bedding-in step, the diameter must be stated"
 )
 
 _NO_PAIR = "no step holds one tension after a lower one"
