@@ -39,7 +39,7 @@ def serve(
     with in_order(), ExploreServer(session, output.system, port, told_of_defect) as server:
         output.say(f"{path}: {len(session.surveys)} tests")
         output.say(f"Open {server.address}")
-        output.say("Ctrl-C ends it. Only this machine is answered, and only with this address.")
+        output.say("Ctrl-C ends it. It answers only this machine, and only at this address.")
         output.answer(
             {"address": server.address, "campaign": str(path), "port": server.server_port}
         )

@@ -316,8 +316,8 @@ def _scatter_note(of: LineSurface | LineCurve | LineLevels, words: tuple[str, st
     if isinstance(of, LineSurface) and np.isfinite(of.line_scatter):
         return (
             f"specimens of this kind scatter by about {100 * of.line_scatter:.0f} % "
-            f"(CG-D-39-80, sec. 4.4.1; {of.n_lines:.0f} specimens tested): included only in the "
-            "intervals of the kind and of another specimen"
+            "(CG-D-39-80, sec. 4.4.1): included only in the intervals of the kind and of another "
+            "specimen"
         )
     return interval_note(*words)
 

@@ -360,8 +360,8 @@ def _surface(line: PublishedLine, found: PublishedSurface) -> LineSurface:
     elif np.isfinite(scatter):
         n_lines = _FEWEST
         notes.append(
-            f"the number of lines is not printed; {_FEWEST:.0f}, the smallest of any surface, is "
-            "assumed for the scatter between specimens"
+            f"the number of specimens is not printed; {_FEWEST:.0f}, the smallest of any surface,"
+            " is assumed for the scatter between specimens"
         )
     if is_documentation(line):
         notes.append(

@@ -770,7 +770,7 @@ def _stage_lines(located: Located, models: Sequence[StrainModel]) -> tuple[Step,
         Step("ingest", f"{record.n_rows_read} rows read, {record.n_samples} kept"),
         Step(
             "phases",
-            f"{standstills.n_standstills} standstills within "
+            f"standstills: {standstills.n_standstills}, within "
             f"{standstills.position_tolerance:.4g} m"
             + (
                 ""

@@ -440,7 +440,7 @@ class _Start:
     def _datum(self, unit: str, sign: int) -> tuple[str, list[str]]:
         position = sign * self.position
         begin, travel = float(position[0]), float(np.ptp(position))
-        seen = f"the position begins at {begin:g} {unit} and travels {travel:g} at the start"
+        seen = f"the position begins at {begin:g} {unit} and travels {travel:g} {unit} at the start"
         # a length from pin to pin is above zero, and in most tests above a fourth of the travel
         if begin > 0.25 * travel and float(position.min()) > 0.1 * travel:
             return ', datum = "pin-to-pin"', [
@@ -458,8 +458,13 @@ class _Start:
         noise = 4 * scatter / math.sqrt(rest.size)
         shown = f'"{_round(reading, scatter)} {unit}"'
         at_rest = f"in the first rest ({self.words}) {key} reads {shown}"
-        if abs(reading) <= max(_TOLD * float(np.ptp(load)), noise):
-            return "", [f"guess: no zero is needed: {at_rest}, which is negligible"]
+        if abs(reading) <= noise:
+            return "", [f"guess: no zero is needed: {at_rest}, which is within its noise"]
+        if abs(reading) <= _TOLD * float(np.ptp(load)):
+            return "", [
+                f"guess: no zero is written: {at_rest}, less than {100 * _TOLD:g} % of the range of"
+                f" the load; if the specimen was slack there, zero = {shown} is more accurate"
+            ]
         if reading < 0 and load.max() > -load.min():
             return f", zero = {shown}", [
                 f"guess: zero {shown}: {at_rest}, and a slack line cannot push"

@@ -113,7 +113,7 @@ _OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "{channels}: resampled from {rate:.4g} Hz to the {base_rate:.4g} Hz of {base} by linear"
         " interpolation",
     ),
-    "channels-not-used": ("note", "read, but not part of a record: {channels}"),
+    "channels-not-used": ("note", "read and checked, but not used: {channels}"),
     "clock-coarse": (
         "note",
         "the time is in steps of {tick:.3g} s, with {rows:.3g} rows at the same time: the rows are"
@@ -146,9 +146,10 @@ _OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "note",
         lambda channel, low, high, unit, sample, time, n_more, beside: (
             f"{channel} steps from {low:.4g} to {high:.4g} {unit} between sample {sample}"
-            f" ({time:.6g} s) and the next{f', and at {n_more} more' if n_more else ''}, and stays"
-            f" there, while {beside} not. Possible causes: a slip, a break, a re-zeroed"
-            " channel, or a change of unit; results across the step mix both states"
+            f" ({time:.6g} s) and the next, and stays there, while {beside} not"
+            + (f" ({n_more} more such step{_plural(n_more)})" if n_more else "")
+            + ". Possible causes: a slip, a break, a re-zeroed channel, or a change of unit;"
+            " results across the step mix both states"
         ),
     ),
     "rows-flagged": (
@@ -292,7 +293,7 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             + ". No single zero is right: subtract the drift from the log by its readings at"
             " slack, or repeat the test. "
             + (
-                "The interval of every tension carries it"
+                "The interval of every tension includes it"
                 if carried
                 else "Until then every tension may be wrong by as much"
             )
@@ -309,7 +310,7 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "load-zero-drifted": (
         "note",
         "the zero of the load cell moves by {drift:.4g} N during the log, more than is stated of"
-        " it; the interval of tension carries it",
+        " it; the interval of tension includes it",
     ),
     "load-negative": (
         "warning",
@@ -363,7 +364,7 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "splice-laws": (
         "note",
         lambda law, weight, chance, second, effect: (
-            f"the splices follow the law {law} (weight {weight:.2f}, p-value of its fit"
+            f"the splice law that fits best is {law} (weight {weight:.2f}, p-value of its fit"
             f" {chance:.2g})"
             + (f"; {second} would change moduli by {100 * effect:+.1f} %" if second else
                "; no other law fits")
@@ -615,8 +616,8 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         lambda lag, spread, stated: (
             f"tension reverses {1e3 * lag:.0f} +- {1e3 * spread:.0f} ms (k=1) after position, but"
             f" {f'a lag of 0 +- {1e3 * stated:g} ms is stated' if stated else 'no lag is stated'}."
-            " Damping would make it reverse early, so it was logged late by at least this; no"
-            " correction is made, and the loops are too narrow"
+            " Damping makes tension reverse before position, never after it, so tension was logged"
+            " late, by at least this much; no correction is made, and the loops are too narrow"
         ),
     ),
 }  # fmt: skip
@@ -839,12 +840,12 @@ _OF_HOLDS: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         lambda rise, peak, delay, is_refused: (
             ("refused: initial tension, drop, rate per decade, Prony series: " * is_refused)
             + f"the load rises by {rise:.3g} N to {peak:.4g} N within {delay:.2g} s after the"
-            " crosshead has stopped, where a specimen relaxes: it comes late (a filter, a slow load"
-            " cell or another clock)"
+            " crosshead has stopped, although a specimen held at one length relaxes: the load lags"
+            " (a filter, a slow load cell or another clock)"
             + (
                 "; take the filter out, or pull more slowly"
                 if is_refused
-                else ". Initial tension and drop carry twice that rise"
+                else ". The uncertainty of initial tension and drop includes twice that rise"
             )
         ),
     ),
@@ -938,7 +939,7 @@ _OF_LINE: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "pull-not-slow": (
         "warning",
         "the slow pull is not slow beside the relaxation that the loops show: K_0 is wrong by up to"
-        " {effect:.1%}, and K_1 and tau with it. Their intervals carry it. Pull more slowly",
+        " {effect:.1%}, and K_1 and tau with it. Their intervals include it. Pull more slowly",
     ),
     "pull-rate-matters": (
         "note",

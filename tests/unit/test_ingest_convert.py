@@ -259,7 +259,7 @@ def test_channels_with_their_own_time_come_to_the_slower_one():
 
 def test_channels_that_a_record_does_not_hold_are_named():
     record = convert((log({"temperature": TIME}), layout(channels(temperature={"unit": "degC"}))))
-    assert tuple(map(str, record.notes)) == ("read, but not part of a record: temperature",)
+    assert tuple(map(str, record.notes)) == ("read and checked, but not used: temperature",)
 
 
 SHORT = note("laboratory", text="short")

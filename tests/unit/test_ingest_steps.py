@@ -101,7 +101,7 @@ def test_the_note_says_channel_values_sample_and_time():
     position[912:] *= 0.3048
     position[1312:] *= 0.3048
     (note,) = notes(position=position)
-    assert note.startswith("crosshead_position steps from ") and "and at 1 more, and" in note
+    assert note.startswith("crosshead_position steps from ") and "(1 more such step)" in note
     assert "while tension does not" in note
 
 

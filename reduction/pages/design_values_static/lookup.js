@@ -146,8 +146,8 @@ function told(line, of, points, { loads, words, more, is_untested, freedom }) {
   if (words[0] || words[1]) {
     notes.push(!isCurve && Number.isFinite(of.line_scatter)
       ? `specimens of this kind scatter by about ${(100 * of.line_scatter).toFixed(0)} % `
-        + `(CG-D-39-80, sec. 4.4.1; ${of.n_lines.toFixed(0)} specimens tested): included only in the `
-        + "intervals of the kind and of another specimen"
+        + "(CG-D-39-80, sec. 4.4.1): included only in the intervals of the kind and of another "
+        + "specimen"
       : `the interval applies to ${words[0] || words[1]}; scatter between specimens is not included`);
   } else if (isCurve) {
     notes.push("no interval is given: the source does not state the scatter of this curve");

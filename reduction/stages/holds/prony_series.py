@@ -304,7 +304,7 @@ def fit_prony(
         )
     criterion = (
         f"{n_terms} of up to {maximum_terms} terms: lowest Bayesian information criterion "
-        f"with {independent:.0f} independent of {time.size} values"
+        f"({independent:.0f} of the {time.size} values count as independent)"
     )
     if np.exp(fits[n_terms].shape.max()) > longest:
         criterion += "; the slowest time is longer than the hold, so its term is extrapolated"
