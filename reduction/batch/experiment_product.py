@@ -101,7 +101,7 @@ def _without_pull(campaign: Campaign, plan: ExperimentPlan) -> list[str]:
     }
     if not bare:
         return []
-    return [f"no slow pull of {', '.join(bare)}: K_0, and so K_1 and tau, are refused"]
+    return [f"no slow pull of {', '.join(bare)}: K_0, K_1 and tau are not given"]
 
 
 def _same_logs(plan: ExperimentPlan, raw_sha256: Mapping[str, str]) -> list[Note]:

@@ -22,7 +22,7 @@ from reduction.archive.shared_errors import components_of, shared_contributions
 from reduction.archive.surfaces_dataset import surface_names, surfaces_of
 from reduction.archive.uncertainty_budget import random_freedom
 from reduction.archive.variables import stored
-from reduction.experiments.fit_results import ResponseSurfaces
+from reduction.experiments.fit_results import FIT_REASONS, ResponseSurfaces
 from reduction.experiments.surface_discrepancy import discrepancy_of
 from reduction.experiments.surface_points import greatest_leverage
 from reduction.lines.archive_pieces import alignment_words
@@ -297,7 +297,7 @@ def _surface(
             " as the load cell, are not stated"
         )
     if not np.isfinite(fitted.coefficient[index]).all():
-        notes.append("the surface was refused")
+        notes.append(f"no surface: {FIT_REASONS[int(fitted.reason[index])]}")
     return LineSurface(
         quantity=response,
         coefficient=np.array(fitted.coefficient[index]),

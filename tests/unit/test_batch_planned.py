@@ -60,7 +60,7 @@ def test_a_run_of_two_lines_has_a_minimum_of_each():
     }
     # C was not asked for: neither found nor failed
     assert (found["runs_found"], found["runs_failed"]) == (["A"], ["B"])
-    assert found["notes"] == ["no slow pull of weak, strong: K_0, and so K_1 and tau, are refused"]
+    assert found["notes"] == ["no slow pull of weak, strong: K_0, K_1 and tau are not given"]
 
 
 def test_without_both_loads_nothing_is_said_of_slack():
