@@ -539,7 +539,10 @@ def _levels_of_factor(
         )  # fmt: skip
 
     if factor.levels is None:
-        refuse("a unit without the levels that are -1 and 1", "[factors] in a SPEC.toml")
+        refuse(
+            "the column is in a unit, but the levels for -1 and +1 are not stated",
+            "[factors] in a SPEC.toml, or coded levels without a unit",
+        )
     axis, low, high = factor.axis(None if spec is None else spec.keys.rated_break_strength)
     basis = factor.levels.basis
     share = _SHARE_UNIT.fullmatch(unit)

@@ -68,14 +68,10 @@ def lines_of_source(source: str) -> list[LineSource]:
     if source in published:
         return [published[source]]
     # xarray and the archive, which published lines do without, are half of the time of a look-up
-    from reduction.lines.archive_source import (
-        archives_of_lines,
-        lines_of_archive,
-        lines_of_folder,
-    )
+    from reduction.lines.archive_source import lines_of_archive, lines_of_folder
 
     path = Path(source)
-    if path.is_file() or (path.is_dir() and archives_of_lines(path)):
+    if path.is_file() or (path.is_dir() and any(path.glob("*.nc"))):
         lines = lines_of_folder(path) if path.is_dir() else lines_of_archive(path)
         if not lines:
             contains = "archives contain" if path.is_dir() else "archive contains"

@@ -117,7 +117,7 @@ _OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "clock-coarse": (
         "note",
         "the time is in steps of {tick:.3g} s, with {rows:.3g} rows at the same time: the rows are"
-        " spread evenly, which agrees with it throughout",
+        " spread evenly over each step, which agrees with all logged times",
     ),
     "clock-coarse-uneven": (
         "warning",
@@ -188,9 +188,9 @@ _OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "cycles-unlike": (
         "warning",
         lambda mean, ratio, steps: (
-            f"the cycles differ (nine tenths of their means spread over {100 * mean:.0f} % of a"
-            f" range, and their ranges over a factor of {ratio:.2f}): a mean over the test"
-            " represents none of them"
+            f"the cycles differ (90 % of their mean levels lie within {100 * mean:.0f} % of the"
+            f" range of a cycle, and 90 % of their ranges within a factor of {ratio:.2f}): a mean"
+            " over the test represents none of them"
             + (f". Its levels are {steps}" if steps else "")
         ),
     ),
@@ -373,8 +373,8 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "splice-law-unchecked": (
         "warning",
         lambda n_marks, carried, effect: (
-            f"no law of the splices with a mark to spare agrees with the {n_marks} stretched"
-            f" mark{_plural(n_marks)}: those that do would follow a misread mark too"
+            f"no splice law with fewer coefficients than marks agrees with the {n_marks} stretched"
+            f" mark{_plural(n_marks)}; the laws that do agree would also fit a misread mark"
             + (f"; {carried} would move moduli by {100 * effect:+.1f} %, which is in the intervals"
                if carried else "")
             + ". Read marks at one more stretch"
@@ -382,9 +382,9 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "splice-friction": (
         "note",
-        "by the marks on the way down the splices are longer there than their law says by"
-        " {share:+.1%} +- {spread:.1%} of their extension; no strain is corrected for it, and the"
-        " intervals hold it",
+        "by the marks read during unloading, the extension of the splices differs there from their"
+        " law by {share:+.1%} +- {spread:.1%}; strain is not corrected for it, and the intervals"
+        " include it",
     ),
     "splice-friction-unknown": ("note", _unknown_friction),
     "splice-friction-matters": ("warning", _unknown_friction),
@@ -429,8 +429,8 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "gaps-end-runs": (
         "note",
-        "{n_gaps} gaps in the record longer than 30 % of a half cycle, each treated as the end of"
-        " a run, first near {time:g} s",
+        "gaps in the record longer than 30 % of a half cycle: {n_gaps}, first near {time:g} s; no"
+        " cycle extends across a gap",
     ),
     "cycles-of-two-amplitudes": (
         "note",
@@ -543,9 +543,9 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "warning",
         lambda share, effect: (
             "the waveform is stated as sinusoidal, and the fundamentals in time would lose"
-            f" {share:.3g} times the energy of the loops: the log is no sine (a rise and a fall of"
-            " unequal time?); stiffness, loss and amplitudes are those at equal phase of the"
-            " stroke, as of any other waveform"
+            f" {share:.3g} times the energy of the loops: the log is not sinusoidal (a rise and a"
+            " fall of unequal duration?); stiffness, loss and amplitudes are those at equal phase"
+            " of the stroke, as of any other waveform"
         ),
     ),
     "drift-in-energy": (
@@ -646,7 +646,7 @@ _OF_MODULI: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "the mean tension jumps by {size:+.4g} N after cycle {number} ({effect:.0%} of the"
         " amplitude), and the strain does not follow: a grip or a splice has slipped, a part of the"
         " specimen has failed, or the load cell was knocked. Mean tension and curves mix what lies"
-        " before it with what lies after it; reduce the two parts by themselves (steps)",
+        " before it with what lies after it; reduce the two parts separately, as steps",
     ),
     "bins-of-some-cycles": (
         "refusal",
@@ -943,8 +943,8 @@ _OF_LINE: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "pull-rate-matters": (
         "note",
-        "K_0 is that of the rate of the slow pull: if K_1 and tau of the loops held at that rate,"
-        " it would be {effect:.1%} off what an endless pull gives",
+        "K_0 applies at the rate of the slow pull: if K_1 and tau of the loops apply there too, it"
+        " differs by {effect:.1%} from K_0 of an infinitely slow pull",
     ),
     "pull-length-not-stated": ("note", "the length at which strain is zero is not stated"),
     "pull-off-zero": (
@@ -1309,13 +1309,14 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "load-in-steps": (
         "warning",
         "tension was logged in steps of {step:.3g} N, {share:.1%} of its greatest value: the"
-        " resolution or the range of the amplifier is too coarse, or the log was rounded. Moduli"
-        " and energies are no finer",
+        " resolution or the range of the amplifier is too coarse, or the log was rounded. This"
+        " limits the accuracy of moduli and energies",
     ),
     "extensometer-ends": (
         "warning",
-        "the measured strain stands at its greatest value for {n_samples} samples while the"
-        " crosshead moves: its range ends there, and strain amplitudes are too small",
+        "the measured strain stays at its greatest value for {n_samples} samples while the"
+        " crosshead moves: the extensometer is at the end of its range, and strain amplitudes are"
+        " too small",
     ),
     "mean-tension-ramps": (
         "warning",
@@ -1387,7 +1388,7 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         lambda least, greatest, swapped: (
             "at constant volume the diameters that were read on the stretched specimen imply"
             f" {1e3 * least:.4g} to {1e3 * greatest:.4g} mm before stretch, but rubber keeps its"
-            " volume. Check these diameters and the stretch under which each stands"
+            " volume. Check these diameters and the stretch at which each was read"
             + (f"; they agree if those at {swapped} change places" if swapped else "")
         ),
     ),
@@ -1460,14 +1461,14 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "static-at-frequency": (
         "warning",
         "taken as static, but its log cycles at {frequency:.3g} Hz, at which cords are stiffer than"
-        ' in a slow pull; loading = "dynamic" says so',
+        ' in a slow pull. If the test is dynamic, set loading = "dynamic"',
     ),
     "hose-length-not-tested": (
         "warning",
         lambda hose, ratio, like: (
             f"the length of {hose} is {ratio:.3g} times its gauge length{_is_like(like)}: the dead"
-            " ends are another share of it than of the hose that was tested. Check the length, the"
-            " gauge length and their units"
+            " ends are a different share of its length than in the hose that was tested. Check the"
+            " length, the gauge length and their units"
         ),
     ),
     "waveform-not-as-stated": (
@@ -1539,8 +1540,8 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "tension-behind-position": (
         "warning",
-        "tension lags position by {delay:.2g} s, which no specimen does: the load was logged late,"
-        " or through a filter. Loops and moduli are affected",
+        "tension lags position by {delay:.2g} s, which no specimen causes: the load was logged"
+        " late, or through a filter. Loops and moduli are affected",
     ),
     "position-behind-tension": (
         "warning",

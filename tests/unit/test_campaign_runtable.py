@@ -105,7 +105,7 @@ def test_dummies_are_kept_apart(read):
     [
         (rows("x,y,block", "1,2,a"), LogError, "the last column is not a response"),
         (rows("y", "2"), LogError, "the table has no factor"),
-        (rows("x [Hz],y", "0.1,2"), SettingsError, "a unit without the levels that are -1 and 1"),
+        (rows("x [Hz],y", "0.1,2"), SettingsError, "the levels for -1 and .1 are not stated"),
         (rows("x,y [furlongs_x]", "1,2"), SettingsError, r"runs.csv:1 \[y \[furlongs_x\]\]: unit"),
         (rows("x,block,y", "1,a,2", "0,,2", "0,b,2"), LogError, "a run has no block"),
         (rows("x,run,y", "1,a,2", "0,,2"), LogError, "a run has no name"),
