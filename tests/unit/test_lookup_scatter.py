@@ -43,7 +43,7 @@ def test_another_line_is_as_far_as_the_report_says(name, share, n_lines):
     assert found.line_low < found.kind_low < found.kind_high < found.line_high
     assert found.interval_of == "one more run of the same specimens"
     assert any(
-        f"by about {100 * share:.0f} % (CG-D-39-80, sec. 4.4.1; " in one for one in found.notes
+        f"by about {100 * share:.0f} % (CG-D-39-80, sec. 4.4.1): " in one for one in found.notes
     )
 
 
