@@ -321,7 +321,7 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "load-falls-with-stretch": (
         "warning",
         "load is negative (median {load:.4g} N) and falls with stretch. If the log counts"
-        " compression as positive, set sign = -1 for this channel",
+        " compression as positive, set sign = -1 for this channel; if it is set already, remove it",
     ),
     "strain-below-zero": (
         "warning",
@@ -502,7 +502,7 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "sign-of-tension": (
         "warning",
         "tension falls with stretch (median tangent modulus {slope:.4g} Pa). If the log counts"
-        " compression as positive, set sign = -1 for this channel",
+        " compression as positive, set sign = -1 for this channel; if it is set already, remove it",
     ),
     "loops-run-backward": (
         "warning",

@@ -34,7 +34,7 @@ FACTS = {
     ),
     "one cycle only: no cycle-to-cycle scatter can be given": (note("one-cycle"), "note"),
     "new: tension falls with stretch (median tangent modulus -1e+06 Pa). If the log counts "
-    "compression as positive, set sign = -1 for this channel": (
+    "compression as positive, set sign = -1 for this channel; if it is set already, remove it": (
         note("sign-of-tension", "new", slope=-1e6), "warning",
     ),
     "1325: a length of 416.1 mm gives 167 %, but 151 % is recorded; the row gives no modulus. "
