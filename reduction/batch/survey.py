@@ -14,7 +14,7 @@ from reduction.batch.found_steps import FOUND, find_steps
 from reduction.batch.run_lock import RunLock
 from reduction.batch.workers import Task, Workers, work_on
 from reduction.campaign.plan import Campaign, StepPlan, TestPlan
-from reduction.pipeline.located_test import Located, locate, tension_at_marks
+from reduction.pipeline.located_test import Located, locate, slips_of, tension_at_marks
 from reduction.pipeline.reduce_test import Extremes, extremes_of_readings, extremes_of_test
 from reduction.readers.layout import Layout
 from reduction.readers.raw_log import unreadable
@@ -38,8 +38,6 @@ from reduction.stages.load_at_slack import (
     rises_with_stretch,
     stands_at_slack_length,
 )
-from reduction.stages.moduli.loop_balance import cycle_tension_level
-from reduction.stages.moduli.splice_slip import find_slips
 from reduction.stages.standstills import median_step
 from reduction.stages.strain.tape_and_crosshead import (
     TAPE_UNCERTAINTY,
@@ -544,22 +542,9 @@ def _survey(
 
 def _splice_slips(located: Located, plan: TestPlan) -> dict[str, list[SpliceSlip]]:
     """Slips of the splices by specimen, of a test with the cycles to find them in."""
-    cycles = located.cycles
-    if cycles is None or cycles.n_cycles < plan.settings.slip.minimum_cycles:
+    found, cycles = slips_of(located, plan.settings), located.cycles
+    if found is None or cycles is None:
         return {}
-    number = cycles.cycle_number
-    level, slope = cycle_tension_level(
-        located.position, located.tension, cycle_number=number, branch=cycles.branch,
-        n_cycles=cycles.n_cycles,
-    )  # fmt: skip
-    inside = np.where(number > 0, located.tension, np.nan)
-    found = find_slips(
-        np.fmax.reduceat(inside, cycles.first, axis=1),
-        specimens=located.record.specimens,
-        settings=plan.settings.slip,
-        tension_level=level,
-        tension_slope=slope,
-    )
     times = located.record.time[cycles.first[found.slip_cycle - 1]]
     slips: dict[str, list[SpliceSlip]] = {}
     for name, time, length in zip(found.specimen, times, found.slip_length, strict=True):

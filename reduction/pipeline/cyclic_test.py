@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from reduction.pipeline.located_test import Located
+from reduction.pipeline.located_test import Located, slips_of
 from reduction.record.arrays import run_blocks
 from reduction.record.errors import DataError, FitError
 from reduction.record.measurement import Bools, Floats, Specimen, areas_of
@@ -29,7 +29,7 @@ from reduction.stages.moduli.cycle_alignment import (
 )
 from reduction.stages.moduli.elastomer_laws import fit_elastomers
 from reduction.stages.moduli.first_loading import first_loading_curves, stress_at_strain
-from reduction.stages.moduli.loop_balance import check_identity, cycle_tension_level
+from reduction.stages.moduli.loop_balance import check_identity
 from reduction.stages.moduli.modulus_product import (
     ElastomerFit,
     ModulusCurves,
@@ -44,7 +44,6 @@ from reduction.stages.moduli.secant_modulus import (
     summarise_amplitude,
 )
 from reduction.stages.moduli.segments import find_segments
-from reduction.stages.moduli.splice_slip import find_slips
 from reduction.stages.moduli.tangent_modulus import tangent_curves
 from reduction.stages.reduced_test import History
 
@@ -162,16 +161,20 @@ def _notes_on_jumps(loops: Loops, names: Sequence[str], *, break_in: int) -> lis
     """Say where something has slipped, or a load cell has been knocked, between two cycles."""
     found = []
     for index, name in enumerate(names):
-        strain, tension, slope, of_strain, of_tension = (
+        time, strain, tension, slope, of_strain, of_tension = (
             one[index, break_in:]
             for one in (
-                loops.mean_strain, loops.mean_tension, loops.apparent_spring_constant,
-                loops.strain_amplitude, loops.tension_amplitude,
+                loops.cycle_start_time, loops.mean_strain, loops.mean_tension,
+                loops.apparent_spring_constant, loops.strain_amplitude, loops.tension_amplitude,
             )
         )  # fmt: skip
         for code, jump, amplitude in (
-            ("strain-jumps", jump_of_mean(strain, tension, slope, of_strain), of_strain),
-            ("tension-jumps", jump_of_mean(tension, strain, 1 / slope, of_tension), of_tension),
+            ("strain-jumps", jump_of_mean(time, strain, tension, slope, of_strain), of_strain),
+            (
+                "tension-jumps",
+                jump_of_mean(time, tension, strain, 1 / slope, of_tension),
+                of_tension,
+            ),
         ):
             if jump is not None:
                 number, size = jump
@@ -229,15 +232,8 @@ def parts_of_cycles(
     }
     loops.release_pages()
     ratios = _compare_specimens(curves, specimens, history)
-    if cycles.n_cycles >= settings.slip.minimum_cycles:
-        level, slope = cycle_tension_level(
-            located.position, tension, cycle_number=cycles.cycle_number,
-            branch=cycles.branch, n_cycles=cycles.n_cycles,
-        )  # fmt: skip
-        parts["slips"] = find_slips(
-            loops.peak_tension, specimens=record.specimens, settings=settings.slip,
-            tension_level=level, tension_slope=slope,
-        )  # fmt: skip
+    parts["slips"] = slips_of(located, settings)
+    if parts["slips"] is not None:
         kept = curves.selected_cycle
         begin = kept[kept <= ENDS].tolist()
         end = kept[kept > cycles.n_cycles - ENDS].tolist()

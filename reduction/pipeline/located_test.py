@@ -22,12 +22,22 @@ from reduction.record.measurement import (
     areas_of,
 )
 from reduction.record.notes import note
-from reduction.record.samples import copied, empty_like, release_pages, sample_blocks
+from reduction.record.samples import (
+    copied,
+    empty_like,
+    over_intervals,
+    release_pages,
+    sample_blocks,
+    take_samples,
+)
 from reduction.record.settings import ReductionSettings
 from reduction.stages.cycles.cycle_product import Cycles
 from reduction.stages.cycles.cycle_search import find_cycles
 from reduction.stages.load_at_slack import LoadAtSlack
 from reduction.stages.load_train import without_load_train
+from reduction.stages.moduli.loop_balance import cycle_tension_level
+from reduction.stages.moduli.modulus_product import Slips
+from reduction.stages.moduli.splice_slip import find_slips
 from reduction.stages.standstills import Standstills, find_standstills, find_tension_stands
 from reduction.stages.strain.impossible_strain import refuse_impossible_strain
 from reduction.stages.strain.strain_fit import MarkReading, measure_mark_tension
@@ -112,6 +122,25 @@ def locate(
     given = (record.load_train.machine_compliance or 0.0) * standstills.mean_tension.sum(axis=0)
     standstills = replace(standstills, mean_position=standstills.mean_position - given)
     return Located(record, position, tension, standstills, cycles)
+
+
+def slips_of(located: Located, settings: ReductionSettings) -> Slips | None:
+    """Slips of the splices; None of a test without the cycles to find them in."""
+    cycles = located.cycles
+    if cycles is None or cycles.n_cycles < settings.slip.minimum_cycles:
+        return None
+    level, slope = cycle_tension_level(
+        located.position, located.tension, cycle_number=cycles.cycle_number, branch=cycles.branch,
+        n_cycles=cycles.n_cycles,
+    )  # fmt: skip
+    peaks = [
+        over_intervals(np.fmax, load, cycles.first, cycles.last + 1) for load in located.tension
+    ]
+    return find_slips(
+        peaks, specimens=located.record.specimens, settings=settings.slip,
+        tension_level=level, tension_slope=slope,
+        time=take_samples(located.record.time, cycles.first),
+    )  # fmt: skip
 
 
 def _held_on_tension(

@@ -6,12 +6,16 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from reduction.batch.survey import SpliceSlip, Survey
+from reduction.batch.survey import SpliceSlip, Survey, _splice_slips
 from reduction.batch.test_history import earlier_tests_of, history_of, history_remarks
 from reduction.campaign.plan import TestPlan
+from reduction.pipeline.located_test import locate
+from reduction.pipeline.reduce_test import reduce_test
 from reduction.record.errors import DataError
-from reduction.record.measurement import Specimen
-from reduction.record.settings import ReductionSettings
+from reduction.record.measurement import Record, Specimen
+from reduction.record.settings import CycleSettings, ReductionSettings
+from reduction.stages.reduced_test import TestDescription
+from reduction.stages.strain.strain_model import StrainModel
 
 
 def survey(name, order, *, n_cycles=0, log="", place=0, error=None, specimens=("hose",), **told):
@@ -179,3 +183,28 @@ def test_a_part_of_a_log_comes_after_the_slips_before_its_first_row():
     for part, begin in ((early, 0.0), (late, 70.0)):
         part.plan, part.first_time = replace(part.plan, part_of="A"), begin
     assert let_out([whole, early, late]) == pytest.approx([0, 0, 0.03])
+
+
+def test_a_later_test_is_told_the_slip_that_the_test_itself_found():
+    # few readings of sharp turns: the highest one is not the peak
+    cycle = np.arange(80 * 20) / 20.3
+    position = 6 + 3 * (1 - np.abs(1 - 2 * (cycle % 1)))
+    slipped = 0.1 * np.clip(cycle - 40, 0, 1)
+    stretch = position - slipped - 5
+    tension = 600 * stretch + 50 * stretch**2 + 50 * np.sin(2 * np.pi * cycle)
+    tension += np.random.default_rng(2).normal(0, 5, cycle.size)
+    record = Record(
+        "T-1", ("hose",), 10 * cycle, position, tension[None],
+        np.zeros((1, cycle.size), np.uint16), np.zeros(cycle.size, np.uint16),
+    )  # fmt: skip
+    settings = ReductionSettings(cycles=CycleSettings(waveform="triangular"))
+    located = locate(record, kind="cyclic", settings=settings)
+    told = _splice_slips(located, SimpleNamespace(settings=settings))["hose"]
+    model = StrainModel("hose", "gauge-length", {"gauge_length": 5.0, "reference_position": 5.0})
+    own = reduce_test(
+        located, description=TestDescription("c", "T-1", "cyclic", "position", "triangular", 1, {}),
+        specimens=(Specimen("hose", "rope", diameter=(0.02,)),), models=(model,), history=None,
+        sources=(), settings=settings, settings_json="{}",
+    ).slips  # fmt: skip
+    assert [one.length for one in told] == own.slip_length.tolist()
+    assert own.slip_length == pytest.approx([0.1], rel=0.1)

@@ -138,7 +138,7 @@ def of_creeping_cycles(seed, jump=0.0, n=20, inside=False):
     strain = 0.03 + 1e-4 * np.log(np.arange(1.0, n + 1)) + rng.normal(0, 2e-6, n)
     strain += jump * (np.arange(n) >= n // 2) + inside * jump / 2 * (np.arange(n) == n // 2 - 1)
     tension = 1000 + rng.normal(0, 0.3, n)
-    return strain, tension, np.full(n, 6e4), np.full(n, 5e-3)
+    return 10.0 * np.arange(n), strain, tension, np.full(n, 6e4), np.full(n, 5e-3)
 
 
 def test_a_slip_between_two_cycles_is_found_and_creep_is_none():
@@ -152,5 +152,18 @@ def test_a_slip_between_two_cycles_is_found_and_creep_is_none():
 
 
 def test_a_level_that_was_asked_for_is_no_slip():
-    strain, tension, slope, amplitude = of_creeping_cycles(3, 1e-3)
-    assert jump_of_mean(strain, tension + 60 * (np.arange(20) >= 10), slope, amplitude) is None
+    time, strain, tension, *rest = of_creeping_cycles(3, 1e-3)
+    assert jump_of_mean(time, strain, tension + 60 * (np.arange(20) >= 10), *rest) is None
+
+
+def test_creep_in_a_pause_is_no_slip_and_a_slip_beside_the_pause_is_found():
+    # blocks of five cycles with half an hour between them, creep in the logarithm of time
+    time = 10.0 * np.arange(20) + 1800.0 * (np.arange(20) // 5)
+    noise = np.random.default_rng(1).normal(0, 5e-6, (100, 20))
+    creep = 0.03 + 1e-3 * np.log10(1 + time + 10) + noise
+    steady = np.full(20, 1000.0), np.full(20, 6e4), np.full(20, 0.018)
+    assert not any(jump_of_mean(time, one, *steady) for one in creep)
+    for one in creep:
+        number, size = jump_of_mean(time, one + 4e-3 * (np.arange(20) >= 8), *steady)
+        assert number == 8
+        assert size == pytest.approx(4e-3, rel=0.05)

@@ -140,6 +140,20 @@ def test_two_specimens_stepping_together_point_to_the_machine():
     assert any("check the crosshead before the splices" in note for note in map(str, slips.notes))
 
 
+def test_relaxation_in_a_pause_is_no_slip_and_a_slip_in_it_is_one():
+    # three blocks of 30 cycles of 10 s, half an hour apart; tension falls by 40 N a decade of time
+    time = 10.0 * np.arange(90) + 1800.0 * (np.arange(90) // 30)
+    for seed in range(20):
+        noise = np.random.default_rng(seed).standard_normal(90)
+        relaxed = 7000 - 40 * np.log10(1 + time + 10) + noise
+        for slip, found in ((0.0, []), (500.0, [31])):
+            slips = find_slips(
+                [relaxed - slip * (np.arange(90) >= 30)], specimens=("new",),
+                settings=SlipSettings(), time=time,
+            )  # fmt: skip
+            assert slips.slip_cycle.tolist() == found
+
+
 def test_too_few_cycles_are_a_line_of_the_history():
     slips = find_slips([peaks([], 30)], specimens=("new",), settings=SlipSettings())
     assert slips.specimen == ()

@@ -80,7 +80,7 @@ def strain_shifts(mean_strain: Floats, *, break_in_cycles: int = 0) -> tuple[Flo
     return shift, reference
 
 
-_JUMP = 5.0  # over what the mean changes by between any other two cycles
+_JUMP = 5.0  # over what the mean changes by in the same time between any other two cycles
 
 _JUMP_SEEN = 0.02  # of the amplitude
 
@@ -88,12 +88,14 @@ _AROUND_JUMP = 2  # changes before it, and after it, at the least
 
 
 def jump_of_mean(
-    mean: Floats, other: Floats, slope: Floats, amplitude: Floats
+    time: Floats, mean: Floats, other: Floats, slope: Floats, amplitude: Floats
 ) -> tuple[int, float] | None:
     """A step of the mean of one channel between two cycles, which the other does not follow.
 
     Parameters
     ----------
+    time : ndarray, shape (n_cycles,)
+        At which each cycle begins. [s]
     mean, other : ndarray, shape (n_cycles,)
         Mean strain and mean tension of each cycle, or the other way about. [1], [N]
     slope : ndarray, shape (n_cycles,)
@@ -114,29 +116,31 @@ def jump_of_mean(
 
     Notes
     -----
-    What creeps or relaxes changes most at first and less and less; a jump stands out of the
-    changes on both sides.  One inside a cycle is in two changes, of which both are taken.
+    What creeps or relaxes changes fastest at first and slower and slower, also in a pause between
+    blocks of cycles; a jump stands out of the changes in the same time on both sides.  One inside
+    a cycle is in two changes, of which both are taken.
 
     Examples
     --------
     >>> drift = 0.02 + 0.0004 * np.log10(np.arange(1.0, 13.0))
     >>> slipped = drift + 0.002 * (np.arange(12) >= 6)
-    >>> steady = np.full(12, 500.0), np.full(12, 1e4), np.full(12, 0.01)
-    >>> [number, size] = jump_of_mean(slipped, *steady)
-    >>> print(number, round(size, 4), jump_of_mean(drift, *steady))
+    >>> time, steady = np.arange(12.0), (np.full(12, 500.0), np.full(12, 1e4), np.full(12, 0.01))
+    >>> [number, size] = jump_of_mean(time, slipped, *steady)
+    >>> print(number, round(size, 4), jump_of_mean(time, drift, *steady))
     6 0.002 None
     """
-    change = np.diff(mean)
-    if change.size <= 2 * _AROUND_JUMP + 1 or not np.isfinite(change).all():
+    change, lasts = np.diff(mean), np.diff(time)
+    rate = np.abs(change / lasts)
+    if change.size <= 2 * _AROUND_JUMP + 1 or not np.isfinite(rate).all():
         return None
-    place = _AROUND_JUMP + int(np.argmax(np.abs(change[_AROUND_JUMP:-_AROUND_JUMP])))
-    sides = np.abs(change[[place - 1, place + 1]])
-    is_split = sides.max() > abs(change[place]) / _JUMP
+    place = _AROUND_JUMP + int(np.argmax(rate[_AROUND_JUMP:-_AROUND_JUMP]))
+    sides = rate[[place - 1, place + 1]]
+    is_split = sides.max() > rate[place] / _JUMP
     first = place - 1 if is_split and sides[0] > sides[1] else place
     last = first + int(is_split)
     size = float(change[first : last + 1].sum())
-    rest = np.abs(np.delete(change, np.arange(first, last + 1)))
-    least = max(_JUMP * float(rest.max()), _JUMP_SEEN * float(np.median(amplitude)))
+    rest = np.delete(rate, np.arange(first, last + 1)).max() * lasts[first : last + 1].max()
+    least = max(_JUMP * float(rest), _JUMP_SEEN * float(np.median(amplitude)))
     followed = np.median(other[last + 1 :]) - np.median(other[: first + 1])
     if abs(size) <= least or abs(followed) > _ALONG * abs(size * float(np.median(slope))):
         return None

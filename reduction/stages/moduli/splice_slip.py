@@ -36,6 +36,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cache
+from itertools import compress
 
 import numpy as np
 import scipy
@@ -579,6 +580,29 @@ def _creep_per_cycle(series: Floats, steps: tuple[_SlipStep, ...]) -> float:
     return float(np.linalg.lstsq(basis, series[half])[0][1] / n_samples)
 
 
+_PAUSE = 3.0  # over the time that a cycle takes
+
+_BEFORE_PAUSE = 20  # cycles that show how fast a specimen creeps before a pause
+
+
+def _is_told_from_pause(level: Floats, time: Floats, step: _SlipStep) -> bool:
+    """Whether a step is more than creep at the speed before a pause within it leads to.
+
+    What creeps or relaxes slows down, so that in the pause it does less.
+    """
+    lasts = np.diff(time)
+    at = max(0, step.onset_low - 1)
+    at += int(np.argmax(lasts[at : step.end_high + 1]))
+    if lasts[at] <= _PAUSE * np.median(lasts):
+        return True
+    before = slice(max(0, at + 1 - _BEFORE_PAUSE), at + 1)
+    moment, series = time[before] - time[before].mean(), level[before]
+    speed = float(moment @ series / (moment @ moment))
+    left = series - series.mean() - speed * moment
+    spread = np.sqrt((left @ left) / max(1, series.size - 2) / (moment @ moment))
+    return bool(abs(step.size) > (abs(speed) + 2 * spread) * lasts[at])
+
+
 def _remarks(name: str, steps: tuple[_SlipStep, ...], sizes: Floats) -> list[Note]:
     rises = [str(step.onset + 1) for step, size in zip(steps, sizes, strict=True) if size > 0]
     return [note("tension-steps-up", name, cycles=", ".join(rises))] if rises else []
@@ -591,6 +615,7 @@ def find_slips(
     settings: SlipSettings,
     tension_level: ArrayLike | None = None,
     tension_slope: ArrayLike | None = None,
+    time: ArrayLike | None = None,
 ) -> Slips:
     """Slips of the splices, found and dated cycle by cycle.
 
@@ -609,6 +634,8 @@ def find_slips(
     tension_slope : array_like, shape (n_specimens,), optional
         Slope of tension on position at the top of the loop; without it the length of a
         slip is NaN. [N m-1]
+    time : array_like, shape (n_cycles,), optional
+        At which each cycle begins; without it the cycles follow each other evenly. [s]
 
     Returns
     -------
@@ -627,6 +654,7 @@ def find_slips(
     date it ([5]_).  Method and false-alarm rate: `find_steps`.  ``slip_length`` is the step of
     peak tension over the slope of a cycle; a relaxed specimen is softer than that slope,
     so the length is a lower bound (0.5 to 0.8 of the true length on a generated tether).
+    A step at a pause between cycles is none where creep at the speed before it explains the size.
     Missing cycles are bridged; a specimen of which more than half are missing is left
     out, and a note says so.
 
@@ -650,6 +678,7 @@ def find_slips(
             needed=f"level {peaks.shape}, {peaks.shape[0]} names and slopes",
         )
     n_cycles = peaks.shape[1]
+    times = np.arange(float(n_cycles)) if time is None else np.asarray(time, float)
     notes: list[Note] = []
     made: tuple[str, ...] = ()
     names: list[str] = []
@@ -663,10 +692,12 @@ def find_slips(
         if missing > n_cycles // 2:
             notes.append(note("slip-cycles-missing", name, n_missing=missing, n_cycles=n_cycles))
             continue
-        found = find_steps(_filled(level[row]), false_alarm=settings.false_alarm)
-        peak = _filled(peaks[row])
+        filled, peak = _filled(level[row]), _filled(peaks[row])
+        found = find_steps(filled, false_alarm=settings.false_alarm)
         size = np.stack(_step_sizes(peak, found))
         creep[row] = _creep_per_cycle(peak, found)
+        is_slip = [_is_told_from_pause(filled, times, step) for step in found]
+        found, size = tuple(compress(found, is_slip)), size[:, is_slip]
         notes += _remarks(name, found, size[0])
         names += [name] * len(found)
         steps += found
