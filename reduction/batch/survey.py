@@ -20,7 +20,6 @@ from reduction.readers.layout import Layout
 from reduction.readers.raw_log import unreadable
 from reduction.readers.read_log import read_record, read_step_readings
 from reduction.readers.record_in_si import length_at_slack, reference_of, zero_to_set
-from reduction.readers.sample_flags import account_rows
 from reduction.record.errors import (
     DataError,
     LogError,
@@ -30,6 +29,7 @@ from reduction.record.errors import (
 )
 from reduction.record.measurement import Floats, Record, Source, Specimen, StepReadings
 from reduction.record.notes import Note
+from reduction.record.row_account import account_rows
 from reduction.record.samples import finite_extremes
 from reduction.stages.load_at_slack import (
     load_at_slack,

@@ -22,9 +22,11 @@ from reduction.record.measurement import (
     areas_of,
 )
 from reduction.record.notes import note
+from reduction.record.row_account import ROWS_FLAGGED, notes_on_rows
 from reduction.record.samples import (
     copied,
     empty_like,
+    finite_extremes,
     over_intervals,
     release_pages,
     sample_blocks,
@@ -38,7 +40,12 @@ from reduction.stages.load_train import without_load_train
 from reduction.stages.moduli.loop_balance import cycle_tension_level
 from reduction.stages.moduli.modulus_product import Slips
 from reduction.stages.moduli.splice_slip import find_slips
-from reduction.stages.standstills import Standstills, find_standstills, find_tension_stands
+from reduction.stages.standstills import (
+    Standstills,
+    find_standstills,
+    find_tension_stands,
+    median_step,
+)
 from reduction.stages.strain.impossible_strain import refuse_impossible_strain
 from reduction.stages.strain.strain_fit import MarkReading, measure_mark_tension
 from reduction.stages.strain.strain_model import StrainModel, extrapolated, strain_by_model
@@ -50,6 +57,8 @@ PULLED = ("quasi-static", "tensile")
 HELD = ("relaxation", "creep")
 
 _REPEATS = Quality.SATURATED | Quality.STUCK
+
+_FEW_STEPS = 5  # of the clock: what is flagged for the repeats of a load lasts longer
 
 
 @dataclass(frozen=True)
@@ -147,25 +156,37 @@ def _held_on_tension(
     record: Record, position: Floats, settings: ReductionSettings, *, is_held: bool
 ) -> tuple[Record, Standstills]:
     """Holds at constant tension, in which a load that repeats one value is no fault."""
-    standstills = find_tension_stands(
-        record.time,
-        position,
-        _without_flagged_samples(record.tension, record.quality_flag, but=_REPEATS),
-        settings=settings.phases,
-        is_held=is_held,
+    repeats = _without_flagged_samples(record.tension, record.quality_flag, but=_REPEATS)
+    standstills = stands = find_tension_stands(
+        record.time, position, repeats, settings=settings.phases, is_held=is_held
     )
+    if settings.cycles.waveform == "other":  # it may rest for less than a hold takes
+        few = _FEW_STEPS * median_step(record.time)
+        if few < settings.phases.minimum_duration:
+            shorter = replace(settings.phases, minimum_duration=few)
+            stands = find_tension_stands(record.time, position, repeats, settings=shorter)
     flags, freed = copied(record.quality_flag), 0
-    for first, last, is_rest in zip(
-        standstills.first, standstills.last, standstills.is_rest, strict=True
-    ):
+    for first, last, is_rest in zip(stands.first, stands.last, stands.is_rest, strict=True):
+        is_held_here = not is_rest and (
+            record.time[last] - record.time[first] >= settings.phases.minimum_duration
+            or _goes_on(position[first : last + 1])
+        )
         of_hold = flags[:, first : last + 1]
-        for part in sample_blocks(0 if is_rest else of_hold.shape[1], flags):
+        for part in sample_blocks(of_hold.shape[1] if is_held_here else 0, flags):
             freed += int(np.count_nonzero(of_hold[:, part] & _REPEATS))
             of_hold[:, part] &= ~np.uint16(_REPEATS)
     if not freed:
         return record, standstills
-    notes = (*record.notes, note("held-load-repeats", n_samples=freed))
-    return replace(record, quality_flag=flags, notes=notes), standstills
+    record = replace(record, quality_flag=flags)
+    told = [one for one in record.notes if one.code not in ROWS_FLAGGED]
+    notes = (*told, *notes_on_rows(record), note("held-load-repeats", n_samples=freed))
+    return replace(record, notes=notes), standstills
+
+
+def _goes_on(position: Floats) -> bool:
+    """Whether a crosshead creeps on, where it would turn at a peak that a load cell cannot read."""
+    low, high = finite_extremes(position)
+    return bool(abs(position[-1] - position[0]) > (high - low) / 2)
 
 
 def _without_flagged_samples(values: Floats, flags: NDArray[np.uint16], *, but: int = 0) -> Floats:

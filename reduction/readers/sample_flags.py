@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -13,6 +12,7 @@ from reduction.record.arrays import run_blocks
 from reduction.record.errors import DataError
 from reduction.record.measurement import Bools, Floats, Integers, Quality, Record
 from reduction.record.notes import Note, note
+from reduction.record.row_account import notes_on_rows
 from reduction.record.samples import (
     BLOCK,
     any_sample,
@@ -43,9 +43,6 @@ _SMALL_JUMP = 0.2  # of the largest nearby: the start of a ramp beside an excurs
 _MOST_IN_A_ROW = 3  # more that follow each other closely are a signal
 
 _SIGNAL_SHARE = 0.1  # of a series in excursions: they are its signal
-
-_HARMLESS = {"missing", "gap", "repeated_or_backward_time", "not_constant_rate", "resampled"}
-"""Flags of what is not there or is told by a note of its own: what is kept is right."""
 
 
 def _usual_step(values: Floats, first: Integers, last: Integers) -> Floats:
@@ -151,36 +148,6 @@ class _Timing:
     n_uneven: int
     shortest: float
     longest: float
-
-
-@dataclass(frozen=True)
-class _RowAccount:
-    """Every row of a record accounted for."""
-
-    n_read: int
-    n_kept: int
-    n_flagged: dict[str, dict[str, int]]
-
-
-def account_rows(record: Record) -> _RowAccount:
-    """Rows read, kept, and flagged by mask and channel."""
-    channels = {"crosshead_position": record.crosshead_position_quality_flag}
-    for name, flags in zip(record.specimens, record.quality_flag, strict=True):
-        channels[f"tension of {name}"] = flags
-    n_flagged = {}
-    for channel, flags in channels.items():
-        found: Counter[int] = Counter()
-        for part in sample_blocks(flags.size, flags):
-            flagged = flags[part][flags[part] != 0]
-            values, counts = np.unique(flagged, return_counts=True)
-            found.update(dict(zip(values.tolist(), counts.tolist(), strict=True)))
-        of_mask = {
-            mask.name.lower(): sum(count for value, count in found.items() if value & mask)
-            for mask in Quality
-            if mask.name is not None
-        }
-        n_flagged[channel] = {name: count for name, count in of_mask.items() if count}
-    return _RowAccount(record.n_rows_read, record.n_samples, n_flagged)
 
 
 def _find_missing(values: Floats) -> Bools:
@@ -685,20 +652,7 @@ def flag_record(
         if n_samples := count_samples(_find_saturated(strain, position)):
             found.append(note("extensometer-ends", name, n_samples=n_samples))
     found += _lone_steps(flagged, settings)
-    account = account_rows(flagged)
-    if any(account.n_flagged.values()):
-        listed = "; ".join(
-            f"{channel} " + ", ".join(f"{mask} {count}" for mask, count in masks.items())
-            for channel, masks in account.n_flagged.items()
-            if masks
-        )
-        masks = set().union(*account.n_flagged.values())
-        code = (
-            "rows-resampled" if masks <= {"resampled"}
-            else "rows-set-aside" if masks <= _HARMLESS
-            else "rows-flagged"
-        )  # fmt: skip
-        found.append(note(code, n_read=account.n_read, n_kept=account.n_kept, flags=listed))
+    found += notes_on_rows(flagged)
     return replace(flagged, notes=tuple(found))
 
 

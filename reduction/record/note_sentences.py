@@ -655,7 +655,7 @@ _OF_MODULI: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         " mean curve",
     ),
     "samples-off-grid": (
-        "warning",
+        "note",
         "{n_samples} samples lie outside the strain grid and are in no curve: their strain is"
         " beyond the reversals of all cycles",
     ),

@@ -7,9 +7,9 @@ from reduction.readers.sample_flags import (
     _find_spikes,
     _noise_of,
     _time_faults,
-    account_rows,
 )
 from reduction.record.measurement import Quality, Record
+from reduction.record.row_account import account_rows
 
 RANDOM = np.random.default_rng(20051010)
 CLOCK = np.arange(0, 200, 0.1)

@@ -1,0 +1,64 @@
+"""Rows of a record accounted for by their flags."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+
+import numpy as np
+
+from reduction.record.measurement import Quality, Record
+from reduction.record.notes import Note, note
+from reduction.record.samples import sample_blocks
+
+_HARMLESS = {"missing", "gap", "repeated_or_backward_time", "not_constant_rate", "resampled"}
+"""Flags of what is not there or is told by a note of its own: what is kept is right."""
+
+
+@dataclass(frozen=True)
+class _RowAccount:
+    """Every row of a record accounted for."""
+
+    n_read: int
+    n_kept: int
+    n_flagged: dict[str, dict[str, int]]
+
+
+def account_rows(record: Record) -> _RowAccount:
+    """Rows read, kept, and flagged by mask and channel."""
+    channels = {"crosshead_position": record.crosshead_position_quality_flag}
+    for name, flags in zip(record.specimens, record.quality_flag, strict=True):
+        channels[f"tension of {name}"] = flags
+    n_flagged = {}
+    for channel, flags in channels.items():
+        found: Counter[int] = Counter()
+        for part in sample_blocks(flags.size, flags):
+            flagged = flags[part][flags[part] != 0]
+            values, counts = np.unique(flagged, return_counts=True)
+            found.update(dict(zip(values.tolist(), counts.tolist(), strict=True)))
+        of_mask = {
+            mask.name.lower(): sum(count for value, count in found.items() if value & mask)
+            for mask in Quality
+            if mask.name is not None
+        }
+        n_flagged[channel] = {name: count for name, count in of_mask.items() if count}
+    return _RowAccount(record.n_rows_read, record.n_samples, n_flagged)
+
+
+ROWS_FLAGGED = ("rows-resampled", "rows-set-aside", "rows-flagged")
+"""Codes of the note on rows."""
+
+
+def notes_on_rows(record: Record) -> list[Note]:
+    """Count flagged rows by mask and channel; none where no row is flagged."""
+    account = account_rows(record)
+    masks = set().union(*account.n_flagged.values())
+    if not masks:
+        return []
+    listed = "; ".join(
+        f"{channel} " + ", ".join(f"{mask} {count}" for mask, count in of_channel.items())
+        for channel, of_channel in account.n_flagged.items()
+        if of_channel
+    )
+    code = ROWS_FLAGGED[0 if masks <= {"resampled"} else 1 if masks <= _HARMLESS else 2]
+    return [note(code, n_read=account.n_read, n_kept=account.n_kept, flags=listed)]
