@@ -4,7 +4,9 @@ import dataclasses
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
+from reduction.stages.cycles.cycle_product import Cycles
 from reduction.stages.moduli import loop_balance as identity
 from reduction.stages.moduli.loop_balance import check_identity
 
@@ -34,8 +36,8 @@ def test_identity_holds_for_a_relaxing_loop(triangle, begins, per_cycle):
 
 def test_residual_of_noise_is_as_stated(triangle):
     rng = np.random.default_rng(13)
-    strain, cycles = triangle(n_cycles=400, per_cycle=96)
-    noise, n, pieces = 1.2, 48, 4
+    strain, cycles = triangle(n_cycles=400, per_cycle=94)  # no reading ends two pieces
+    noise, n, pieces = 1.2, 47, 4
     tension = 300 * strain + rng.normal(0, noise, strain.size)
     checked = check_identity(strain[None], tension[None], area=[AREA], cycles=cycles)
     stated = noise * pieces * np.sqrt(24 / n) / (300 * 0.5)
@@ -167,8 +169,51 @@ def test_what_noise_explains_or_is_below_half_a_percent_is_not_noted(triangle):
 
 
 def test_few_samples_a_branch_are_named_among_the_causes(triangle):
-    (note,) = map(str, judged(0.02, triangle, per_cycle=20).notes)
+    (note,) = map(str, judged(0.1, triangle, per_cycle=20).notes)
     assert "few samples for the curvature" in note
+
+
+def saw(rise, fall, *, lag=0.0, wave=None, n_cycles=20):
+    """A solid that relaxes, in strokes of so many samples, its tension logged late by samples."""
+    turns = np.cumsum([0, *n_cycles * [rise, fall]])
+    n = np.arange(100 * turns[-1] + 1) / 100
+    strain = np.interp(n, turns, np.arange(turns.size) % 2)
+    if wave is not None:
+        strain = wave(strain)
+    period = rise + fall
+    tension = strain + 0.2 * strain**2
+    for lasts in (0.02, 0.1, 0.4):  # of a period
+        decay = np.exp(-1 / (100 * lasts * period))
+        tension += 0.1 * lfilter([decay], [1, -decay], np.diff(strain, prepend=0))
+    at = np.arange(3 * period, turns[-1] + 1)  # after three cycles
+    logged = np.interp(at - lag, n, tension)
+    edges = (turns[6:] - turns[6]).astype(int)
+    number = np.searchsorted(edges[::2], at - at[0], side="right")
+    side = np.where((at - at[0]) % period < rise, 1, 2)
+    ends = np.stack([edges[:-1], edges[1:]], axis=-1).reshape(-1, 2, 2)
+    cycles = Cycles(
+        first=edges[:-1:2], last=edges[2::2], branch_first=ends[..., 0], branch_last=ends[..., 1],
+        plateau_rate=np.ones((n_cycles - 3, 2)),
+        cycle_number=np.minimum(number, n_cycles - 3).astype(np.int32),
+        branch=side.astype(np.int8), is_in_trimmed_branch=np.ones(at.size, bool), band=0.01,
+    )  # fmt: skip
+    noise = np.random.default_rng(1).normal(0, 1e-3, at.size)
+    return check_identity(
+        np.interp(at, n, strain)[None], (logged + noise)[None], area=[1.0], cycles=cycles
+    )
+
+
+@pytest.mark.parametrize(("rise", "fall"), [(40, 160), (180, 20), (100, 100)])
+def test_relaxation_in_unequal_strokes_is_no_imbalance_and_lag_is(rise, fall):
+    assert saw(rise, fall).notes == ()
+    late = saw(rise, fall, lag=4.0)
+    assert len(late.notes) == 1
+
+
+@pytest.mark.parametrize("half", [6, 10, 12, 16, 24])  # in step, some of their readings end pieces
+def test_a_sine_of_few_readings_is_no_imbalance(half):
+    found = saw(half, half, wave=lambda x: (1 - np.cos(np.pi * x)) / 2)
+    assert found.notes == ()
 
 
 def test_one_cycle_has_a_mean_and_no_error_and_no_note(triangle):

@@ -79,9 +79,7 @@ def _tension_change(
         y = tension[samples] - reference
         u = strain[samples] - begin[own].take(branch, mode="clip")
         u *= per_stroke[own].take(branch, mode="clip")
-        # a sample between two pieces goes to the one of higher strain on either branch, lest a
-        # record in step with the cycles divide its branches differently
-        at = n_pieces * u + np.where(side == 1, _TIE, -_TIE)
+        at = n_pieces * u + _TIE
         # noise carries samples past the reversals: they belong to the end pieces
         with np.errstate(invalid="ignore"):  # what a NaN is cast to counts nowhere
             piece = np.clip(at.astype(np.int32), 0, n_pieces - 1)
@@ -89,8 +87,14 @@ def _tension_change(
         n_cells = n_branches * n_pieces
         used = (branch >= 0) & (branch < n_branches) & (side > 0) & np.isfinite(u) & np.isfinite(y)
         cell[~used] = n_cells  # one more, which is cut off
-        adds = sums_by_cell(cell, n_cells + 1)
-        return np.stack([(adds @ one)[:n_cells] for one in (np.ones_like(u), u, y, u * u, u * y)])
+        # a sample between two pieces ends both, lest a record in step with the cycles divide its
+        # branches, of which one begins where the other ends, differently
+        tied = np.flatnonzero(used & (piece > 0) & (at - piece < 2 * _TIE))
+        total = np.zeros((5, n_cells))
+        for into, x, load in ((cell, u, y), (cell[tied] - 1, u[tied], y[tied])):
+            adds = sums_by_cell(into, n_cells + 1)
+            total += [(adds @ one)[:n_cells] for one in (np.ones_like(x), x, load, x * x, x * load)]
+        return total
 
     series = (strain, tension, cycles.cycle_number, cycles.branch)
     run_blocks(fit_block, cycles.blocks(_BLOCK_SAMPLES), samples=series)
@@ -207,7 +211,10 @@ def check_identity(
     branches share in part. What tension falls in a dwell at the peak is taken off.
 
     *Judged.* The mean over the cycles with its standard error (their scatter; two cycles or
-    more): a note where it is beyond three standard errors and 0.5 %. Tension logged late
+    more): a note where it is beyond three standard errors and 0.5 %, of B pieces
+    :math:`16 / B^2` times as much.  What relaxes after a turn fills a share of a stroke that goes
+    inversely with the time it lasts, and cancels between strokes that last equally long: the
+    bound goes with the ratio of their readings.  Tension logged late
     makes it negative on a curve that stiffens: by some 0.7 to 1.1 % for a two-hundredth of
     the period.
 
@@ -238,10 +245,12 @@ def check_identity(
     if names is None:
         names = tuple(f"specimen {number}" for number in range(1, areas.size + 1))
     difference, loss, residual = np.full((3, *shape), np.nan)
-    n_pieces = _MOST_PIECES
+    n_pieces, worth_a_note = _MOST_PIECES, _WORTH_A_NOTE
     if cycles.n_cycles:
-        samples = float(np.median(cycles.branch_last - cycles.branch_first))
-        n_pieces = int(np.clip(samples // _PIECE_SAMPLES, 1, _MOST_PIECES))
+        steps = cycles.branch_last - cycles.branch_first
+        n_pieces = int(np.clip(float(np.median(steps)) // _PIECE_SAMPLES, 1, _MOST_PIECES))
+        fast, slow = np.sort(np.median(steps, axis=0)).tolist()
+        worth_a_note *= (_MOST_PIECES / n_pieces) ** 2 * slow / fast
         for row, one_area in enumerate(areas):
             change, stroke = _tension_change(
                 strains[row], tensions[row], cycles=cycles, n_pieces=n_pieces
@@ -268,7 +277,7 @@ def check_identity(
         notes=tuple(
             note("identity-open", name, effect=one, error=spread, is_coarse=n_pieces < _MOST_PIECES)
             for name, one, spread in zip(names, mean, error, strict=True)
-            if abs(one) > max(_SIGNIFICANT * spread, _WORTH_A_NOTE)
+            if abs(one) > max(_SIGNIFICANT * spread, worth_a_note)
         ),
     )
 
