@@ -484,6 +484,17 @@ def test_a_load_in_coarse_steps_does_not_come_late_by_one_of_them(codes, is_late
     assert (_late_load(hold, 171.0) is not None) is is_late
 
 
+@pytest.mark.parametrize(("late", "is_late"), [(0.0, False), (0.7, True)])
+def test_a_fast_term_that_a_line_cuts_short_is_no_load_that_comes_late(late, is_late):
+    """Two readings a second of a term of 0.3 s: the line from its end lies below the first one."""
+    time = np.arange(0.1, 60, 0.5)
+    load = 6500 + 100 * np.exp(-np.clip(time - late, 0, None) / 0.3)
+    load -= 400 * np.clip(late - time, 0, None)
+    ramp = _Ramp(-3.0, 0.0, -1.5, 3.0, 2e6)
+    hold = Hold(time, 0 * time, load, 1 + 0 * time, 0.0, ramp, 0.01, logged_peak=load.max())
+    assert (_late_load(hold, 6520.0 - 250 * is_late) is not None) is is_late
+
+
 @pytest.mark.parametrize(("fast", "slow"), [((10, 2), (30, 60)), ((15, 3), (20, 40))])
 def test_noise_that_hides_a_fast_term_leaves_the_initial_tension_without_much_of_a_bias(fast, slow):
     """Two terms of some newtons in noise of 4 N, of 200 generated holds."""

@@ -808,7 +808,8 @@ def _late_load(hold: Hold, initial: float) -> _LateLoad | None:
     end_known_to = initial * hold.ramp.end_uncertainty / hold.ramp.length
     # both levels may be rounded by half a step of the converter, away from each other
     told = SIGNIFICANT * float(np.hypot(hold.tension_noise, end_known_to)) + hold.tension_step
-    if not rise > max(told, _LATE_LEAST * initial):
+    # the first reading of all is no rise: a line through what relaxes fast ends below it
+    if at == 0 or not rise > max(told, _LATE_LEAST * initial):
         return None
     return _LateLoad(rise, float(blocks.value[at]), float(blocks.elapsed[at]))
 
