@@ -70,6 +70,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import pairwise
 from typing import Literal
 
@@ -708,52 +709,53 @@ def _at_equal_phase(
     time: Floats,
     branch_first: Integers,
     branch_last: Integers,
-    held: tuple[Floats, Floats, Floats] | None = None,
-) -> tuple[Floats, Floats]:
-    r"""Integral of a series over the sine of the phase of another, and the mean of that sine.
+    levels: Floats,
+) -> tuple[Floats, Floats, Floats]:
+    r"""Integral of a series over the sine of the phase of another, the mean of that sine, and x_a.
 
     .. math:: \oint y \, d\sin\theta, \qquad \overline{\sin\theta}, \qquad
-              \cos\theta = \frac{2 x - x_1 - x_2}{|x_2 - x_1|}
+              \cos\theta = \frac{x - \bar x}{x_a}
 
     Notes
     -----
     Between samples of a branch the series is a straight line over the other, so that the turns,
     near which the phase runs fast, cost nothing; where noise sends the other backward it is a
-    straight line over the sine.  Readings within the noise of a level at which the other is
-    ``held``, in its first valley, peak and last valley, are at that level: noise is no movement.
+    straight line over the sine.  ``levels`` are those of the other in the first valley, the peak
+    and the last valley of each cycle: at noisy readings it would end short of its turns.
 
     Examples
     --------
     A straight line of slope 900 whose strokes last 60 and 5 samples, amplitude 0.2:
 
     >>> strain = np.r_[np.linspace(-0.2, 0.2, 61), np.linspace(0.2, -0.2, 6)[1:]]
-    >>> work, _ = _at_equal_phase(900 * strain, strain, np.arange(66.0),
-    ...     np.array([[0, 60]]), np.array([[60, 65]]))
+    >>> work, *_ = _at_equal_phase(900 * strain, strain, np.arange(66.0),
+    ...     np.array([[0, 60]]), np.array([[60, 65]]), np.array([[-0.2], [0.2], [-0.2]]))
     >>> print((work / (np.pi * 0.2)).round(6))
     [900.]
     """
     n_cycles = branch_first.shape[0]
-    work, mean = np.zeros(n_cycles), np.zeros(n_cycles)
-    still = 0.0 if held is None else reading_noise(driven)
+    work, mean, used = np.zeros((3, n_cycles))
     for column, way in ((0, -1.0), (1, 1.0)):
         begin, end = branch_first[:, column], branch_last[:, column]
-        low, high = (driven[begin], driven[end]) if held is None else held[column : column + 2]
+        low, high = levels[column : column + 2]
         length = end - begin + 1
         row = np.repeat(np.arange(n_cycles), length)
         at = np.arange(row.size) + np.repeat(begin - np.cumsum(length) + length, length)
-        half, middle = np.abs(high - low) / 2, (high + low) / 2
+        half, middle = way * (low - high) / 2, (high + low) / 2
+        used += np.abs(half) / 2
         with np.errstate(divide="ignore", invalid="ignore"):
             level = (driven[at] - middle[row]) / half[row]
-            is_held = np.abs(np.abs(level) - 1) * half[row] < still
-            is_end = (at == begin[row]) | (at == end[row])
-            level = np.where(is_held | is_end, np.sign(level), level)
-        np.clip(level, -1, 1, out=level)
-        angle, sine = way * np.arccos(level), way * np.sqrt(1 - level**2)
+        level[at == begin[row]], level[at == end[row]] = way, -way
+        # noise takes a rest beyond its level as often as below it: the sine there is of other sign
+        mirror = np.where(np.abs(level) > 1, 2 * np.sign(level), 0.0)
+        inside = np.clip(np.where(mirror == 0, level, mirror - level), -1, 1)
+        sine = np.where(mirror == 0, way, -way) * np.sqrt(1 - inside**2)
+        # integral of the level over the sine
+        area = (way * np.arccos(inside) + sine * (level + mirror)) / 2
         step, rise = np.diff(level), np.diff(sine)
-        # what lies, in the integral of the level over the sine, above that of the first sample
-        over = (np.diff(angle) + np.diff(sine * level)) / 2 - level[:-1] * rise
         with np.errstate(divide="ignore", invalid="ignore"):
-            share = np.where(-way * step > _LEAST_STEP, over / step, rise / 2)
+            over = (np.diff(area) - level[:-1] * rise) / step
+            share = np.where(-way * step > _LEAST_STEP, over, rise / 2)
         load, seconds = values[at], time[at]
         inside = row[1:] == row[:-1]
         for total, part in (
@@ -762,7 +764,7 @@ def _at_equal_phase(
         ):
             total += np.bincount(row[:-1][inside], part[inside], n_cycles)
     with np.errstate(divide="ignore", invalid="ignore"):
-        return work, mean / (time[branch_last[:, 1]] - time[branch_first[:, 0]])
+        return work, mean / (time[branch_last[:, 1]] - time[branch_first[:, 0]]), used
 
 
 Waveform = Literal["triangular", "sinusoidal", "other"]
@@ -773,7 +775,7 @@ MEASURED = (
     "peak", "valley", "high", "low", "energy", "strain_step_norm", "force_cosine", "force_sine",
     "force_mean", "strain_cosine", "strain_sine", "strain_mean", "force_end", "strain_end",
     "force_rise", "force_turn", "force_fall", "strain_rise", "strain_turn", "strain_fall",
-    "phase_work", "phase_sine",
+    "phase_work", "phase_sine", "phase_half",
     "force_top", "force_begin", "force_end_turn", "force_missed",
     "strain_top", "strain_begin", "strain_end_turn", "strain_missed", "energy_missed",
 )  # fmt: skip
@@ -1053,10 +1055,7 @@ def _quantities_of_cycles(
             drift, own = (
                 (strain_drift, amplitude) if control == "load" else (force_drift, strain_amplitude)
             )
-            # tips that lie between samples are in neither
-            tips = 0.0 if turn == "rounded" else 0.5
-            logged = own - tips * row["force_missed" if control == "load" else "strain_missed"]
-            in_phase = (row["phase_work"] + drift * row["phase_sine"]) / (np.pi * logged)
+            in_phase = (row["phase_work"] + drift * row["phase_sine"]) / (np.pi * row["phase_half"])
             quadrature = energy / (np.pi * own**2)
             if control == "load":
                 # compliances, of which the modulus is the inverse
@@ -1545,23 +1544,6 @@ _RESTS, _CLEAR, _STEEP = 0.05, 3.0, 10.0
 by which its steps show a ramp. [1]"""
 
 
-def _held_levels(
-    values: Floats, way: int, branch_first: Integers, branch_last: Integers
-) -> tuple[Floats, Floats, Floats] | None:
-    """Levels of first valley, peak and last valley where a channel is held at all of them."""
-    upward = way * values
-    begin, peak, end = branch_first[:, 0], branch_last[:, 0], branch_last[:, 1]
-    first, top, last = (
-        _plateau(sign * upward, low, high, sign * upward[at])
-        for sign, low, high, at in (
-            (-1, begin, peak, begin), (1, begin, end, peak), (-1, peak, end, end),
-        )
-    )  # fmt: skip
-    if first is None or top is None or last is None:
-        return None
-    return -way * first[0], way * top[0], -way * last[0]
-
-
 def _farther(values: Floats, one: Integers, other: Integers) -> Integers:
     """Of two turns at either end of a rest, those at which a series is greater in the mean."""
     apart = take_samples(values, one) - take_samples(values, other)
@@ -1823,13 +1805,7 @@ def _measure(
     first, last = basis.first, basis.last
     force, lost_force = _bridge_gaps(tension, first, last)
     stretch, lost_stretch = _bridge_gaps(strain, first, last)
-    moved, answer = (force, stretch) if control == "load" else (stretch, force)
-    held = _held_levels(moved, ways[moved is stretch], *branches) if waveform == "other" else None
-    at_phase = (
-        (np.zeros(first.size),) * 2
-        if waveform == "sinusoidal"
-        else _at_equal_phase(answer, moved, time, *branches, held)
-    )
+    moved = force if control == "load" else stretch
     at_turns = (
         (np.zeros(first.size),) * 8
         if waveform == "sinusoidal"
@@ -1867,13 +1843,45 @@ def _measure(
             (stretch[first] + stretch[last]) / 2,
             *_part_means(force, basis, middles),
             *_part_means(stretch, basis, middles),
-            *at_phase,
+            *np.zeros((3, first.size)),
             *at_turns,
             may_lack,
         ]
     )
     measured[:, lost_force | lost_stretch] = np.nan
     return measured
+
+
+_WIDER = 4  # parts of a rise, in half of which noise may hide where its rest begins
+
+
+def _integrate_over_phase(
+    measured: Floats,
+    levels: Floats,
+    time: Floats,
+    tension: Floats,
+    strain: Floats,
+    cycles: Cycles,
+    control: Control,
+    block: slice,
+) -> None:
+    """Fill in what `_at_equal_phase` gives of some cycles, of ``measured`` as `_measure` has it."""
+    low, high = int(cycles.first[block.start]), int(cycles.last[block.stop - 1]) + 1
+    moved, answer = (
+        _bridge_gaps(one[low:high], cycles.first[block] - low, cycles.last[block] - low)[0]
+        for one in ((tension, strain) if control == "load" else (strain, tension))
+    )
+    # a rest is found some noise early, where its ramp still goes on
+    (begin, leaves), (peak, end) = (
+        cycles.branch_first[block].T - low,
+        cycles.branch_last[block].T - low,
+    )
+    into = np.minimum(leaves - peak, (peak - begin) // _WIDER) // 2
+    found = _at_equal_phase(
+        answer, moved, time[low:high], np.column_stack([begin, leaves - into]),
+        np.column_stack([peak + into, end]), levels[:, block],
+    )  # fmt: skip
+    measured[_OF_PHASE : _OF_PHASE + len(found), block] = found
 
 
 def close_loops(
@@ -2035,10 +2043,11 @@ def close_loops(
                 out=may_lack,
             )  # fmt: skip
         if waveform != "sinusoidal":
-            of_driven, rows = (
-                (noise, _OF_TURNS) if control == "load" else (strain_noise, _OF_TURNS + 4)
+            of_driven = _OF_TURNS + 4 * (1 - answer)
+            of_corners = _noise_of_corners(
+                noises[index][1 - answer], measured[index, of_driven : of_driven + 2]
             )
-            of_corners = _noise_of_corners(of_driven, measured[index, rows : rows + 2])
+            tips = measured[index, of_driven + 3] / 2 if turns[index] == "sharp" else 0.0
             for series, own, step, over_cycles, way, rows in zip(
                 (force, stretch), own_noise, steps, scatter, ways[index],
                 (_OF_TURNS, _OF_TURNS + 4), strict=True,
@@ -2053,6 +2062,22 @@ def close_loops(
                     turn=turns[index], noise=own, way=way,
                     may_dwell=waveform == "other", of_corners=of_corners, driven=moved,
                 )  # fmt: skip
+            top, foot, end_turn = measured[index, of_driven : of_driven + 3]
+            tips *= ways[index][1 - answer]
+            levels = np.stack([foot + tips, top - tips, end_turn + tips])
+            integrate_block = partial(
+                _integrate_over_phase,
+                measured[index],
+                levels,
+                time,
+                force,
+                stretch,
+                cycles,
+                control,
+            )
+            run_blocks(
+                integrate_block, cycles.blocks(_BLOCK), samples=samples, longest=cycles.longest
+            )
         shapes = None
         if waveform == "other":
             of_force, of_stretch = ways[index]
@@ -2131,8 +2156,9 @@ def _into_rests(cycles: Cycles, driven: Floats) -> Cycles:
 
 _REACH_OF_TURN = 0.25  # of the shorter branch, in which its extremes are sought
 
-_OF_TURNS, _OF_ENERGY, _OF_NORM = (
-    MEASURED.index(name) for name in ("force_top", "energy_missed", "strain_step_norm")
+_OF_PHASE, _OF_TURNS, _OF_ENERGY, _OF_NORM = (
+    MEASURED.index(name)
+    for name in ("phase_work", "force_top", "energy_missed", "strain_step_norm")
 )
 
 _OF_EXTREMES = [
