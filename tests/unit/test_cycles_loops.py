@@ -1091,6 +1091,29 @@ def test_strain_that_creeps_while_the_load_rests_is_farthest_where_it_leaves(per
     assert found.tension_amplitude[0] == pytest.approx(4000, rel=4e-3)
 
 
+@pytest.mark.parametrize("rise", [0.05, 0.95])
+def test_strain_that_creeps_on_behind_a_fast_stroke_is_farthest_within_the_slow_one(rise):
+    fine = np.arange(-3, 16, 1e-4)
+    wave = np.interp(fine % 1, [0, rise, 1], [-1, 1, -1])
+    # Kelvin elements of half of the fast stroke and of five times it
+    strain = wave.copy()
+    # Kelvin elements of half of the fast stroke and of five times it
+    for tau in (0.03, 0.25):
+        keep = np.exp(-1e-4 / tau)
+        strain += 0.15 * lfilter([1 - keep], [1, -keep], wave)
+    half = np.ptp(strain[-20000:]) / 2
+    turn = np.arange(0.37, 400 * 15) / 400
+    load, strain = (np.interp(turn, fine, one) for one in (wave, strain))
+    load, strain = 9000 + 4000 * load, 0.05 + 0.02 * strain
+    stands = find_tension_stands(20 * turn, strain, load[None], settings=PhaseSettings())
+    settings = CycleSettings(control="load")
+    cycles = find_cycles(20 * turn, strain, load[None], stands, settings=settings)
+    loops = close_loops(20 * turn, load[None], strain[None], cycles, control="load", driven=load)
+    found = summarise_amplitude(loops, area=[1e-4])
+    spread = found.uncertainty["strain_amplitude"][0]
+    assert abs(found.strain_amplitude[0] - 0.02 * half) < 2 * spread < 0.01 * half * 0.02
+
+
 def summary_of_log(time, load, strain, control):
     """A log whose cycles and rests are found as in a run, and its amplitudes."""
     stands = (

@@ -1257,7 +1257,7 @@ def _readings_at_turns(
     branch_first: Integers,
     branch_last: Integers,
     *,
-    reach: int,
+    reach: tuple[int, int],
     turn: Turn,
     way: int,
     moved: Floats,
@@ -1272,9 +1272,10 @@ def _readings_at_turns(
     before the next reading.  A series of way -1 falls where the driven channel rises.
     """
     values = way * series
+    on_rise, on_fall = reach
     begin, peak, end = branch_first[:, 0], branch_last[:, 0], branch_last[:, 1]
     # what creeps while its channel is held at the peak is farthest where that leaves
-    after_peak = np.minimum(branch_first[:, 1] + reach, end)
+    after_peak = np.minimum(branch_first[:, 1] + on_fall, end)
 
     def extreme(of: np.ufunc, low: Integers, high: Integers) -> Floats:
         pairs = np.column_stack([np.maximum(low, begin), np.minimum(high, end)]).ravel()
@@ -1282,22 +1283,22 @@ def _readings_at_turns(
         found = of.reduceat(values[:stop], np.minimum(pairs[:-1], stop - 1))[::2]
         return np.asarray(of(found, values[np.minimum(high, end)]))
 
-    top = extreme(np.maximum, peak - reach, after_peak)
-    first = extreme(np.minimum, begin, begin + reach)
-    last = extreme(np.minimum, end - reach, end)
+    top = extreme(np.maximum, peak - on_rise, after_peak)
+    first = extreme(np.minimum, begin, begin + on_rise)
+    last = extreme(np.minimum, end - on_fall, end)
     missed = np.zeros(top.size)
     if turn == "sharp":
         # what creeps while its channel rests is farthest after the turn that ends the cycle
-        stop = np.minimum(end + reach, np.append(peak[1:], values.size - 1))
+        stop = np.minimum(end + on_rise, np.append(peak[1:], values.size - 1))
         goes_on = np.append(begin[1:] == end[:-1], False)  # and after the last one it unloads
-        at_top = _places(values, peak - reach, after_peak)
-        at_last = _places(-values, np.maximum(end - reach, peak), np.where(goes_on, stop, end))
+        at_top = _places(values, peak - on_rise, after_peak)
+        at_last = _places(-values, np.maximum(end - on_fall, peak), np.where(goes_on, stop, end))
         last = np.fmin(last, values[at_last])
         above = level_of_turn(values, peak, top, sign=1) - top
         below = last - level_of_turn(values, end, last, sign=-1)
         noise = _within_scatter(reading_noise(moved), moved[peak])
         # a machine may rest at one of its turns alone
-        lowest = _places(-moved, np.maximum(end - reach, peak), stop)
+        lowest = _places(-moved, np.maximum(end - on_fall, peak), stop)
         rests, rests_below = rests_at_turns(moved, peak), rests_at_turns(-moved, lowest)
         of_peak, of_valley = (
             np.abs(level_at_corner(values, moved, at, sign=sign, noise=noise, rests=rest) - level)
@@ -1319,8 +1320,8 @@ def _readings_at_turns(
             missed = (_EITHER - 1) * (excess[0] + excess[1]) / 2
         else:
             # a machine that dwells is at the level of its corner, and misses nothing
-            upper = _plateau(values, peak - reach, after_peak, top)
-            lower = _plateau(-values, np.maximum(end - reach, peak), stop, -last)
+            upper = _plateau(values, peak - on_rise, after_peak, top)
+            lower = _plateau(-values, np.maximum(end - on_fall, peak), stop, -last)
             top, above = (top, above) if upper is None else (upper[0], 0 * above)
             if lower is not None:  # it is held at one level at both ends of a cycle
                 first = np.append(-lower[0][0], -lower[0][:-1])
@@ -1797,7 +1798,7 @@ def _measure(
     branches: tuple[Integers, Integers],
     waveform: Waveform,
     control: Control,
-    reach: int,
+    reach: tuple[int, int],
     turn: Turn,
     ways: tuple[int, int],
 ) -> Floats:
@@ -1981,9 +1982,7 @@ def close_loops(
     measured = empty_like(tension, shape=(tension.shape[0], len(MEASURED), cycles.n_cycles))
     noises = [(reading_noise(force), reading_noise(stretch)) for force, stretch in
               zip(tension, strain, strict=True)]  # fmt: skip
-    branch = float(np.median(cycles.branch_last - cycles.branch_first, axis=0).min())
-    # on a plateau the driven channel turns anywhere, and the other one at its beginning
-    reach = max(int((1.0 if waveform == "other" else _REACH_OF_TURN) * branch), 1)
+    branches = np.median(cycles.branch_last - cycles.branch_first, axis=0)
     ways = [(_way(force, cycles), _way(stretch, cycles)) for force, stretch in
             zip(tension, strain, strict=True)]  # fmt: skip
     answer = int(control == "load")
@@ -1991,6 +1990,10 @@ def close_loops(
         (tension, strain)[answer], moved, cycles, waveform,
         [one[answer] for one in noises], [one[answer] for one in ways],
     )  # fmt: skip
+    # on a plateau the driven channel turns anywhere, and the other one at its beginning
+    share = 1.0 if waveform == "other" else _REACH_OF_TURN
+    # what creeps on behind a fast stroke turns well within the slow one
+    reach = tuple(max(int(share * one), 1) for one in branches)
     # the middles of rise and fall, at least a sample apart and from either end
     middles = (cycles.branch_first + cycles.branch_last).T // 2
     middles[0] = np.clip(middles[0], cycles.first + 1, cycles.last - 2)
@@ -2058,7 +2061,7 @@ def close_loops(
                 rounded = rounding_left(step, _OF_GREATEST * min(own, over_cycles))
                 np.hypot(missed, _OF_BOTH_ENDS * rounded, out=missed)
                 _without_noise(
-                    measured[index, rows : rows + 4], series, cycles, reach=reach,
+                    measured[index, rows : rows + 4], series, cycles, reach=max(reach),
                     turn=turns[index], noise=own, way=way,
                     may_dwell=waveform == "other", of_corners=of_corners, driven=moved,
                 )  # fmt: skip
