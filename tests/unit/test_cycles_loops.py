@@ -554,9 +554,10 @@ def test_tension_that_relaxes_in_the_noise_of_a_dwell_is_not_at_its_mean_there(s
         waveform="other",
     )
     # the mean over a dwell is 11 % less than where it begins
-    assert summarise_amplitude(loops, area=[1e-3]).tension_amplitude[0] == pytest.approx(
-        true, rel=0.02
-    )
+    found = summarise_amplitude(loops, area=[1e-3])
+    off = abs(found.tension_amplitude[0] - true)
+    assert off < 2 * found.uncertainty["tension_amplitude"][0] < 0.04 * true
+    assert off < 0.03 * true
 
 
 @pytest.mark.parametrize("seed", range(8))
@@ -1091,11 +1092,36 @@ def test_strain_that_creeps_while_the_load_rests_is_farthest_where_it_leaves(per
     assert found.tension_amplitude[0] == pytest.approx(4000, rel=4e-3)
 
 
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("rounded", [0.0, 0.3])
+def test_tension_that_relaxes_behind_noisy_corners_is_farthest_at_them(rounded, seed):
+    # ramps of 3 s, rests of 5 s; Maxwell elements of 30, 100 and 300 ms
+    step, rng = 1e-3, np.random.default_rng(seed)
+    fine = np.arange(-32, 16 * 15, step)
+    wave = np.interp(fine % 16, [0, 3, 8, 11, 16], [-1, 1, 1, -1, -1])
+    if rounded:
+        width = round(rounded / step)
+        wave = np.convolve(np.pad(wave, width, mode="edge"), np.full(width, 1 / width), "same")
+        wave = wave[width:-width]
+    answer = wave.copy()
+    for tau in (0.03, 0.1, 0.3):
+        keep = np.exp(-step / tau)
+        answer += 0.3 * lfilter([keep], [1, -keep], np.diff(wave, prepend=wave[0]))
+    half = np.ptp(answer[-16000:]) / 2
+    time = rng.uniform(0, 0.02) + np.arange(0, 16 * 14.3, 0.02)
+    load, strain = (
+        np.interp(time, fine, one) + 0.002 * rng.normal(size=time.size) for one in (answer, wave)
+    )
+    found = summary_of_log(time, 9000 + 4000 * load, 0.05 + 0.02 * strain, "position")
+    spread = found.uncertainty["tension_amplitude"][0]
+    assert abs(found.tension_amplitude[0] - 4000 * half) < 2 * spread < 0.006 * 4000
+    assert found.strain_amplitude[0] == pytest.approx(0.02, rel=5e-4)
+
+
 @pytest.mark.parametrize("rise", [0.05, 0.95])
 def test_strain_that_creeps_on_behind_a_fast_stroke_is_farthest_within_the_slow_one(rise):
     fine = np.arange(-3, 16, 1e-4)
     wave = np.interp(fine % 1, [0, rise, 1], [-1, 1, -1])
-    # Kelvin elements of half of the fast stroke and of five times it
     strain = wave.copy()
     # Kelvin elements of half of the fast stroke and of five times it
     for tau in (0.03, 0.25):

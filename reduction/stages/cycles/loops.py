@@ -1509,27 +1509,41 @@ def _plateau(
     return np.where(np.isfinite(level), level, top - np.nanmedian(top - level)), above
 
 
-def _above_at_corner(
-    values: Floats, driven: Floats, low: Integers, high: Integers, level: Floats
-) -> float:
-    """By how much the approach of a series leads above its plateau, where the driven one rests.
+def _led_to_corner(
+    values: Floats, driven: Floats, begin: Integers, end: Integers, level: Floats
+) -> Floats | None:
+    """Level to which each approach of a series leads where the driven channel comes to a rest.
 
-    Mean over the cycles.  What decays within a few readings is farthest there, and in noise its
-    plateau shows no decay.
+    By a parabola over the last third of the way of the driven one to the ``level`` of its rest:
+    what relaxes is farthest at that corner, and the mean of noisy corners is blunt.  NaN of a few
+    readings.  None where the driven channel rounds its corners: there nothing leads to them.
     """
-    found = []
-    noise = reading_noise(driven)
-    sign = float(np.sign(np.nanmedian(driven[high] - driven[low])))
-    for start, stop, mean in zip(low.tolist(), high.tolist(), level.tolist(), strict=True):
-        place = sign * driven[start : stop + 1]
-        step = np.diff(place).max(initial=0.0)
-        at = start + int(np.argmax(place > place.max() - max(_RESTS * step, _CLEAR * noise)))
-        rise = sign * (driven[at - 1] - driven[at - 2])
-        if at - 2 < start or not rise > _STEEP * noise:
+    found, rounded = np.full(begin.size, np.nan), []
+    clear = _CLEAR * reading_noise(driven)
+    for row, (start, stop) in enumerate(zip(begin.tolist(), end.tolist(), strict=True)):
+        left, answer = level[row] - driven[start : stop + 1], values[start : stop + 1]
+        left *= np.sign(left[0])
+        if not (left[0] > 3 * clear and np.isfinite(left + answer).all()):
             continue
-        share = min(max(sign * float(driven[at] - driven[at - 1]) / float(rise), 0.0), 1.0)
-        found.append(values[at - 1] + share * (values[at - 1] - values[at - 2]) - mean)
-    return max(float(np.nanmean(found)), 0.0) if found else 0.0
+        low = left.size - int(np.argmax(left[::-1] > left[0] / 3))
+        high = low + int(np.argmax(np.append(left[low:], 0.0) < clear))
+        if high - low < _FEWEST_OF_APPROACH:
+            continue
+        found[row] = np.polyfit(left[low:high], answer[low:high], 2)[-1]
+        # the readings beside a corner lie on the line of the approach so far, or on the rest
+        near = high - (high - low) // 4 - 1
+        line = np.polyfit(np.arange(low, near), left[low:near], 1)
+        beside = np.arange(near, min(round(-line[1] / line[0]) + high - near, left.size))
+        rounded.append(np.mean(left[beside] - np.fmax(np.polyval(line, beside), 0.0)))
+    if len(rounded) < _FEWEST_TURNS:
+        return None
+    spread = float(np.std(rounded)) / np.sqrt(len(rounded))
+    return found if abs(np.mean(rounded)) < _CLEAR * spread else None
+
+
+_FEWEST_OF_APPROACH = 6  # readings
+
+_FEWEST_TURNS = 5
 
 
 def _mean_of_rest(values: Floats, at: Integers, greatest: Floats, *, within: Floats) -> Floats:
@@ -1726,13 +1740,15 @@ def _without_noise(
     way: int,
     may_dwell: bool,
     of_corners: float,
-    driven: Floats,
-) -> None:
+    rests: tuple[Floats, Floats] | None,
+) -> bool:
     """Valleys of cycles that touch made one, and what noise adds to extremes taken off.
 
     ``measured`` has the rows of top, first and last valley, and of what a turn may miss, and is
-    changed.  A channel that is held at its turns is at the mean of what it reads there.  What may
-    be corners and no noise is not taken off: the truth is between both.
+    changed.  A channel that is held at its turns is at the mean of what it reads there, which is
+    returned.  What answers one that ``rests``, by its readings and the rows of its levels, may be
+    farthest at the corners of that.  What may be corners and no noise is not taken off: the truth
+    is between both.
     """
     top, first, last, missed = measured
     touch = np.flatnonzero(touching(cycles))
@@ -1744,8 +1760,16 @@ def _without_noise(
     first[touch] = both
     last[touch - 1] = np.where(np.isfinite(last[touch - 1]), both, np.nan)
     if turn == "sharp":
-        return
+        return False
     peak = cycles.branch_last[:, 0]
+    leads: list[Floats | None] = [None, None]
+    if rests is not None:
+        driven, (at_top, _, at_end, _) = rests
+        (begin, leaves), end = cycles.branch_first.T, cycles.branch_last[:, 1]
+        leads = [
+            _led_to_corner(way * values, driven, begin, (peak + leaves) // 2, at_top),
+            _led_to_corner(-way * values, driven, leaves, end, at_end),
+        ]
     if may_dwell:
         begin, end = cycles.branch_first[:, 0], cycles.branch_last[:, 1]
         after = np.append(peak[1:], values.size - 1)
@@ -1754,15 +1778,14 @@ def _without_noise(
         if upper is not None and lower is not None:
             top[:], last[:] = way * upper[0], -way * lower[0]
             first[1:] = last[:-1]
-            leads = (
-                _above_at_corner(sign * values, driven, low, high, level)
-                for sign, low, high, level in (
-                    (way, begin, peak, way * top), (-way, peak, end, -way * last),
+            above = sum(
+                max(own, 0.0 if lead is None else float(np.nanmean(lead - level)))
+                for own, lead, level in zip(
+                    (upper[1], lower[1]), leads, (upper[0], lower[0]), strict=True
                 )
-            )  # fmt: skip
-            above = sum(max(one) for one in zip((upper[1], lower[1]), leads, strict=True))
+            )
             np.hypot(missed, _EITHER_WAY * above / 2, out=missed)
-            return
+            return True
     noise = _within_scatter(noise, top)
     (of_peak, peak_falls), (of_valley, valley_falls) = (
         noise_in_extreme(values, turn, reach=reach, sign=sign, noise=noise)
@@ -1779,14 +1802,24 @@ def _without_noise(
     either = _EITHER_WAY * (of_peak + of_valley) / 2
     if of_corners and 0 < noise < _LIKE_CORNERS * of_corners * np.nanmedian(np.abs(top - first)):
         np.hypot(missed, either, out=missed)
-        return
-    # the mean of noisy corners is blunt, and what it says of the noise too much
-    dwells = float(np.median(cycles.branch_first[:, 1] - peak)) > 1
-    if may_dwell and (dwells or max(peak_falls, valley_falls) > _FALLS * noise):
-        np.hypot(missed, either, out=missed)
+        return False
     top -= way * of_peak
     first += way * of_valley
     last += way * of_valley
+    # the mean of noisy corners is blunt, and what it says of the noise too much
+    dwells = float(np.median(cycles.branch_first[:, 1] - peak)) > 1
+    blunt = may_dwell and (dwells or max(peak_falls, valley_falls) > _FALLS * noise)
+    for lead, level, sign in zip(leads, (top, last), (way, -way), strict=True):
+        ahead = None if lead is None else lead - sign * level
+        # what creeps on in the rest is not farthest at its corner
+        if ahead is not None and (more := float(np.nanmean(ahead))) > -2 * float(
+            np.nanstd(ahead)
+        ) / np.sqrt(np.isfinite(ahead).sum()):
+            level += sign * np.where(np.isfinite(ahead), ahead, more)
+            np.hypot(missed, more / 2, out=missed)  # a corner may be rounded within the noise
+        elif blunt:
+            np.hypot(missed, either / np.sqrt(2), out=missed)
+    return False
 
 
 def _measure(
@@ -1993,7 +2026,7 @@ def close_loops(
     # on a plateau the driven channel turns anywhere, and the other one at its beginning
     share = 1.0 if waveform == "other" else _REACH_OF_TURN
     # what creeps on behind a fast stroke turns well within the slow one
-    reach = tuple(max(int(share * one), 1) for one in branches)
+    on_rise, on_fall = (max(int(share * one), 1) for one in branches)
     # the middles of rise and fall, at least a sample apart and from either end
     middles = (cycles.branch_first + cycles.branch_last).T // 2
     middles[0] = np.clip(middles[0], cycles.first + 1, cycles.last - 2)
@@ -2011,7 +2044,7 @@ def close_loops(
             measured[index, :, block] = _measure(
                 time[low:high], force[low:high], stretch[low:high], basis, middles[:, block] - low,
                 (cycles.branch_first[block] - low, cycles.branch_last[block] - low),
-                waveform, control, reach, turns[index], ways[index],
+                waveform, control, (on_rise, on_fall), turns[index], ways[index],
             )  # fmt: skip
 
     samples = (time, tension, strain, measured)
@@ -2051,20 +2084,25 @@ def close_loops(
                 noises[index][1 - answer], measured[index, of_driven : of_driven + 2]
             )
             tips = measured[index, of_driven + 3] / 2 if turns[index] == "sharp" else 0.0
-            for series, own, step, over_cycles, way, rows in zip(
-                (force, stretch), own_noise, steps, scatter, ways[index],
-                (_OF_TURNS, _OF_TURNS + 4), strict=True,
-            ):  # fmt: skip
+            rests = None
+            for channel in (1 - answer, answer):  # what answers is led by the rests of the other
+                series, step, rows = (
+                    (force, stretch)[channel],
+                    steps[channel],
+                    _OF_TURNS + 4 * channel,
+                )
+                own = own_noise[channel]
                 # the step of a converter lifts no extreme, and moves it alike in all cycles; the
                 # greatest of some ten noisy readings scatters, and the mean of many is free of it
                 missed = measured[index, rows + 3]
-                rounded = rounding_left(step, _OF_GREATEST * min(own, over_cycles))
+                rounded = rounding_left(step, _OF_GREATEST * min(own, scatter[channel]))
                 np.hypot(missed, _OF_BOTH_ENDS * rounded, out=missed)
-                _without_noise(
-                    measured[index, rows : rows + 4], series, cycles, reach=max(reach),
-                    turn=turns[index], noise=own, way=way,
-                    may_dwell=waveform == "other", of_corners=of_corners, driven=moved,
+                is_held = _without_noise(
+                    measured[index, rows : rows + 4], series, cycles, reach=max(on_rise, on_fall),
+                    turn=turns[index], noise=own, way=ways[index][channel],
+                    may_dwell=waveform == "other", of_corners=of_corners, rests=rests,
                 )  # fmt: skip
+                rests = (series, measured[index, rows : rows + 4]) if is_held else None
             top, foot, end_turn = measured[index, of_driven : of_driven + 3]
             tips *= ways[index][1 - answer]
             levels = np.stack([foot + tips, top - tips, end_turn + tips])
