@@ -1118,6 +1118,17 @@ def test_tension_that_relaxes_behind_noisy_corners_is_farthest_at_them(rounded, 
     assert found.strain_amplitude[0] == pytest.approx(0.02, rel=5e-4)
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_a_rest_that_is_found_a_reading_longer_or_shorter_is_a_part_of_the_wave(seed):
+    # ramps of 3 s, rests of 200 s at the valley, read every .2 s
+    rng = np.random.default_rng(seed)
+    time = rng.uniform(0, 0.2) + np.arange(0, 2100, 0.2)
+    wave = np.interp(time % 206.03, [0, 3, 6, 206.03], [-1, 1, -1, -1])
+    strain, load = (wave + 0.002 * rng.normal(size=time.size) for _ in range(2))
+    found = summary_of_log(time, 9000 + 4000 * load, 0.05 + 0.02 * strain, "position")
+    assert found.frequency[0] == pytest.approx(1 / 206.03, rel=1e-4)
+
+
 @pytest.mark.parametrize("rise", [0.05, 0.95])
 def test_strain_that_creeps_on_behind_a_fast_stroke_is_farthest_within_the_slow_one(rise):
     fine = np.arange(-3, 16, 1e-4)

@@ -215,14 +215,14 @@ def own_periods(
     return period, np.maximum(spread, jitter)
 
 
-_ALIKE = 0.02  # of a cycle, by which rests between cycles may differ and be a part of the wave
+_ALIKE = 0.02  # of a cycle with its rest, by which rests may differ and be a part of the wave
 
 
 def _follow(time: Floats, cycles: Cycles, duration: Floats) -> Bools:
     """Which cycles touch the one before them, or come after a rest that all of them have."""
     rest = take_samples(time, cycles.first[1:]) - take_samples(time, cycles.last[:-1])
     usual = float(np.median(rest)) if rest.size else 0.0
-    alike = np.abs(rest - usual) <= _ALIKE * float(np.median(duration))
+    alike = np.abs(rest - usual) <= _ALIKE * (usual + float(np.median(duration)))
     return np.asarray(touching(cycles) | np.concatenate([[False], alike]))
 
 
