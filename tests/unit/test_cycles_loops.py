@@ -440,6 +440,37 @@ def test_the_period_of_ramps_is_told_by_their_flanks():
     assert error < stated < 2 * error
 
 
+@pytest.mark.parametrize("growth", [0.02, -0.02])
+def test_a_sine_that_grows_has_the_stiffness_of_its_extremes(growth):
+    # each stroke has one amplitude; a spring with a Maxwell element of a fifth of it and .15 cycles
+    fine = np.arange(0, 16, 1e-3)
+    size = 0.8 + growth * (np.floor(fine) + 1)
+    before = size - growth * (fine % 1 < 0.5)
+    wave = np.where(
+        fine % 1 < 0.5,
+        (size - before) / 2 - (size + before) / 2 * np.cos(2 * np.pi * fine),
+        -size * np.cos(2 * np.pi * fine),
+    )
+    keep = np.exp(-1e-3 / 0.15)
+    answer = (
+        wave + 0.2 * wave**2 + 0.2 * lfilter([keep], [1, -keep], np.diff(wave, prepend=wave[0]))
+    )
+    last = 1000 * np.arange(3, 14)
+    true = []
+    for begin in last.tolist():
+        part = slice(begin, begin + 1001)
+        sides = [one[part] - np.linspace(0, one[begin + 1000] - one[begin], 1001)
+                 for one in (answer, wave)]  # fmt: skip
+        true.append(np.ptp(sides[0]) / np.ptp(sides[1]))
+    time = np.arange(0, 15.9, 0.01)
+    strain, load = np.interp(time, fine, wave), np.interp(time, fine, answer)
+    loops = close_loops(time, load[None], strain[None], cycles_of(100, 15, time.size),
+                        waveform="sinusoidal")  # fmt: skip
+    assert np.mean(loops.apparent_spring_constant[0, 3:14]) == pytest.approx(
+        np.mean(true), rel=1.2e-3
+    )
+
+
 def strokes_of_many_amplitudes(shape, seed, *, n_cycles=40, per_cycle=50):
     """Time, strain, its turns, and cycles, of half cycles to turns that are drawn anew each time."""
     rng = np.random.default_rng(seed)

@@ -863,12 +863,17 @@ def _shape_of_wave(
     some = known[
         np.unique(np.linspace(0, known.size - 1, min(known.size, _CYCLES_OF_SHAPE)).astype(int))
     ]
+    # a wave that grows within its cycle has harmonics of that, which lift its extremes
+    before, after = np.diff(amplitude, prepend=np.nan), np.diff(amplitude, append=np.nan)
+    lesser = np.where(np.abs(before) < np.abs(after), before, after)
+    growth = np.where(before * after > 0, lesser / amplitude, 0.0)
     phases, waves = [], []
     for one in some.tolist():
         first, last = int(cycles.first[one]), int(cycles.last[one])
         part = slice(first, last + 1, max((last - first) // _SAMPLES_OF_SHAPE, 1))
         phase = 2 * np.pi * (time[part] - time[part.start]) / period[one]
-        level = values[part] - mean[one] - drift[one] * (phase / (2 * np.pi) - 0.5)
+        place = phase / (2 * np.pi) - 0.5
+        level = (values[part] - mean[one] - drift[one] * place) / (1 + growth[one] * place)
         usable = np.isfinite(level)
         phases.append((phase - np.arctan2(sine[one], cosine[one]))[usable])
         waves.append(level[usable] / amplitude[one])
