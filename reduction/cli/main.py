@@ -239,7 +239,7 @@ def surface(
     spec: OptionalSpecPath = None,
     out: Annotated[
         Path | None,
-        typer.Option(help="Write tables and a page with figures here.", callback=written_here),
+        typer.Option(help="Write tables and a page with figures to this folder.", callback=written_here),
     ] = None,
     json: Json = False,
     quiet: Quiet = False,
@@ -675,7 +675,7 @@ def figures(
         Path | None,
         typer.Option(
             metavar="PROCESSED_DIR",
-            help="Draw own lines of this processed campaign on the same axes.",
+            help="Draw your own lines of this processed campaign on the same axes.",
             callback=_here_if_given,
         ),
     ] = None,
@@ -688,7 +688,7 @@ def figures(
         str | None, typer.Option("--units", help="si or us (psi, lbf); default: as the report.")
     ] = None,
 ) -> None:
-    """Draw the figures of the source reports from corrected numbers, with own data beside."""
+    """Draw the figures of the source reports from corrected numbers, with your own data."""
     with guarded(CommandOutput(json=json, quiet=quiet, units=units or "si")) as output:
         from reduction.cli.figures import draw_figures
 
@@ -781,7 +781,7 @@ def catalogue(
         bool, typer.Option("--list", help="List the quantities, and how many values each has.")
     ] = False,
     rebuild: Annotated[
-        bool, typer.Option("--rebuild", help="First remake the catalogue files from the archives.")
+        bool, typer.Option("--rebuild", help="Remake the catalogue files from the archives first.")
     ] = False,
     json: Json = False,
     quiet: Quiet = False,
@@ -874,7 +874,7 @@ def diff(
         Path | None,
         typer.Argument(
             metavar="B",
-            help="After: the same kind of thing.",
+            help="After: the same kind as A.",
             show_default=False,
             callback=_here_if_given,
         ),
