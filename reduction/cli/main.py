@@ -239,7 +239,9 @@ def surface(
     spec: OptionalSpecPath = None,
     out: Annotated[
         Path | None,
-        typer.Option(help="Write tables and a page with figures to this folder.", callback=written_here),
+        typer.Option(
+            help="Write tables and a page with figures to this folder.", callback=written_here
+        ),
     ] = None,
     json: Json = False,
     quiet: Quiet = False,
