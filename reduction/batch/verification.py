@@ -109,7 +109,7 @@ def verify_campaign(campaign: Campaign, folder: Path, *, progress: Progress) -> 
         n_tables, of_tables = _of_tables(folder, there, whole) if there or whole else (0, [])
         findings += of_tables
     remarks = (
-        f"{one} lies on the net and was not compared (--allow-remote fetches it)"
+        f"{one} is remote and was not compared (--allow-remote fetches it)"
         for one in sources.not_fetched
     )
     return _Verification(

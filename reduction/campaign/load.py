@@ -92,7 +92,7 @@ def _file_inside(path: Path, name: str, *, is_needed: bool = True) -> str:
     shown = repr(cut(name, 200))
     if is_address(name):
         raise in_toml(
-            path, "only the log of a test may be an address on the net",
+            path, "only the log of a test can be a URL",
             found=repr(shown_address(name)), needed="a file inside the folder of campaign.toml",
         )  # fmt: skip
     if any(map(_DEVICE.fullmatch, re.split(r"[/\\]", name))):

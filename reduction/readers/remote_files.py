@@ -54,7 +54,7 @@ def allowed(text: str, allow_remote: bool, *, what: str) -> bool:
     shown = repr(shown_address(text))
     if not allow_remote:
         raise SettingsError(
-            f"{what} is an address on the net, and none is fetched unasked", found=shown,
+            f"{what} is a URL, and URLs are refused without --allow-remote", found=shown,
             needed="--allow-remote (in Python allow_remote=True), or a file on this machine",
             hint="Allow it where you know who wrote the campaign.",
         )  # fmt: skip

@@ -150,7 +150,7 @@ def test_without_the_option_nothing_is_fetched(
     monkeypatch.setattr(bucket, "info", None)  # an attempt would be told
     done = command(*words, cwd=tmp_path)
     assert done.returncode == 2
-    assert f"{what} is an address on the net, and none is fetched unasked" in done.stderr
+    assert f"{what} is a URL, and URLs are refused without --allow-remote" in done.stderr
     assert "needed --allow-remote" in done.stderr
 
 
@@ -185,7 +185,7 @@ def test_a_table_is_never_an_address(here, tmp_path, name):
     else:
         text += f"strain = {{ {line} }}\n"
     (raw / "campaign.toml").write_text(text)
-    message = "only the log of a test may be an address on the net; found 's3://b/t.csv'; needed a"
+    message = "only the log of a test can be a URL; found 's3://b/t.csv'; needed a"
     with (
         pytest.raises(SettingsError, match=message),
         staged.staged_campaign(raw / "campaign.toml", allow_remote=True),

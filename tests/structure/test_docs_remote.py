@@ -19,7 +19,7 @@ def test_the_commands_with_the_option_are_named_and_so_are_those_without():
         for name, command in commands.items()
         if any("--allow-remote" in one.opts for one in command.params)
     }
-    part = PAGE.partition("## What may be an address")[2].partition("\n## ")[0]
+    part = PAGE.partition("## Where URLs are accepted")[2].partition("\n## ")[0]
     table, _, below = part.partition("\ncampaign.toml, ")
     assert {name for name in commands if f"`{name}`" in table} == having
     without = {name for name in commands if f"`{name}`" in below}

@@ -494,7 +494,7 @@ def test_the_campaigns_of_the_project_load(name):
 
 def test_a_file_on_the_net_is_refused_in_words(folder):
     words = (
-        "the log of test 'T' is an address on the net, and none is fetched unasked; found "
+        "the log of test 'T' is a URL, and URLs are refused without --allow-remote; found "
         "'https://example.org/T.csv'; needed --allow-remote"
     )
     with pytest.raises(SettingsError, match=words):

@@ -196,7 +196,7 @@ def test_an_address_of_this_machine_a_chained_one_or_another_kind_is_refused(add
 def test_nothing_is_fetched_unasked(site):
     address = site.address("raw/T.csv", user="ann:secret", query="signature=abcdef")
     message = (
-        f"^--processed is an address on the net, and none is fetched unasked; found "
+        f"^--processed is a URL, and URLs are refused without --allow-remote; found "
         f"'{site.address('raw/T.csv')}'; needed --allow-remote "
     )
     with pytest.raises(SettingsError, match=message):

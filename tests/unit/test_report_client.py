@@ -288,9 +288,7 @@ def test_what_the_software_did_with_a_test_stands_there_only_where_it_failed(
 def test_a_figure_that_cannot_be_drawn_is_named(client, rich_test, monkeypatch):
     monkeypatch.setattr(clientfigures, "can_be_drawn", lambda figure: "loops" not in figure.title)
     page = client(ReportDetails(), rich_test)
-    assert "Shown only on the page of the campaign: T-1: loops, new" in text_of(
-        page
-    )
+    assert "Shown only on the page of the campaign: T-1: loops, new" in text_of(page)
     assert "T-1: modulus, new" in page.partition("<svg")[2]
 
 
