@@ -25,8 +25,8 @@ collect_ignore = ["fuzz_readers.py"]
 
 # each takes a minute or more; the first makes the campaigns that others read, and would wait for
 LONGEST = (
-    "browser/test_campaign_pages.py", "docs/test_docs_build.py", "cli/test_run_workers.py",
-    "browser/test_design_values.py", "oracle/test_strangers_end_to_end.py",
+    "browser/test_campaign_pages.py", "cli/test_run_workers.py", "browser/test_design_values.py",
+    "oracle/test_strangers_end_to_end.py",
 )  # fmt: skip
 # files in which all is nightly but a few tests, which are slow
 NIGHTLY_BUT = {
@@ -57,12 +57,10 @@ NIGHTLY_BUT = {
         "test_an_export_of_a_remote_archive_is_that_of_a_local_one",
     ),
     "cli/test_run_rests_on.py": (
-        "test_another_load_cell_at_the_marks_makes_the_tests_that_rest_on_them_anew",
         "test_a_test_that_is_parted_into_steps_is_put_aside_and_nothing_answers_from_it",
     ),
     "faults/test_faults.py": (
         "test_a_call_that_fails_is_told_and_leaves_old_or_new_products[write-processed/short/.B.nc.-28-True-6]",
-        "test_what_a_killed_process_began_is_no_product",
         "test_the_order_in_which_products_become_new_is_known",
     ),
     "oracle/test_load_train.py": (

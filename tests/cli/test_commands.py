@@ -328,6 +328,7 @@ def test_whatever_a_product_says_is_part_of_what_makes_it_unchanged(reduced, com
     assert json.loads(done.stdout)["tests"][0]["status"] == "check"
 
 
+@pytest.mark.nightly
 @pytest.mark.slow
 def test_limits_make_no_archive_again_and_refuse_what_is_beyond_them(reduced, command):
     campaign = reduced / "raw" / "campaign.toml"

@@ -11,7 +11,7 @@ from reduction.batch.prediction_product import compare_archive
 from reduction.batch.run_campaign import run_campaign
 from reduction.campaign.load import load_campaign
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.nightly
 
 RAW = Path(__file__).parents[2] / "raw" / "hose-synthetic"
 LBF, INCH, LENGTH = 4.4482216152605, 0.0254, 96.0

@@ -38,6 +38,7 @@ def test_a_campaign_gives_one_rising_curve_of_all_its_tests(command, synthetic):
     assert len(found["piece"]) == len(strain) == len(found["tension_standard_uncertainty"])
 
 
+@pytest.mark.nightly
 def test_the_windows_are_inside_its_uncertainty(command, synthetic):
     found = composite(command, synthetic.processed, "--specimen", "used", "--branch", "ascending")
     for test in ("T-1", "T-2", "T-4", "T-6"):
@@ -161,6 +162,7 @@ def test_bad_input_is_named(command, tmp_path, arguments, status, told):
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.nightly
 def test_bad_archives_are_named(command, synthetic, static, tmp_path):
     folder, surfaces = synthetic.processed, tmp_path / "surfaces.nc"
     xr.Dataset(attrs={"schema_version": SCHEMA_VERSION}).to_netcdf(surfaces)
@@ -235,6 +237,7 @@ def test_what_a_composite_cannot_be_asked_at_the_export(command, tmp_path, argum
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.nightly
 def test_loops_begin_at_their_own_tension_but_for_what_the_rule_of_rising_moved(command, synthetic):
     """T-6 is the only window above 2.4: what its first node is off by is told, and is all of it."""
     with xr.open_dataset(synthetic.processed / "T-6.nc", decode_timedelta=False) as archive:
@@ -252,6 +255,7 @@ def test_loops_begin_at_their_own_tension_but_for_what_the_rule_of_rising_moved(
     assert "T-6 cycles" in row and f"moved {change:+.3g} by the rule of rising" in row
 
 
+@pytest.mark.nightly
 def test_the_first_loading_of_a_test_is_no_certain_neighbour_of_its_loops(command, synthetic):
     """It has about twice the tension of the loops that begin there, and says so."""
     found = composite(command, synthetic.processed, "--specimen", "new")

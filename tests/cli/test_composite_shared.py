@@ -11,7 +11,7 @@ import pytest
 from reduction.batch.run_campaign import run_campaign
 from reduction.campaign.load import load_campaign
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.nightly
 
 RAW = Path(__file__).parents[2] / "raw" / "tmt-synthetic"
 TESTS = ("T-1", "T-2")

@@ -44,6 +44,7 @@ def change(path, name, by, at=None):
     return float(before), float(values[at])
 
 
+@pytest.mark.nightly
 def test_what_is_equal_ends_with_0(made, command):
     for options in ((), ("--exact",)):
         done = command("diff", "processed", f"processed/{NAME}", *options, cwd=made)
@@ -51,6 +52,7 @@ def test_what_is_equal_ends_with_0(made, command):
         assert done.stdout.startswith("0 of ") and done.stdout.count("\n") == 1
 
 
+@pytest.mark.nightly
 def test_the_first_line_names_the_worst(place, command):
     change(place / "changed" / NAME / "T-1.nc", "tangent_modulus", lambda x, u: x + 4.2 * u)
     change(place / "changed" / NAME / "T-1.nc", "test_frequency", lambda x, u: x - 0.6 * u)
@@ -70,6 +72,7 @@ def test_the_first_line_names_the_worst(place, command):
     assert rows[1].split()[-6:] == "-0.6 u 2 1 0 0".split()
 
 
+@pytest.mark.nightly
 def test_units_are_those_that_were_asked_for(place, command):
     before, _ = change(
         place / "changed" / NAME / "T-1.nc", "branch_tension", lambda x, u: x + 9 * u
@@ -80,6 +83,7 @@ def test_units_are_those_that_were_asked_for(place, command):
     assert float(shown) == pytest.approx(before / 4.4482216152605, rel=1e-2)
 
 
+@pytest.mark.nightly
 def test_a_bit_is_no_move_unless_it_is_asked_for(place, command):
     archive = place / "changed" / NAME / "T-2.nc"
     before, after = change(archive, "test_frequency", lambda x, u: np.nextafter(x, 2 * x))
@@ -119,6 +123,7 @@ def test_the_answer_in_json_has_every_quantity(place, command):
     assert (found["moved"], found["history"], found["tests"]) == ([], [], [])
 
 
+@pytest.mark.nightly
 def test_quiet_says_nothing_and_ends_alike(place, command):
     change(place / "changed" / NAME / "T-1.nc", "test_mean_strain", lambda x, u: x + 2 * u)
     done = command("diff", "processed", "changed", "--quiet", cwd=place)

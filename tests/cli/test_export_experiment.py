@@ -96,6 +96,7 @@ def test_what_an_experiment_cannot_answer_is_refused(
     assert not out.exists()
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("lost", ["archive", "statement"])
 def test_an_experiment_without_its_slow_pull_is_refused(nylon_campaign, command, tmp_path, lost):
     folder = tmp_path / "nylon"

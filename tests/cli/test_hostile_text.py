@@ -26,6 +26,7 @@ def test_a_hostile_file_is_refused_soon_and_in_little_memory(case, command, tmp_
     assert not complaints(case, ended)
 
 
+@pytest.mark.nightly
 def test_a_long_line_in_a_process_with_little_memory(tmp_path):
     ended = alone(*one_line(tmp_path, 50_000_000), cwd=tmp_path, ceiling=6 << 30, deadline=120)
     assert ended.status == 3
@@ -33,6 +34,7 @@ def test_a_long_line_in_a_process_with_little_memory(tmp_path):
     assert ended.megabytes < 500
 
 
+@pytest.mark.nightly
 def test_ten_gigabytes_of_nothing_in_a_process_of_their_own(tmp_path):
     ended = alone(*sparse(tmp_path, 10**10), cwd=tmp_path, ceiling=6 << 30, deadline=120)
     assert ended.status == 3

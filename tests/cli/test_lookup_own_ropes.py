@@ -195,6 +195,7 @@ def test_a_frequency_is_interpolated_by_its_logarithm():
     assert evaluate_levels(of, np.array([[0.01]]), "rope").value == pytest.approx([1500.0])
 
 
+@pytest.mark.nightly
 def test_export_writes_the_level_that_was_tested(command, line, rope, tmp_path):
     is_there = importlib.util.find_spec("moordyn") is not None
     levels = ("--frequency", "0.3 Hz", "--mean-tension", "21 %RBS", "--tension-amplitude")
@@ -215,6 +216,7 @@ def test_export_writes_the_level_that_was_tested(command, line, rope, tmp_path):
         assert done.returncode == 0, done.stderr
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("quantity", ["K_ap", "hysteresis_energy", "loss_factor"])
 def test_the_levels_of_one_run_of_an_experiment_may_be_left_out(tmp_path_factory, quantity):
     made = run_once("nylon-synthetic", shared_by_processes(tmp_path_factory)).processed

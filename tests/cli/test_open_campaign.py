@@ -24,6 +24,7 @@ def test_the_examples_of_the_page_give_what_it_shows(synthetic):
     assert failed == 0
 
 
+@pytest.mark.nightly
 @pytest.mark.skipif(find_spec("dask") is None, reason="Dask is not installed")
 def test_the_dask_example_gives_the_highest_stress(synthetic):
     (block,) = (block for block in BLOCKS if not block.startswith(">>>"))

@@ -8,7 +8,7 @@ import pytest
 from hiddenpackages import environment_with, modules_hidden
 from shortcampaign import write_short
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.nightly
 
 EVERY_MODULE = """
 import importlib, json, pkgutil, reduction

@@ -188,6 +188,7 @@ def test_a_surface_of_runs_is_the_polynomial_that_made_them(tmp_path):
     assert float(found.sigma[0]) == pytest.approx(np.sqrt(2 / 5))
 
 
+@pytest.mark.nightly
 def test_a_predicted_hose_is_that_of_the_command(tmp_path):
     text = (ROOT / "docs" / "predictions.md").read_text(encoding="utf-8")
     spec = tmp_path / "hose.toml"

@@ -73,6 +73,7 @@ def pull_of(done, name):
         return json.loads(archive.attrs["settings"])["quasi_static"]["line-1"]
 
 
+@pytest.mark.nightly
 def test_a_changed_pull_does_not_fit_runs_that_hold_the_one_before(folder):
     other_pull(folder)
     done, said = run(folder, ["Q01"])

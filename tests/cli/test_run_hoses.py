@@ -241,6 +241,7 @@ def test_the_uncertainty_of_the_length_scales_every_strain_of_a_comparison(run):
     np.testing.assert_allclose(np.abs(error), 0.05 / 96 * measured.strain, rtol=1e-6, atol=1e-12)
 
 
+@pytest.mark.nightly
 def test_an_archive_of_some_cycles_is_compared_by_these_and_says_so(run, tmp_path):
     plan = load_campaign(RAW / "campaign.toml")
     whole = compare_archive(
@@ -307,6 +308,7 @@ def test_a_comparison_waits_for_a_test_that_is_not_reduced_yet(tmp_path):
     )
 
 
+@pytest.mark.nightly
 def test_a_test_that_is_not_as_it_would_be_made_now_is_waited_for(run, tmp_path):
     made_already(run, tmp_path)
     changed = copied(tmp_path, lambda text: uncalibrated(text).replace('"96 in"', '"80 in"', 1))

@@ -135,6 +135,7 @@ def test_the_zero_that_is_named_puts_it_right(tethers, command):
     assert "zero" not in done.stdout and "A: load at slack rests: new " in done.stdout
 
 
+@pytest.mark.nightly
 def test_a_load_cell_with_the_wrong_sign_keeps_that_advice(tethers, command):
     folder, rewrite = tethers
     rewrite(lambda time, place, new, used: (time, place, -new, used))
@@ -268,6 +269,7 @@ def run_thinned(command, name, folder, factor):
     return checked, done
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize(("name", "factor"), [("nylon-synthetic", 30), ("tmt-synthetic", 80)])
 def test_a_log_too_coarse_for_its_cycles_is_refused_by_check_as_by_run(
     command, tmp_path, name, factor
@@ -311,6 +313,7 @@ def test_a_folder_that_netcdf_cannot_name_is_refused_before_anything_is_reduced(
     assert not folder.exists()
 
 
+@pytest.mark.nightly
 def test_errors_stand_once_in_one_file_and_a_run_that_failed_names_no_products(tethers, tmp_path):
     for name in ("A.csv", "B.csv"):
         (tmp_path / "small" / name).write_text("no log\n")

@@ -171,6 +171,7 @@ def test_surfaces_give_back_the_line_at_the_centre_and_the_edges(
     assert value.to_numpy() == pytest.approx(expected.to_numpy(), rel=tolerance)
 
 
+@pytest.mark.nightly
 def test_own_surfaces_stand_beside_the_k_1_and_tau_of_their_k_ap_and_h(run, truth, command):
     levels = ("--frequency", "0.3 Hz", "--mean-tension", "21 %RBS", "--tension-amplitude")
     ask = ("lookup", run.processed, "--line", "nylon", "--quantity", "K_1", *levels, "8.5 %RBS")

@@ -134,6 +134,7 @@ def test_help_is_drawn_at_a_terminal_and_plain_and_whole_in_a_pipe(at_terminal):
     assert max(map(len, plain.splitlines())) <= 80
 
 
+@pytest.mark.nightly
 def test_sentences_are_broken_between_words_and_what_is_copied_is_not_broken(at_terminal, tmp_path):
     line = "rubber-tether-new-T-1", "--quantity", "tangent_modulus", "--strain", "100 %"
     status, said = at_terminal("lookup", *line, columns=60)

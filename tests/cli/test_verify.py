@@ -108,6 +108,7 @@ def test_a_folder_that_may_not_be_looked_into_is_no_empty_one(place, monkeypatch
         processed_folders(place / "processed")
 
 
+@pytest.mark.nightly
 @pytest.mark.skipif(os.name != "posix", reason="needs a pipe with a name")
 def test_a_pipe_among_the_archives_is_a_finding_and_is_not_waited_for(place):
     folder = place / "processed" / NAME

@@ -15,7 +15,7 @@ from reduction.archive.open import open_archive
 from reduction.batch.run_campaign import run_campaign
 from reduction.campaign.load import load_campaign
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.nightly
 
 RAW = Path(__file__).parents[2] / "raw" / "nylon-synthetic"
 LBF = 4.4482216152605

@@ -8,6 +8,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
+import pytest
 import xarray as xr
 from examples import examples
 from export_lines import line
@@ -119,6 +120,7 @@ def test_every_mooring_code_is_read_back():
     assert {*WITH_A_TABLE_BESIDE, *ONE_TEXT, "whoi-cable", "raft"} == set(FORMS)
 
 
+@pytest.mark.nightly
 @settings(max_examples=examples(12), deadline=None)
 @given(curve=curves())
 def test_cable_has_a_table_and_a_rising_function_with_two_derivatives(curve):

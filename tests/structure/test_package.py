@@ -75,6 +75,7 @@ def built(tmp_path_factory):
     ]
 
 
+@pytest.mark.nightly
 def test_two_builds_have_the_same_bytes(built):
     first, second = (
         {name: hashlib.sha256(path.read_bytes()).hexdigest() for name, path in one.items()}

@@ -171,6 +171,7 @@ def test_nothing_is_said_of_what_specimens_differ_in(surfaces):
     assert alone.material == ""
 
 
+@pytest.mark.nightly
 def test_specimens_of_an_experiment_are_sought_in_the_archives_of_all_tests(
     folder, surfaces, tmp_path
 ):
@@ -188,6 +189,7 @@ def test_specimens_of_an_experiment_are_sought_in_the_archives_of_all_tests(
     assert line.condition == ""
 
 
+@pytest.mark.nightly
 def test_surfaces_of_tethers_refuse_zero_tension(folder, tmp_path):
     """A synthetic campaign, whose specimen is called a tether."""
     rope = lines_of_source(str(folder / "surfaces.nc"))[0]
