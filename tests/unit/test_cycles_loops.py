@@ -587,7 +587,8 @@ def test_tension_that_relaxes_in_the_noise_of_a_dwell_is_not_at_its_mean_there(s
     # the mean over a dwell is 11 % less than where it begins
     found = summarise_amplitude(loops, area=[1e-3])
     off = abs(found.tension_amplitude[0] - true)
-    assert off < 2 * found.uncertainty["tension_amplitude"][0] < 0.04 * true
+    # of noise of a tenth
+    assert off < 2 * found.uncertainty["tension_amplitude"][0] < 0.07 * true
     assert off < 0.03 * true
 
 
@@ -1147,6 +1148,59 @@ def test_tension_that_relaxes_behind_noisy_corners_is_farthest_at_them(rounded, 
     spread = found.uncertainty["tension_amplitude"][0]
     assert abs(found.tension_amplitude[0] - 4000 * half) < 2 * spread < 0.006 * 4000
     assert found.strain_amplitude[0] == pytest.approx(0.02, rel=5e-4)
+
+
+@pytest.mark.parametrize("noise", [0.01, 0.02])
+def test_corners_in_dense_noise_are_held_by_the_interval_of_the_amplitude(noise):
+    off = []
+    for seed in range(4):
+        rng = np.random.default_rng(seed)
+        turn = np.arange(rng.uniform(0, 1), 2000.3 * 12) / 2000.3
+        wave = np.interp(turn % 1, [0, 0.5, 1], [-1, 1, -1])
+        strain, load = (wave + noise * rng.normal(size=turn.size) for _ in range(2))
+        load, strain = 9000 + 4000 * load, 0.05 + 0.02 * strain
+        stands = find_standstills(10 * turn, strain, load[None], settings=PhaseSettings())
+        cycles = find_cycles(10 * turn, strain, load[None], stands, settings=CycleSettings())
+        loops = close_loops(10 * turn, load[None], strain[None], cycles, waveform="triangular")
+        found = summarise_amplitude(loops, area=[1e-4])
+        for name, true in (("strain_amplitude", 0.02), ("tension_amplitude", 4000)):
+            spread = found.uncertainty[name][0]
+            assert spread < 0.5 * noise * true
+            off.append((getattr(found, name)[0] - true) / spread)
+    assert abs(np.mean(off)) < 1.6
+    assert np.mean(np.abs(off) < 2) > 0.8
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_strain_that_has_crept_out_in_a_noisy_rest_is_not_at_its_greatest_reading(seed):
+    # ramps of 3 s, rests of 200 s; a Kelvin element of 2 s
+    fine = np.arange(-406, 406 * 10, 0.01)
+    wave = np.interp(fine % 406, [0, 200, 203, 403, 406], [-1, -1, 1, 1, -1])
+    keep = np.exp(-0.01 / 2)
+    strain = wave + 0.1 * lfilter([1 - keep], [1, -keep], wave)
+    half, rng = np.ptp(strain[-40600:]) / 2, np.random.default_rng(seed)
+    time = rng.uniform(0, 0.2) + np.arange(0, 406 * 9.9, 0.2)
+    load, strain = (
+        np.interp(time, fine, one) + 0.002 * rng.normal(size=time.size) for one in (wave, strain)
+    )
+    found = summary_of_log(time, 9000 + 4000 * load, 0.05 + 0.02 * strain, "load")
+    assert found.strain_amplitude[0] == pytest.approx(0.02 * half, rel=5e-4)
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_loops_of_ramps_that_begin_slowly_between_rests_are_not_cut_off(seed):
+    # ramps of 3 s that begin and end over .5 s, rests of 5 s; a Maxwell element of .5 s
+    step, rng = 2.5e-3, np.random.default_rng(seed)
+    fine = np.arange(-16, 16 * 9, step)
+    wave = np.interp(fine % 16, [0, 3, 8, 11, 16], [-1, 1, 1, -1, -1])
+    wave = np.convolve(np.pad(wave, 200, mode="edge"), np.full(200, 1 / 200), "same")[200:-200]
+    keep = np.exp(-step / 0.5)
+    answer = wave + 0.5 * lfilter([keep], [1, -keep], np.diff(wave, prepend=wave[0]))
+    late = slice(fine.size - 6400 - 1200, fine.size - 1199)
+    true = np.trapezoid(4000 * answer[late], 0.02 * wave[late])
+    load, strain = (one + 0.002 * rng.normal(size=fine.size) for one in (answer, wave))
+    found = summary_of_log(fine + 16, 9000 + 4000 * load, 0.05 + 0.02 * strain, "position")
+    assert found.hysteresis_energy[0] == pytest.approx(true, rel=2.5e-3)
 
 
 @pytest.mark.parametrize("seed", range(3))

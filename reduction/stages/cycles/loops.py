@@ -1283,14 +1283,19 @@ def _readings_at_turns(
     after_peak = np.minimum(branch_first[:, 1] + on_fall, end)
 
     def extreme(of: np.ufunc, low: Integers, high: Integers) -> Floats:
-        pairs = np.column_stack([np.maximum(low, begin), np.minimum(high, end)]).ravel()
+        # within the cycle, and the rests before and after it
+        low = np.maximum(low, np.append(begin[:1], end[:-1]))
+        high = np.minimum(high, np.append(begin[1:], end[-1:]))
         stop = int(end[-1])
-        found = of.reduceat(values[:stop], np.minimum(pairs[:-1], stop - 1))[::2]
-        return np.asarray(of(found, values[np.minimum(high, end)]))
+        pairs = np.column_stack([low, high]).ravel()[:-1]
+        found = of.reduceat(values[:stop], np.minimum(pairs, stop - 1))[::2]
+        return np.asarray(of(found, values[high]))
 
+    # what noise adds is that of both sides of a turn, also where one of them is a rest
+    rest = 0 if turn == "sharp" else values.size
     top = extreme(np.maximum, peak - on_rise, after_peak)
-    first = extreme(np.minimum, begin, begin + on_rise)
-    last = extreme(np.minimum, end - on_fall, end)
+    first = extreme(np.minimum, begin - rest, begin + on_rise)
+    last = extreme(np.minimum, end - on_fall, end + rest)
     missed = np.zeros(top.size)
     if turn == "sharp":
         # what creeps while its channel rests is farthest after the turn that ends the cycle
@@ -1792,19 +1797,20 @@ def _without_noise(
             np.hypot(missed, _EITHER_WAY * above / 2, out=missed)
             return True
     noise = _within_scatter(noise, top)
+    leaves, apart = cycles.branch_first[:, 1], cycles.first[1:] - cycles.last[:-1]
+    foot = cycles.first[touch]
+    if not touch.size:  # beside the first is an approach
+        foot = _farther(-way * values, cycles.first, cycles.last)[1:]
     (of_peak, peak_falls), (of_valley, valley_falls) = (
-        noise_in_extreme(values, turn, reach=reach, sign=sign, noise=noise)
-        for turn, sign in (
-            (_farther(way * values, peak, cycles.branch_first[:, 1]), way),
-            (
-                cycles.first[touch]
-                if touch.size
-                else _farther(-way * values, cycles.first, cycles.last),
-                -way,
-            ),
+        noise_in_extreme(values, turn, reach=reach + int(np.median(rest)), sign=sign, noise=noise)
+        for turn, sign, rest in (
+            (_farther(way * values, peak, leaves), way, leaves - peak),
+            (foot, -way, np.zeros(1) if touch.size or not apart.size else apart),
         )
     )
     either = _EITHER_WAY * (of_peak + of_valley) / 2
+    # what a corner may lose where the mean turn is smoothed
+    of_smoothing = _EITHER_WAY * noise / 2
     if of_corners and 0 < noise < _LIKE_CORNERS * of_corners * np.nanmedian(np.abs(top - first)):
         np.hypot(missed, either, out=missed)
         return False
@@ -1822,8 +1828,8 @@ def _without_noise(
         ) / np.sqrt(np.isfinite(ahead).sum()):
             level += sign * np.where(np.isfinite(ahead), ahead, more)
             np.hypot(missed, more / 2, out=missed)  # a corner may be rounded within the noise
-        elif blunt:
-            np.hypot(missed, either / np.sqrt(2), out=missed)
+        else:
+            np.hypot(missed, (either if blunt else of_smoothing) / np.sqrt(2), out=missed)
     return False
 
 
@@ -2016,7 +2022,7 @@ def close_loops(
             time, moved, cycles, duration, noise=reading_noise(moved)
         )
     if waveform != "sinusoidal":
-        cycles = _into_rests(cycles, moved)
+        cycles = _into_rests(cycles)
     measured = empty_like(tension, shape=(tension.shape[0], len(MEASURED), cycles.n_cycles))
     noises = [(reading_noise(force), reading_noise(stretch)) for force, stretch in
               zip(tension, strain, strict=True)]  # fmt: skip
@@ -2163,32 +2169,28 @@ def close_loops(
     return Loops(**tables, uncertainty=uncertainty)
 
 
-def _into_rests(cycles: Cycles, driven: Floats) -> Cycles:
-    """Cycles that rests part, begun and ended as far inside these as noise hides of their ramps.
+def _into_rests(cycles: Cycles) -> Cycles:
+    """Cycles that rests part, begun and ended as far inside these as noise may hide of their ramps.
 
-    Within the tolerance of a rest the first readings of a ramp belong to it, and a loop without
-    them is cut off at its ends.
+    Within the tolerance of a rest the first readings of a ramp belong to it, many of one that
+    begins slowly, and a loop without them is cut off at its ends.
 
     Examples
     --------
-    Ramps of 100 readings between rests, found 3 readings late and early in noise of .5 %:
+    Ramps of 100 readings between rests, found 3 readings late and early:
 
-    >>> wave = np.interp(np.arange(900) % 300, [0, 50, 150, 200, 300], [0, 0, 1, 1, 0])
-    >>> noisy = wave + np.random.default_rng(1).normal(0, 0.005, 900)
     >>> ends = np.array([[53, 200], [353, 500], [653, 800]])
     >>> to = np.array([[150, 297], [450, 597], [750, 897]])
     >>> cycles = Cycles(ends[:, 0], to[:, 1], ends, to, np.ones((3, 2)), np.zeros(900),
     ...     np.zeros(900), np.zeros(900), 0.1)
-    >>> found = _into_rests(cycles, noisy)
+    >>> found = _into_rests(cycles)
     >>> print(found.first, found.last)
-    [ 53 348 648] [302 602 897]
+    [ 53 340 640] [310 610 897]
     """
     if not _are_parted(cycles):
         return cycles
-    begin, end = cycles.branch_first[:, 0], cycles.branch_last[:, 0]
-    ramp = take_samples(driven, end) - take_samples(driven, begin)
-    step = float(np.nanmedian(np.abs(ramp) / (end - begin)))
-    reach = 1 + int(np.ceil(_ON_PLATEAU * reading_noise(driven) / step)) if step > 0 else 1
+    ramp = int(np.median(cycles.branch_last - cycles.branch_first, axis=0).min())
+    reach = 1 + ramp // _WIDER // 2
     # no farther than the middle of a rest; before the first cycle and after the last may be a ramp
     room = np.minimum(reach, (cycles.first[1:] - cycles.last[:-1]) // 2)
     first = cycles.first - np.append(0, room)

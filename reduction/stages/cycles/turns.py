@@ -185,7 +185,10 @@ def noise_in_extreme(
     shape = np.convolve(padded, np.full(width, 1 / width), mode="valid")
     top = int(np.argmax(shape[1:-1])) + 1
     fall = float(shape[top] - min(shape[top - 1], shape[top + 1]))
-    return noise * _excess_of_greatest((shape.max() - shape) / noise), fall
+    # the greatest of a mean over some turns is itself too great
+    own = noise / np.sqrt(some.size * width)
+    highest = shape.max() - own * _excess_of_greatest((shape.max() - shape) / own)
+    return noise * _excess_of_greatest((highest - shape) / noise), fall
 
 
 Turn = Literal["sharp", "hidden", "rounded"]
