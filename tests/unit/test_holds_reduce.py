@@ -495,6 +495,26 @@ def test_a_fast_term_that_a_line_cuts_short_is_no_load_that_comes_late(late, is_
     assert (_late_load(hold, 6520.0 - 250 * is_late) is not None) is is_late
 
 
+@pytest.mark.parametrize(
+    ("step", "ramp", "slowness"), [(0.1, 5.0, 0.4), (0.2, 1.0, 0.0), (0.02, 1.0, 0.4)]
+)
+def test_relaxation_over_decades_is_covered_at_the_end_of_its_ramp(step, ramp, slowness):
+    """Maxwell elements of 0.02 s to 1e5 s, pulled at one rate, in noise of a thousandth."""
+    times = np.logspace(-1.7, 5, 20)
+    size = 6000 * times**-slowness / np.sum(times**-slowness)
+    size = size * times / ramp * -np.expm1(-ramp / times)
+    true, away = 3000 + size.sum(), []
+    for seed in range(40):
+        rng = np.random.default_rng(seed)
+        since = rng.uniform(0, step) + np.arange(0, 120, step)
+        read = 3000 + np.exp(-since[:, np.newaxis] / times) @ size
+        read += rng.normal(0, true / 1000, since.size)
+        level = level_at_end(since, read, noise=true / 1000, shortest=ramp / 20)
+        away.append((level.value - true) / level.standard_uncertainty)
+    assert abs(np.mean(away)) < 0.8
+    assert np.mean(np.abs(away) < 1.96) > 0.92
+
+
 @pytest.mark.parametrize(("fast", "slow"), [((10, 2), (30, 60)), ((15, 3), (20, 40))])
 def test_noise_that_hides_a_fast_term_leaves_the_initial_tension_without_much_of_a_bias(fast, slow):
     """Two terms of some newtons in noise of 4 N, of 200 generated holds."""

@@ -24,8 +24,9 @@ FEWEST_ON_LINE, MOST_ON_LINE = 3, 1 << 14
 
 _GROWTH = 1.4
 
-# standard uncertainties together: those of lines through the same first samples differ by less
-_AGREEING = 1.0
+# standard uncertainties together: lines through the same first samples, of which many are tried,
+# differ by less, and one that stops at noise has the noise of a few samples
+_AGREEING = 2.0
 
 _LARGEST_SPREAD = 3.0  # of so many fewer samples in noise; more is a line across a ringing
 
@@ -155,12 +156,12 @@ def level_at_end(
     -----
     Method of [1]_: lines through 3, 5, 7, 10, ... samples, each 1.4 times as long, until the
     value at zero of one differs from that of any before by more than their standard
-    uncertainties together.  That of a third as many samples as the last before it is taken, and
-    what the two differ by is carried: several times its bias where a series bends evenly, and of
-    the size of its bias where the series bends most at its beginning, as a relaxation over
-    decades of time does.  A machine that rings scatters its first samples more than their noise:
-    the scatter about a line counts where it is greater.  Readings of one code are rounded alike:
-    the rounding of a line is that of one reading, and of as many as it passes codes, of which the
+    uncertainties together, twice.  Of the last before it and that of a third as many samples the
+    shorter is taken, less half of what they differ by, all of which is carried: of that its bias
+    is an eighth where a series bends evenly, and as much or more where the series bends most at
+    its beginning, as a relaxation over decades of time does.  A machine that rings scatters its
+    first samples more than their noise: the scatter about a line counts where it is greater.
+    Readings of one code are rounded alike: the rounding of a line is that of one reading, and of as many as it passes codes, of which the
     end of a line has four times the variance of their mean.
 
     Examples
@@ -205,7 +206,7 @@ def level_at_end(
         count = min(int(np.ceil(_GROWTH * count)), n_samples)
     bias = found[-1].value - chosen.value
     return _LevelAtEnd(
-        origin + chosen.value,
+        origin + chosen.value - bias / 2,
         float(np.hypot(chosen.standard_uncertainty, bias)),
         chosen.slope,
         chosen.n_samples,

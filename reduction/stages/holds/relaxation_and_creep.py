@@ -762,9 +762,9 @@ def _hold_ends(hold: Hold) -> _Ends:
     # it has not settled at once: the tension is somewhere between the two
     if SIGNIFICANT * u_initial < above < LARGEST_DISAGREEMENT * first.value:
         u_initial = float(np.hypot(u_initial, above / np.sqrt(3)))
-    led_to = hold.ramp_leads_to - SIGNIFICANT * hold.tension_noise - first.value
+    led_to = hold.ramp_leads_to - first.value
     # of a piece that has broken the ramp says nothing
-    if SIGNIFICANT * u_initial < led_to < first.value:
+    if SIGNIFICANT * hold.tension_noise < led_to < first.value:
         u_initial = float(np.hypot(u_initial, led_to / np.sqrt(3)))
     drop = float(_relaxation_drop(first.value, final))
     uncertainty = float(np.hypot(u_final, (1 - drop) * u_initial) / first.value)
@@ -847,7 +847,8 @@ class _Motion:
 
 def _motion_of(hold: Hold) -> _Motion:
     """Motion of the crosshead since the end of the ramp, on blocks in the logarithm of time."""
-    noise = _noise_of(hold.position)
+    # of few readings the noise is known to a few over the root of their number
+    noise = _noise_of(hold.position) * (1 + 3 / np.sqrt(hold.position.size))
     since = shifted(hold.time, hold.ramp_end_time)
     begin = level_at_end(since, hold.position, noise=noise, step=_step_of(hold.position))
     later = int(np.searchsorted(since, 0.0, side="right"))
@@ -1149,7 +1150,9 @@ def _ramp_leads_to(
     if known.size < _FEWEST_ON_RAMP:
         return float("nan")
     load, place = tension[known[-_FEWEST_ON_RAMP:]], position[known[-_FEWEST_ON_RAMP:]]
-    if not np.abs(np.diff(place)).min() > 0:
+    # readings that noise sets apart as far as the ramp does lead nowhere
+    noise = reading_noise(position[first : first + known.size])
+    if not np.abs(np.diff(place)).min() > SIGNIFICANT * noise:
         return float("nan")
     earlier, slope = np.diff(load) / np.diff(place)
     ahead = held_at - place[-1]
