@@ -5,6 +5,7 @@ import pytest
 from scipy.signal import lfilter
 
 from reduction.record.errors import DataError
+from reduction.stages.moduli import splice_slip
 from reduction.stages.moduli.splice_slip import _ramp_of, find_steps
 
 NOISE = 0.3
@@ -170,3 +171,17 @@ def test_a_missing_value_is_refused():
 def test_a_step_without_extent_is_refused():
     with pytest.raises(DataError, match="a step has no extent; found 0"):
         _ramp_of(10, onset=3, extent=0)
+
+
+def test_the_background_of_a_series_is_factored_once_and_leaves_a_ramp_in():
+    count = np.arange(1.0, 2001)
+    series = 5000 - 300 * np.log10(count)
+    splice_slip._background.cache_clear()
+    find_steps(5 * np.round(series / 5), false_alarm=1e-3)
+    assert splice_slip._background.cache_info().misses == 1
+    # of a logarithm, a line, a softening and a step nothing is left but the step
+    ramp = 1.0 * (count > 1200)
+    left = splice_slip._without_background(
+        series - 0.01 * count + 40 * np.exp(-(count - 1) / 8) - 7 * ramp, ramp[None]
+    )
+    np.testing.assert_allclose(left, -7 * ramp, atol=1e-6)

@@ -161,8 +161,9 @@ def level_at_end(
     is an eighth where a series bends evenly, and as much or more where the series bends most at
     its beginning, as a relaxation over decades of time does.  A machine that rings scatters its
     first samples more than their noise: the scatter about a line counts where it is greater.
-    Readings of one code are rounded alike: the rounding of a line is that of one reading, and of as many as it passes codes, of which the
-    end of a line has four times the variance of their mean.
+    Readings of one code are rounded alike: the rounding of a line is that of one reading, and of
+    as many as it passes codes, of which the end of a line has four times the variance of their
+    mean.
 
     Examples
     --------

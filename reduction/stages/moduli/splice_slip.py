@@ -35,7 +35,7 @@ References
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, lru_cache
 from itertools import compress
 
 import numpy as np
@@ -180,22 +180,34 @@ def _sums_from(level: Floats) -> tuple[Floats, Floats]:
     return ones, slopes
 
 
+@lru_cache(maxsize=2)
+def _background(n_samples: int) -> Floats:
+    """Orthonormal columns that span what creep and softening look like over a series."""
+    count = np.arange(1.0, n_samples + 1)
+    times = 2.0 ** np.arange(0, max(1, int(np.log2(n_samples / 8)) + 1))
+    columns = [np.ones(n_samples), count / n_samples, np.log(count)]
+    columns += [np.exp(-(count - 1) / time) for time in times]
+    return np.linalg.qr(np.stack(columns, axis=1))[0]
+
+
 def _without_background(values: Floats, ramps: Floats | None = None) -> Floats:
     """Series less what creep and softening look like over the whole of it.
 
     Only a smooth function of log-like form is taken out, so a step remains a step; known
     ``ramps``, shape (n_steps, n_samples), are fitted beside it and stay in.
     """
-    n_samples = values.size
-    count = np.arange(1.0, n_samples + 1)
-    times = 2.0 ** np.arange(0, max(1, int(np.log2(n_samples / 8)) + 1))
-    columns = [np.ones(n_samples), count / n_samples, np.log(count)]
-    columns += [np.exp(-(count - 1) / time) for time in times]
-    smooth = np.stack(columns, axis=1)
-    basis = smooth if ramps is None else np.concatenate([smooth, ramps.T], axis=1)
-    size = np.linalg.lstsq(basis, values)[0][: smooth.shape[1]]
-    residual: Floats = values - smooth @ size
-    return residual
+    base = _background(values.size)
+
+    def smooth(rows: Floats) -> Floats:
+        # einsum, not matrix products: their last digits depend on the number of threads
+        share = np.einsum("...i,ij->...j", rows, base)
+        return np.asarray(np.einsum("...j,ij->...i", share, base))
+
+    steady = values
+    if ramps is not None:
+        size = np.linalg.lstsq((ramps - smooth(ramps)).T, values)[0]
+        steady = values - np.einsum("j,ji->i", size, ramps)
+    return values - smooth(steady)
 
 
 def _neighbour_noise(values: Floats) -> float:
