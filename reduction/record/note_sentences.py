@@ -380,6 +380,16 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             + ". Read marks at one more stretch"
         ),
     ),
+    "splice-side-rejected": (
+        "warning",
+        lambda is_strain: (
+            f"the marks follow a splice law of {'strain' if is_strain else 'tension'}, and none of"
+            f" {'tension' if is_strain else 'strain'}, but have so nearly one tension at each"
+            " strain that only the shape of the laws decides. Splices that lock up at high tension"
+            " look the same; strain amplitude and EA may then be off by more than their intervals."
+            " Read marks in a test with another range"
+        ),
+    ),
     "splice-friction": (
         "note",
         "by the marks read during unloading, the extension of the splices differs there from their"

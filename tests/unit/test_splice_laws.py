@@ -25,7 +25,14 @@ def stiffening(bend=2.0, at_one=0.2):
 
 
 def test_splices_that_steepen_with_the_free_strain_are_not_taken_for_driven_by_tension():
-    found = fit_splice_laws(readings(stiffening()))
+    """A second test has its marks at nine tenths of the tension of the first."""
+    free, splice = np.tile(FREE, 2), np.tile(stiffening(), 2)
+    found = fit_splice_laws(
+        SpliceReadings(
+            free, splice, np.concatenate([TENSION, 0.9 * TENSION]), np.arange(18) // 9, free == 0,
+            0.45, TAPE, np.zeros((2, 2)), tension_uncertainty=np.zeros(18),
+        )
+    )  # fmt: skip
     assert found.laws[0].name == "strain-cubic"
     assert found.laws[0].values[1:5] == pytest.approx([0.16, 0.0, 0.04, 0.0], abs=1e-6)
     assert found.values[4] == pytest.approx(0.0, abs=0.01)
@@ -51,6 +58,23 @@ def test_a_side_that_fits_is_reached_by_the_interval_of_the_average():
     lightest = next(law for law in found.laws if law.name == "strain-cubic")
     away = abs(found.values[4] - lightest.values[4])
     assert 1.96 * np.sqrt(found.between[4, 4]) >= away
+
+
+def test_marks_of_one_pull_do_not_tell_tension_from_strain_by_a_bend_that_no_power_has():
+    """Splices that saturate with the tension; in the cycles the same strain has less of it."""
+    tension = np.array([0.0, 179.0, 308.0, 427.0, 623.0, 865.0])
+    free = np.array([0.0, 0.39, 0.79, 1.2, 1.82, 2.43])
+    found = fit_splice_laws(
+        SpliceReadings(
+            free, 0.25 * (1 - np.exp(-tension / 500.0)), tension, np.zeros(6, int), free == 0,
+            0.415, 0.0017, np.zeros((2, 2)), tension_uncertainty=np.full(6, 0.01),
+        )
+    )  # fmt: skip
+    relaxed = 345.0
+    terms = np.array([1.0, 1.2, 1.2**2, 1.2**3, (relaxed / found.reference) ** found.values[5]])
+    away = terms @ found.values[:5] - 0.25 * (1 - np.exp(-relaxed / 500.0))
+    spread = (found.covariance + found.between)[:5, :5]
+    assert abs(away) < 1.96 * np.sqrt(terms @ spread @ terms)
 
 
 def test_a_cubic_is_not_tried_with_fewer_than_five_loaded_marks():

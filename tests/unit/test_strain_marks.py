@@ -165,6 +165,41 @@ def test_a_mark_on_the_way_down_belongs_to_the_hold_that_was_reached_from_above(
     assert down == pytest.approx(600.0 - 355.0, abs=0.06)
 
 
+def test_marks_of_one_pull_that_no_law_of_the_tension_follows_are_named():
+    """Splices that lock up: 0.25 (1 - exp(-F / 300 N))."""
+    force = np.array([0.0, 250.0, 400.0, 600.0, 850.0, 1200.0])
+    rest = 1.2
+    splice = rest * (1 + 0.25 * (1 - np.exp(-force / 300.0)))
+    free = 2.5 * (1 + np.array([0.0, 0.5, 0.9, 1.4, 1.9, 2.4]))
+    rows = marks(
+        free + splice, free, hold=("slack", "30 %", "60 %", "min", "centre", "max"),
+        reading_uncertainty=1e-3,
+    )  # fmt: skip
+    rows = replace(rows, is_reading_stated=True)
+    model = fit_strain_model(Specimen("new"), test_id="T-1", marks=rows, mark_tension=force)
+    (found,) = [one for one in model.notes if one.code == "splice-side-rejected"]
+    assert found.severity == "warning"
+    assert found.numbers["is_strain"]
+
+
+def test_friction_that_holds_the_splices_while_the_rubber_relaxes_shows_when_a_hold_begins():
+    """6 % of friction, all of it within the relaxation of the holds: none by their end."""
+    start = np.array([0.0, 300.0, 450.0, 600.0, 400.0])
+    end = start * np.array([1.0, 0.96, 0.96, 0.96, 1.03])
+    rest = 1.2
+    splice = rest + rest * 0.2 * start / 450.0 * np.array([1.0, 1.0, 1.0, 1.0, 1.06])
+    free = 2.5 * (1 + np.array([0.0, 0.6, 1.0, 1.4, 13 / 15]))
+    rows = marks(
+        free + splice, free, hold=("slack", "min", "centre", "max", "centre down"),
+        reading_uncertainty=1e-5,
+    )  # fmt: skip
+    rows = replace(rows, is_reading_stated=True)
+    model = fit_strain_model(
+        Specimen("new"), test_id="T-1", marks=rows, mark_tension=end, mark_tension_at_start=start
+    )
+    assert 0.06 / 1.96 < model.splice_friction < 0.06
+
+
 def test_marks_on_the_way_down_say_the_friction_of_the_splices():
     """Splices that are 8 % of their extension longer there, by construction."""
     force = np.array([0.0, 300.0, 450.0, 600.0, 400.0])

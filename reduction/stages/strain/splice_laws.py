@@ -85,6 +85,8 @@ _MOST_FALL = 2.0  # standard errors of the splice strain per free strain, below 
 # about their mean reaches both, as 1.96 sqrt(w (1 - w)) >= 1 - w
 _LEAST = 1 / (1 + 1.96**2)
 
+_CURVE = 4  # coefficients of the tension over the strain, at most
+
 _SPARE = 2  # marks more than coefficients, for a cubic to be tried
 
 _SPAN = 1.5  # of tension, from which an exponent is looked for
@@ -291,7 +293,9 @@ def fit_splice_laws(readings: SpliceReadings, *, specimen: str = "") -> SpliceAv
     has_spare = np.array([law.freedom > 0 for law in laws])
     is_sure = np.array([law.chance >= _DOUBT for law in laws])
     is_checked = bool((has_spare & is_sure).any() or not (passing & ~has_spare).any())
-    if not (passing & has_spare).any():
+    # else that its laws bend as the marks do is all that tells a side from the other
+    is_told = _is_told_apart(kept, laws)
+    if not is_told or not (passing & has_spare).any():
         passing = _with_nearest(laws, passing)
     is_known = is_checked and all(
         n_loaded >= law.n_terms + 2 for law, passes in zip(laws, passing, strict=True) if passes
@@ -302,7 +306,8 @@ def fit_splice_laws(readings: SpliceReadings, *, specimen: str = "") -> SpliceAv
     else:  # laws of one side say much the same: together they have as much as those of another
         side = np.array([2, 1]) @ _sides(laws)
         weight = 1.0 / np.array([np.count_nonzero(passing & (side == one)) or 1 for one in side])
-    weight = _with_both_sides(laws, np.where(passing, weight, 0.0) / weight[passing].sum())
+    weight = np.where(passing, weight, 0.0) / weight[passing].sum()
+    weight = _with_both_sides(laws, weight, is_sure if is_told else passing)
     values = np.array([law.values for law in laws])
     mean = weight @ values
     # powers of like exponents add up to one of their mean, weighed by what each strains
@@ -339,6 +344,21 @@ def _sides(laws: Sequence[FittedLaw]) -> Bools:
     )
 
 
+def _is_told_apart(readings: SpliceReadings, laws: Sequence[FittedLaw]) -> bool:
+    """Whether marks at one strain differ so much in tension that splices driven by it show it."""
+    loaded = ~readings.is_slack
+    driven = [law for law in laws if _sides([law])[0].any()]
+    if not driven:
+        return True
+    law, tension = driven[0].values, readings.tension[loaded]
+    # the tension as a curve over the strain, as marks of one pull have it
+    powers = np.vander(readings.free[loaded], min(_CURVE, tension.size))
+    curve = powers @ np.linalg.lstsq(powers, np.log(tension), rcond=None)[0]
+    strain = law[5] * law[4] * (tension / readings.reference) ** law[5]
+    shown = strain * (np.log(tension) - curve) / (np.sqrt(3) * readings.tape)
+    return float(scipy.special.chdtrc(1, shown @ shown)) < REJECTED
+
+
 def _with_nearest(laws: Sequence[FittedLaw], passing: Bools) -> Bools:
     """Laws that pass, and the nearest of a side that has none; of all, where a side has no law.
 
@@ -356,10 +376,10 @@ def _with_nearest(laws: Sequence[FittedLaw], passing: Bools) -> Bools:
     return kept
 
 
-def _with_both_sides(laws: Sequence[FittedLaw], weight: Floats) -> Floats:
+def _with_both_sides(laws: Sequence[FittedLaw], weight: Floats, counts: Bools) -> Floats:
     """Weights with as much for laws of tension alone, and of strain alone, as an interval needs."""
     sides = _sides(laws)
-    fits = np.array([law.chance >= _DOUBT for law in laws]) & (weight > 0)
+    fits = counts & (weight > 0)
     if not (sides & fits).any(axis=1).all():
         return weight
     least = np.where(sides, np.where(fits, weight, 0.0), 0.0)

@@ -60,6 +60,8 @@ from reduction.record.notes import Note, note
 from reduction.record.settings import StrainMethod, StrainSettings
 from reduction.stages.standstills import Standstills
 from reduction.stages.strain.splice_laws import (
+    LAWS,
+    REJECTED,
     FittedLaw,
     SpliceAverage,
     SpliceReadings,
@@ -1026,6 +1028,12 @@ def _on_laws(fit: _MixedFit, readings: PooledMarks) -> tuple[Note, ...]:
         row = int(_splice_readings(readings, readings.relaxed()).row[average.set_aside])
         notes.append(note("mark-set-aside", marks.specimen, test=marks.test[row],
                           hold=marks.hold[row]))  # fmt: skip
+    if average.is_checked and any(
+        weight > 0 and law.chance < REJECTED
+        for law, weight in zip(average.laws, average.weight, strict=True)
+    ):
+        is_strain = "tension" not in LAWS[best.name]
+        notes.append(note("splice-side-rejected", marks.specimen, is_strain=is_strain))
     if not average.is_checked:
         carried = [
             law
@@ -1171,23 +1179,33 @@ def _average_at_marks(
 def _friction(model: StrainModel, readings: PooledMarks) -> tuple[float, float] | None:
     """Share by which splices are longer on the way down than the law says, and its uncertainty.
 
-    None without marks on the way down.
+    None without marks on the way down.  Splices that friction holds keep the length that they had
+    at the beginning of a hold while the rubber relaxes, up, or recovers, down; others follow the
+    tension.  Each is as likely.
     """
     marks = readings.marks
-    rows = np.flatnonzero(marks.is_unloading & (np.nan_to_num(readings.tension) > 0))
+    loaded = np.nan_to_num(readings.tension) > 0
+    rows = np.flatnonzero(marks.is_unloading & loaded)
     if not rows.size:
         return None
     known = model.coefficients
     strain = marks.free_length[rows] / known["relaxed_free_length"] - 1
-    length = position_by_model(model, strain=strain, tension=readings.tension[rows])
-    by_law = length - marks.free_length[rows]
-    extension = by_law - known["relaxed_splice_length"]
-    longer = marks.splice_length[rows] - by_law
-    size = float(extension @ extension)
-    if not size > 0:
-        return None
-    reading = sqrt(3) * _tape_error(marks)
-    return float(extension @ longer) / size, reading / sqrt(size)
+    tension = [readings.tension[rows]]
+    up = loaded & ~marks.is_unloading & ~marks.is_slack
+    if readings.tension_at_start.size:
+        # the law has the tensions at the end of the holds on the way up
+        relaxed = float(np.nanmean(readings.tension[up] / readings.tension_at_start[up]))
+        tension.append(readings.tension_at_start[rows] * relaxed)
+    shares = []
+    for one in tension:
+        by_law = position_by_model(model, strain=strain, tension=one) - marks.free_length[rows]
+        extension = by_law - known["relaxed_splice_length"]
+        size = float(extension @ extension)
+        if not size > 0:
+            return None
+        shares.append(float(extension @ (marks.splice_length[rows] - by_law)) / size)
+    reading = sqrt(3) * _tape_error(marks) / sqrt(size)
+    return float(np.mean(shares)), float(np.hypot(reading, np.ptp(shares) / 2))
 
 
 # a strain slope that differs by less than this is not worth a sentence
