@@ -38,6 +38,19 @@ def test_a_hold_before_the_level_is_left_out():
     assert stress == pytest.approx([1e6])
 
 
+@pytest.mark.parametrize(("held", "read", "true"), [(0.997, 1.003, 95), (1.003, 0.997, 100)])
+def test_a_hold_at_the_level_may_lie_on_its_other_side(held, read, true):
+    """100 N per unit strain, of which the hold takes 5 N; its strain is read 0.6 % off."""
+    rise = np.linspace(0, 1.2, 2401)
+    strain = np.concatenate([rise[rise < held], np.full(100, held), rise[rise > held]])
+    still = strain == held
+    tension = 100 * strain - 5 * np.cumsum(still) / 100
+    stress, spread, _ = stress_at_strain(
+        strain + read - held, tension, area=1e-4, levels=(1.0,), is_still=still.__getitem__
+    )
+    assert 4e4 < abs(stress[0] - true / 1e-4) < 1.96 * spread[0]
+
+
 def test_a_level_that_is_not_reached_has_no_number_and_no_reason():
     stress, spread, reasons = stress_at_strain(X, 100 * X, area=1e-4, levels=(2.0, -1.0))
     assert np.isnan(stress).all() and np.isnan(spread).all() and reasons == ("", "")

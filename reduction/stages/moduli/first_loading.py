@@ -333,6 +333,8 @@ _SPAN = 0.1
 
 _FEWEST = 4
 
+_BESIDE = 0.01  # of strain, by which a hold may lie on the other side of the level
+
 
 def stress_at_strain(
     strain: ArrayLike,
@@ -376,7 +378,9 @@ def stress_at_strain(
     -----
     A line through the samples just before the level, twelve at most and within 10 % of
     strain, read at the level: what comes after (a hold, the turn) does not enter.  The
-    uncertainty is that of the line there (type A).
+    uncertainty is that of the line there (type A).  Where the nearest hold is within 1 % of strain
+    of the level, the level may have been passed on its other side: half of the tension that was
+    lost in it is added.
 
     Examples
     --------
@@ -418,10 +422,30 @@ def stress_at_strain(
         mean, square = x.mean(), float(np.sum((x - x.mean()) ** 2))
         slope = float(np.sum((x - mean) * y)) / square
         left = y - y.mean() - slope * (x - mean)
-        variance = float(left @ left) / (x.size - 2)
+        variance = float(left @ left) / (x.size - 2) * (1 / x.size + mean**2 / square)
+        lost = 0.0 if is_still is None else _lost_beside(stretch, load, is_still, reached, level)
         stress[index] = (y.mean() - slope * mean) / section
-        uncertainty[index] = np.sqrt(variance * (1 / x.size + mean**2 / square)) / section
+        uncertainty[index] = np.hypot(np.sqrt(variance), lost / 2) / section
     return stress, uncertainty, tuple(reasons)
+
+
+def _lost_beside(
+    stretch: Floats, load: Floats, is_still: Callable[[slice], Bools], reached: int, level: float
+) -> float:
+    """Tension lost in the hold before or after the sample that reached a level, at that strain."""
+    lost = 0.0
+    for inside in (
+        last_sample(is_still, 0, reached),
+        first_sample(is_still, reached, stretch.size),
+    ):
+        if inside is None or not abs(stretch[inside] - level) <= _BESIDE:
+            continue
+        before = last_sample(lambda part: ~is_still(part), 0, inside)
+        after = first_sample(lambda part: ~is_still(part), inside, stretch.size)
+        hold = load[0 if before is None else before + 1 : after]
+        held = hold[np.isfinite(hold)]
+        lost = max(lost, float(held[0] - held[-1]) if held.size else 0.0)
+    return lost
 
 
 def _last_of(known: Callable[[slice], Bools], stop: int) -> Integers:
