@@ -30,13 +30,13 @@ UNEXPLAINED = DataError.exit_status
 
 _COLUMNS = (
     "cells: printed numbers of a table. derived: follows from theory or from other numbers, within "
-    "its rounding; closed: equations close it with a partner, and would have shown one unit of its "
-    "leading digit at three standard errors (power); repeated: printed twice, and equal, so that "
-    "nothing was computed; erratum: the page is wrong, and the corrected number comes back; open: "
-    "the page is wrong or doubtful, and nothing says what is right; measured: nothing on the pages "
-    "could test it; unexplained: does not come back, and no erratum says why. Of an "
-    "erratum: right is the corrected text, sure how far it is proved, cells how many numbers it "
-    "touches; `--erratum ID` gives the evidence of one\n"
+    "its rounding; closed: linked to other cells by equations that would show one unit of its "
+    "leading digit at three standard errors (power); repeated: printed twice with the same value, "
+    "nothing was computed; erratum: wrong in the report, and the corrected number is reproduced; "
+    "open: wrong or doubtful, and the report does not settle it; measured: nothing in the report "
+    "can test it; unexplained: cannot be reproduced, and no erratum says why. For an "
+    "erratum: right is the corrected text, sure how well it is proved, cells how many numbers it "
+    "affects; `--erratum ID` shows its evidence\n"
 )
 
 

@@ -171,12 +171,12 @@ TITLES: Mapping[ReportId, str] = {
 
 _WORDS: Mapping[Verdict, str] = {
     "derived": "follows from theory or from other numbers, within the printed rounding",
-    "closed": "equations close it with a partner, and would show one unit of its leading digit",
-    "repeated": "is printed twice, and equal: nothing was computed",
-    "erratum": "the page is wrong; the evidence has an id",
-    "open": "the page is doubtful, and nothing says what is right",
-    "measured": "nothing in the report could test it",
-    "unexplained": "does not come back, and nobody knows why",
+    "closed": "linked to other cells by equations that would show one unit of its leading digit",
+    "repeated": "printed twice with the same value; nothing was computed",
+    "erratum": "wrong in the report; the evidence has an id",
+    "open": "doubtful; the report does not settle it",
+    "measured": "a measured value that nothing in the report can test",
+    "unexplained": "cannot be reproduced; cause unknown",
 }
 
 _HELD = ("derived", "closed", "repeated")
