@@ -200,7 +200,7 @@ def _show(source: PieceSource, curve: CompositeCurve, output: CommandOutput) -> 
     _end_in_doubt(curve, output)
     table = table_of(
         "strain [%]", f"tension [{unit}]", f"standard uncertainty [{unit}]",
-        f"of it shared [{unit}]", "piece", "remark",
+        f"shared part [{unit}]", "piece", "remark",
         texts=0,
     )  # fmt: skip
     ends = np.flatnonzero(np.diff(curve.is_gap)) + 1
@@ -217,7 +217,7 @@ def _show(source: PieceSource, curve: CompositeCurve, output: CommandOutput) -> 
         ]  # fmt: skip
         change = factor * float(curve.monotone_change[place])
         if is_moved[place]:
-            flags.append(f"moved {change:+.3g} by the rule of rising")
+            flags.append(f"moved {change:+.3g} to keep the curve rising")
         table.add_row(
             short(100 * float(curve.strain[place]), 4),
             short(factor * float(curve.tension[place])),
@@ -507,10 +507,10 @@ def _show_assembly(line: DeployedLine, output: CommandOutput) -> None:
     equal = line.is_equal
     table = table_of(
         f"length [{length}]", f"tension [{force}]", f"standard uncertainty [{force}]",
-        f"of it shared [{force}]",
+        f"shared part [{force}]",
         f"EA, +- 5 % [{force}]", f"least [{force}]", f"greatest [{force}]",
-        f"a tether [{force}]" if equal else f"greatest, least [{force}]",
-        "its strain [%]" if equal else "strains [%]", "remark", texts=0,
+        f"load per tether [{force}]" if equal else f"greatest, least [{force}]",
+        "tether strain [%]" if equal else "strains [%]", "remark", texts=0,
     )  # fmt: skip
     tension = assembly.tension
     shared = per_newton * assembly.shared_standard_uncertainty
@@ -568,7 +568,7 @@ def _stiffness_in_words(state: WorkingState, output: CommandOutput) -> str:
     return (
         f"EA {per_newton * state.secant_spring_constant:.4g} {force} over {span}, "
         f"{per_newton * state.least_spring_constant:.4g} to "
-        f"{per_newton * state.greatest_spring_constant:.4g} by the tests that cover it ({tests}, "
+        f"{per_newton * state.greatest_spring_constant:.4g} from the tests that cover it ({tests}, "
         f"each from {per_newton * state.common_low:.4g} to "
         f"{per_newton * state.common_high:.4g} {force}{nearest})"
     )
@@ -581,7 +581,7 @@ def _show_working(number: int, state: WorkingState, output: CommandOutput) -> No
     told = (
         f"working.{number}: {per_newton * float(point.mean_tension):.4g} {force} "
         f"+- {per_newton * _KNOWN * state.standard_uncertainty:.3g} (95 %, k = {_KNOWN:.2f}) at "
-        f"{per_metre * float(point.total_length):.5g} {length}, strain of a tether "
+        f"{per_metre * float(point.total_length):.5g} {length}, tether strain "
         f"{100 * float(state.strain.max()):.4g} %, {_stiffness_in_words(state, output)}"
     )
     if state.level.tension_amplitude:
@@ -593,7 +593,7 @@ def _show_working(number: int, state: WorkingState, output: CommandOutput) -> No
             )
     share = float(point.peak_share.max())
     told += (
-        f"; a tether carries up to {per_newton * float(point.peak_tether_tension.max()):.4g} "
+        f"; maximum load per tether {per_newton * float(point.peak_tether_tension.max()):.4g} "
         f"{force}"
     ) + (f", {100 * share:.3g} % of its strength" if np.isfinite(share) else "")
     if state.sharing is not None:

@@ -1002,7 +1002,7 @@ def _doubts_of_slope(
         nearest = sorted(tests, key=lambda one: -one.covered)[:_NEAREST_NAMED]
         names = ", ".join(f"{one.words} {one.covered:.0%}" for one in nearest if one.covered > 0)
         return [
-            f"no test covers {LEAST_COVER:.0%} of the cycle, so that no EA is known: "
+            f"no test covers {LEAST_COVER:.0%} of the cycle, so EA is unknown: "
             + (f"nearest are {names}" if names else "no test reaches it")
         ]
     if (1 - _LITTLE) * least <= joined <= (1 + _LITTLE) * greatest:
@@ -1010,9 +1010,9 @@ def _doubts_of_slope(
     names = " and ".join(one.words for one in tests if np.isfinite(one.spring_constant))
     nearer = least if joined < least else greatest
     return [
-        f"over the loads of {names} the curve, which joins tests that are not alike, has "
-        f"{joined / nearer:.3g} of the {'least' if joined < least else 'greatest'} EA that the "
-        "tests allow: take its mean, not its slope"
+        f"over the loads of {names} the slope of the curve is {joined / nearer:.3g} of the "
+        f"{'lowest' if joined < least else 'highest'} EA of the tests, because the curve joins "
+        "tests in different states: use its tension, not its slope"
     ]
 
 

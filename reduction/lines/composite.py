@@ -790,8 +790,8 @@ def _notes_of(
     )
     strain, change = blend.strain, blend.change
     notes = [
-        f"tension against strain by {' before '.join(rule.precedence)}, blended over "
-        f"{rule.taper:g} of each piece at its ends: {used}",
+        f"order of precedence {', '.join(rule.precedence)}; pieces are blended over "
+        f"{rule.taper:g} of their length at each end: {used}",
         f"a straight line from zero to strain {strain[0]:.4g}, where the first piece begins",
     ]
     notes += [

@@ -443,19 +443,19 @@ def _working_table(found: DeployedLine, units: UnitSystem) -> PageTable | None:
         "Working points.",
         (
             "point", force.label("tension"), force.label("amplitude"), length.label("length"),
-            percent.label("strain of a tether"), force.label("EA"), force.label("least EA"),
-            force.label("greatest EA"), "nearest test", force.label("greatest of a tether"),
+            percent.label("tether strain"), force.label("EA"), force.label("least EA"),
+            force.label("greatest EA"), "nearest test", force.label("maximum per tether"),
             "of its strength [%]", force.label("least by the tolerance"),
             force.label("greatest by the tolerance"),
         ),
         rows,
         remarks=[
             f"±: expanded uncertainty, 95 % ({factor_words([NORMAL])}), of the curve at that"
-            " length. EA is that of the cycle, peak to valley, or of 5 % of the length to each side"
-            " where there is none: by the tests that cover at least 70 % of it, over the loads that"
-            " they have in common, the nearer in mean and amplitude the more; least and greatest"
-            " are those of these tests, 95 %. Loads by the tolerance of the lengths are at the mean"
-            " tension."
+            " length. EA is that of the cycle, peak to valley, or without a cycle of 5 % of the"
+            " length to each side. It is a mean over the tests that cover at least 70 % of it,"
+            " over their common loads, weighted towards those nearest in mean and amplitude;"
+            " least and greatest are the interval of these tests, 95 %. Loads by the tolerance of"
+            " the lengths are at the mean tension."
         ],
     )  # fmt: skip
 

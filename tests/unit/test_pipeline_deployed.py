@@ -39,9 +39,7 @@ def test_nothing_is_said_of_the_stiffness_below_the_first_strain_that_was_tested
     assert not any(name for name, is_low in zip(straight.nearest_test, low, strict=True) if is_low)
     (state,) = straight.working
     assert np.isnan(state.secant_spring_constant) and state.nearest == ""
-    assert state.note == (
-        "no test covers 70% of the cycle, so that no EA is known: no test reaches it"
-    )
+    assert state.note == ("no test covers 70% of the cycle, so EA is unknown: no test reaches it")
     assert straight.strain == pytest.approx(straight.assembly.total_length / 3.0 - 1)
     assert not straight.working[0].point.is_tested
     assert straight.free_length == (2.0,) * 3
@@ -144,7 +142,7 @@ def test_two_unlike_windows_leave_their_own_stiffness_and_not_that_of_their_join
     assert state.secant_spring_constant == pytest.approx(mean, rel=1e-6)
     assert state.nearest == "T-1 cycles"
     assert state.curve_spring_constant < 0.9 * 1200  # softer than either of them
-    assert "of the least EA that the tests allow" in state.doubt
+    assert "of the lowest EA of the tests" in state.doubt
     # the stroke is that of the stated EA, about the mean of the curve
     assert state.peak_length - state.minimum_length == pytest.approx(3 * 600 / mean)
     middle = (state.peak_length + state.minimum_length) / 2
@@ -176,7 +174,7 @@ def test_a_test_counts_from_seventy_percent_of_the_cycle(high, has_stiffness):
     assert state.tests[1].covered == pytest.approx(0.4)
     assert np.isfinite(state.secant_spring_constant) == has_stiffness
     if not has_stiffness:
-        assert "no EA is known: nearest are T-1 cycles 68%, T-2 cycles 40%" in state.doubt
+        assert "EA is unknown: nearest are T-1 cycles 68%, T-2 cycles 40%" in state.doubt
 
 
 def test_kinds_behind_that_which_covers_the_cycle_have_no_say():
