@@ -322,7 +322,7 @@ TEXT = (
         "a quote that is never closed",
         log(HEADER + b'1,2,"3\n' + rows(1000)),
         3,
-        "log.csv:2: a quoted field goes over the end of its line",
+        "log.csv:2: a quoted field continues beyond its line",
     ),
     Case(
         "a quote that is never closed in the header",

@@ -426,7 +426,7 @@ def _find_place(
         if size == 1:
             return 0
         raise SettingsError(
-            f"which {place_name(dim)} is meant is not said",
+            f"{place_name(dim)} is not stated, and there are several",
             needed=f'--at "{place_name(dim)}=..." ({shown})',
         )
     if dim in ON_AN_AXIS:

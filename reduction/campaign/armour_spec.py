@@ -107,7 +107,8 @@ def _radius(path: Path, number: int, layer: _ArmourLayerKeys, what: str) -> floa
     radius, diameter = getattr(layer, f"{what}_radius"), getattr(layer, f"{what}_diameter")
     if (radius is None) == (diameter is None):
         raise in_toml(
-            path, f"armour.layers.{layer.name or number}: {what}_radius is not said once",
+            path,
+            f"armour.layers.{layer.name or number}: state {what}_radius or {what}_diameter once",
             found="neither" if radius is None else "both",
             needed=f"{what}_radius or {what}_diameter",
         )  # fmt: skip

@@ -177,7 +177,7 @@ def _tethers(path: Path, keys: _AssemblyKeys) -> tuple[int, tuple[float, ...]]:
     """How many, and the free length of each; none where it is that of the tested tether."""
     if (keys.n_tethers is None) == (keys.free_lengths is None):
         raise in_toml(
-            path, "assembly: how many tethers there are is not said once",
+            path, "assembly: state the number of tethers once",
             found="both" if keys.n_tethers else "neither", needed="n_tethers or free_lengths",
         )  # fmt: skip
     if keys.free_lengths is not None:
@@ -232,7 +232,7 @@ def _working(path: Path, number: int, keys: _WorkingKeys, *, equal: bool) -> Wor
     given = [name for name in names if getattr(keys, name) is not None]
     if len(given) != 1:
         raise in_toml(
-            path, f"{place}: where the assembly stands is not said once",
+            path, f"{place}: state one working level",
             found=", ".join(given) or "nothing", needed=" or ".join(names),
         )  # fmt: skip
     if keys.strain is not None and not equal:

@@ -681,7 +681,8 @@ def _results_file(path: Path, file: CampaignFile) -> str:
     names = {name for name in (file.results, file.campaign.results) if name}
     if len(names) > 1:
         raise in_toml(
-            path, "results stands above [campaign] and in it", found=" and ".join(sorted(names)),
+            path, "results is stated both above [campaign] and in it",
+            found=" and ".join(sorted(names)),
             needed="one table of results",
         )  # fmt: skip
     return _file_inside(path, names.pop()) if names else ""

@@ -133,6 +133,7 @@ _ROWS = 20
 """Rows of a table; the others are counted, and stand in the answer of ``--json``."""
 
 _ORDER = ("answer", "uncertainty", "number")
+_SAID = {"came": "added", "went": "removed"}
 
 
 def show_differences(
@@ -217,10 +218,10 @@ def _verdict(found: Differences, units: UnitSystem) -> str:
     said = [f"{n_moved:,} of {_number(sum(one.n for one in answers), 'answer')} {far}"]
     if n_changed > n_moved:
         said.append(f"{n_changed - n_moved:,} changed by less")
-    for name in ("came", "went"):
+    for name, word in _SAID.items():
         n = sum(getattr(one, f"n_{name}") for one in answers)
         if n:
-            said.append(f"{n:,} {name}")
+            said.append(f"{n:,} {word}")
     wider = sum(one.n_moved for one in changes if one.kind == "uncertainty")
     if wider:
         far = "" if found.is_exact else " by more than half"
@@ -265,7 +266,7 @@ def _say_numbers(changes: Sequence[Change], output: CommandOutput) -> None:
     if not of_name:
         return
     table = table_of(
-        *"quantity|worst at|before|after|change|changed|moved|came|went".split("|"), texts=2
+        *"quantity|worst at|before|after|change|changed|moved|added|removed".split("|"), texts=2
     )
     for same in list(of_name.values())[:_ROWS]:
         worst = same[0]
@@ -307,7 +308,7 @@ def _shown(one: Change, units: UnitSystem) -> tuple[str, str, str]:
 def _far(one: Change) -> str:
     """How far a number went, in uncertainties where it has one."""
     if one.change in ("came", "went", "shape"):
-        return one.change
+        return _SAID.get(one.change, one.change)
     if one.shift is not None:
         return f"{one.shift:+.3g} u"
     return "from 0" if one.relative is None else f"{100 * one.relative:+.3g} %"

@@ -56,7 +56,7 @@ def allowed(text: str, allow_remote: bool, *, what: str) -> bool:
         raise SettingsError(
             f"{what} is a URL, and URLs are refused without --allow-remote", found=shown,
             needed="--allow-remote (in Python allow_remote=True), or a file on this machine",
-            hint="Allow it where you know who wrote the campaign.",
+            hint="Use it only if you trust the author of the campaign.",
         )  # fmt: skip
     # one that is chained, or leads to this machine, is none of these
     if text.partition("://")[0].lower() not in PACKAGES or "::" in text or not text.isprintable():

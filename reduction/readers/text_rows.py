@@ -237,7 +237,7 @@ class TextRows:
             return None
         return LogError(
             self.path,
-            "a quoted field goes over the end of its line",
+            "a quoted field continues beyond its line",
             row=self.row_of_line(line),
             found=repr(text.strip()[:_SHOWN]),
             needed="one line a row",

@@ -245,9 +245,9 @@ LEVEL = "[[assembly.working]]\n"
     [
         (("n_tethers = 2", "n_tethers = 0"), "", 2, "assembly.n_tethers"),
         (("n_tethers = 2", "tethers = 2"), "", 2, "assembly.tethers: is not a known key"),
-        (("n_tethers = 2\n", ""), "", 2, "how many tethers there are is not said once; found"
+        (("n_tethers = 2\n", ""), "", 2, "state the number of tethers once; found"
                                          " neither"),
-        (("n_tethers = 2", 'n_tethers = 2\nfree_lengths = ["8 m"]'), "", 2, "not said once; found"
+        (("n_tethers = 2", 'n_tethers = 2\nfree_lengths = ["8 m"]'), "", 2, "of tethers once; found"
                                                                             " both"),
         (("n_tethers = 2", 'free_lengths = ["8 m"]'), "", 2, "free_length and free_lengths stand"),
         (('free_length = "8 m"', 'free_length = "-8 m"'), "", 2, "assembly.free_length: is not"
@@ -288,7 +288,7 @@ LEVEL = "[[assembly.working]]\n"
          "strain_ratio and strain are two laws"),
         (None, '[assembly.splices]\nlength = "1 m"\nexponent = 3.0', 2, "exponent is not a number"
                                                                         " of a splice"),
-        (None, LEVEL, 2, "assembly.working.1: where the assembly stands is not said once; found"
+        (None, LEVEL, 2, "assembly.working.1: state one working level; found"
                          " nothing"),
         (None, LEVEL + 'strain = "1"\ntension = "9 N"', 2, "found tension, strain"),
         (None, LEVEL + 'tension = "-9 N"', 2, "assembly.working.1.tension: is not positive"),

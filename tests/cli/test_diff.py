@@ -66,7 +66,9 @@ def test_the_first_line_names_the_worst(place, command):
     )
     assert "; worst: tangent_modulus of T-1 new ascending strain_bin " in first
     assert first.endswith(" Pa, +4.2 u")
-    assert heads.split() == "quantity worst at before after change changed moved came went".split()
+    assert (
+        heads.split() == "quantity worst at before after change changed moved added removed".split()
+    )
     assert rows[0].startswith("tangent_modulus [Pa]  T-1.nc, new, ascending, strain_bin ")
     assert rows[1].startswith("test_frequency [Hz]  ")
     assert rows[1].split()[-6:] == "-0.6 u 2 1 0 0".split()

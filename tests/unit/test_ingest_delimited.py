@@ -185,24 +185,24 @@ def test_a_log_cut_off_in_its_last_line_says_so(read):
 def test_a_quoted_line_end_is_refused(read):
     with pytest.raises(
         LogError,
-        match=r"log\.csv:3: a quoted field goes over the end of its line; found '0,1,2,\"a'; "
+        match=r"log\.csv:3: a quoted field continues beyond its line; found '0,1,2,\"a'; "
         r"needed one line a row\. Close the quote",
     ):
         read('t,x,F,note\n0,1,2,c\n0,1,2,"a\nb"\n1,2,3,c\n')
 
 
 def test_a_quote_that_is_not_closed_in_the_last_row_is_no_number(read):
-    with pytest.raises(LogError, match=r"log\.csv:3: a quoted field goes over .*found '1,2,\"3'"):
+    with pytest.raises(LogError, match=r"log\.csv:3: a quoted field continues beyond .*found '1,2,\"3'"):
         read('t,x,F\n0,1,2\n1,2,"3')
 
 
 def test_a_quote_that_is_not_closed_is_told_before_the_fields_that_it_takes(read):
-    with pytest.raises(LogError, match=r"log\.csv:3: a quoted field goes over .*found '0,\"1,2'"):
+    with pytest.raises(LogError, match=r"log\.csv:3: a quoted field continues beyond .*found '0,\"1,2'"):
         read('t,x,F\n0,1,2\n0,"1,2\n1,2,3\n')
 
 
 def test_a_quote_that_is_never_closed_names_its_row(read):
-    with pytest.raises(LogError, match=r"log\.csv:3: a quoted field goes over the end of its line"):
+    with pytest.raises(LogError, match=r"log\.csv:3: a quoted field continues beyond its line"):
         read('t,x,F\n0,1,2\n1,2,"3\n2,3,4\n')
 
 

@@ -246,7 +246,10 @@ def test_limits_are_shown_as_they_were_agreed(judged, lower, upper, shown):
             {"quantity": "relaxation_time"},
             "no statement: test_relaxation_time does not vary with branch",
         ),
-        ({"at": {"branch": "ascending"}}, "no statement: which specimen is meant is not said"),
+        (
+            {"at": {"branch": "ascending"}},
+            "no statement: specimen is not stated, and there are several",
+        ),
     ],
 )
 def test_a_limit_of_a_number_that_is_not_there_gives_no_statement_and_says_why(
