@@ -26,7 +26,7 @@ for verdict, number in counts_of(reproduce("CG-D-39-80")["CG-D-39-80"]).items():
 # What the model of the report gives back
 # ---------------------------------------
 #
-# A spring :math:`K_0` stands beside a spring :math:`K_1` in series with a dashpot. With :math:`x = 2\pi f\tau`,
+# A spring :math:`K_0` is in parallel with a spring :math:`K_1` and dashpot in series. With :math:`x = 2\pi f\tau`,
 #
 # .. math:: K_{\mathrm{ap}} = \left|K_0 + K_1 \frac{i x}{1 + i x}\right|, \qquad H = \oint T\,d\varepsilon =
 #           \frac{\pi K_1 (\Delta T)^2 x}{K_0^2 + (K_0 + K_1)^2 x^2}

@@ -80,8 +80,8 @@ left.legend()
 
 # %%
 # The report has 79 % of stretch for 64 degrees and 130 % for 68 at a third of the break load, after 100,000 cycles. One
-# strain of the cord at that load cannot give both (9.5 % gives 105 and 146 %): neither is a target here. A prediction held against
-# a test is in the example :doc:`/gallery/plot_03_hose_against_its_test`; with commands::
+# strain of the cord at that load cannot give both (9.5 % gives 105 and 146 %): neither is a target here. A prediction is compared with
+# a test in the example :doc:`/gallery/plot_03_hose_against_its_test`; with commands::
 #
 #    reduction reproduce WHOI-2004-06
 #    reduction figures WHOI-2004-06

@@ -76,8 +76,8 @@ print(
 )
 
 # %%
-# The *vertical* loads of the Airy theory take two velocities for their two columns (`ZH-7`_): what looks like a cut of 8.4 % is one of
-# 16.7 %. The table of ratios leaves out one row of its own (`ZH-10`_).
+# The *vertical* loads of the Airy theory take two velocities for their two columns (`ZH-7`_): what looks like a reduction of 8.4 % is one of
+# 16.7 %. The table of ratios omits one of its own rows (`ZH-10`_).
 #
 # .. _ZH-7: ../errata.html#zh-7
 # .. _ZH-10: ../errata.html#zh-10

@@ -18,8 +18,8 @@ for verdict, number in counts_of(items).items():
     print(f"{verdict:13} {number:5}")
 
 # %%
-# The axial stress stands
-# -----------------------
+# The axial stress is correct
+# ---------------------------
 #
 # To first order a wire at the angle :math:`\alpha` from the axis has the strain :math:`\zeta = \varepsilon\cos^2\alpha` of a cable that is
 # stretched by :math:`\varepsilon` and does not turn. With E = 210 GPa and 0.1 % that is 210 MPa times the squared cosine; the exact rod has
@@ -50,11 +50,11 @@ right.set(
 left.legend()
 
 # %%
-# What does not stand
+# Errors in the paper
 # -------------------
 #
 # The pitch of section 2 is over the tangent, not times it (`WA-1`_); the torsion moments of (4) and (16) have the bending
-# stiffness in them (`WA-4`_); (22) has the other sign and one radius too few (`WA-6`_).
+# stiffness in them (`WA-4`_); (22) has the wrong sign and one radius too few (`WA-6`_).
 #
 # .. _WA-1: ../errata.html#wa-1
 # .. _WA-4: ../errata.html#wa-4

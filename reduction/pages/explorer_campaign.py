@@ -430,10 +430,10 @@ class CampaignText:
             }
         setting = _setting_of(key)
         if setting is None:
-            raise SettingsError("a setting is not one that is moved here", found=repr(key))
+            raise SettingsError("this setting cannot be changed here", found=repr(key))
         if setting.path[0] in self.in_table.get(test, ()):
             raise SettingsError(
-                f"{key} of test '{test}' stands in the table of tests", needed="a change there"
+                f"{key} of test '{test}' is set in the table of tests", needed="a change there"
             )
         path = ("tests", test, *setting.path)
         if setting.key == "strain.method":

@@ -948,7 +948,7 @@ _OF_LINE: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "pull-not-slow": (
         "warning",
-        "the slow pull is not slow beside the relaxation that the loops show: K_0 is wrong by up to"
+        "the slow pull is too fast for the relaxation time of the loops: K_0 is wrong by up to"
         " {effect:.1%}, and K_1 and tau with it. Their intervals include it. Pull more slowly",
     ),
     "pull-rate-matters": (

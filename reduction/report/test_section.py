@@ -568,7 +568,7 @@ def _line_table(view: TestView) -> PageTable | None:
         return None
     sheet = add_line(Sheet(view, ("specimen",)).texts("specimen", "specimen"), view)
     return sheet.table(
-        "The three-parameter line: a spring K_0 beside a spring K_1 in series with a dashpot.",
+        "The three-parameter line: spring K_0 in parallel with spring K_1 and dashpot in series.",
         optional=(REFUSED,), remarks=[CONDITIONING, *about_line(sheet, [view])],
     )  # fmt: skip
 

@@ -534,7 +534,7 @@ _MEANINGS = {
     "gauge_length": "gauge length",
     "strain_gain": "error of the strain method itself",
     "quasi_static_fit": "fit of the slow pull that gives K_0",
-    "pull_rate": "a slow pull that is not slow beside the relaxation of the loops",
+    "pull_rate": "a slow pull that is too fast for the relaxation time of the loops",
     "temperature": "stiffness at the temperature of the test",
     "attached_mass": "inertia of the mass at a moving load cell",
     "linear_density": "inertia of the specimen itself",

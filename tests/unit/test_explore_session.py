@@ -145,9 +145,9 @@ def test_a_value_that_a_run_would_refuse_is_refused(session, changes, match):
 @pytest.mark.parametrize(
     ("changes", "match"),
     [
-        ({"archive.samples": "all"}, "not one that is moved here; found 'archive.samples'"),
-        ({"file": "/etc/passwd"}, "not one that is moved here"),
-        ({"cycles.trim_threshold.x": "1"}, "not one that is moved here"),
+        ({"archive.samples": "all"}, "cannot be changed here; found 'archive.samples'"),
+        ({"file": "/etc/passwd"}, "cannot be changed here"),
+        ({"cycles.trim_threshold.x": "1"}, "cannot be changed here"),
         ({"cycles.trim_threshold": "steep"}, "is not a number; found 'steep'"),
         ({"steps.0.from": ""}, "a step has both ends"),
     ],
@@ -285,7 +285,7 @@ def test_what_stands_in_the_table_of_tests_is_changed_there(tmp_path):
     (tmp_path / "tests.csv").write_text("id,file,method\nT,a.csv,marks\n", encoding="utf-8")
     text = of_text(tmp_path, '[campaign]\ntests = "tests.csv"\n')
     assert text.written("T", _setting_of("strain.method")).place == "table"
-    with pytest.raises(SettingsError, match="stands in the table of tests"):
+    with pytest.raises(SettingsError, match="is set in the table of tests"):
         text.changed("T", {"strain.method": "marks"}, control="position")
 
 
@@ -493,5 +493,5 @@ def test_a_file_that_is_read_only_is_not_written_over(place):
 
 @pytest.mark.parametrize("key", ["steps.²1.from", "steps.x.from", "steps..from"])
 def test_a_step_without_a_place_is_refused(session, key):
-    with pytest.raises(SettingsError, match="not one that is moved here"):
+    with pytest.raises(SettingsError, match="cannot be changed here"):
         session.changed("T-1", {key: "1 s"})

@@ -10,7 +10,7 @@ const foldAgain = () => {};
   const part = (id) => document.getElementById(id);
   const OPEN = ["Trim and cycles", "Modulus windows", "Splice correction", "Steps"]; // groups of settings
   const FROM = {
-    test: "stated for this test", defaults: "from [defaults]", table: "stands in the table of tests: change it there",
+    test: "stated for this test", defaults: "from [defaults]", table: "from the table of tests (tests.csv): change it there",
     default: "not stated: the default", found: "not stated: found in the record",
   };
   const PAUSE = 150; // a slider is at rest for so long before a change is asked for, in ms
@@ -43,7 +43,7 @@ const foldAgain = () => {};
         headers: { "Content-Type": "application/json", Authorization: `Bearer ${token}` },
       });
     } catch {
-      return { error: "the explorer does not answer: it was ended in its terminal" };
+      return { error: "the explorer does not answer: it was stopped in its terminal" };
     }
     try {
       return await answer.json();
@@ -158,7 +158,7 @@ const foldAgain = () => {};
       }
       part("settings").replaceChildren(...groups.values());
       part("settings").dataset.keys = keys;
-      if (!settings.length) part("settings").append(make("p", "No setting steers the reduction of a test of this kind.", { class: "small" }));
+      if (!settings.length) part("settings").append(make("p", "No setting affects a test of this kind.", { class: "small" }));
     }
     settings.forEach(setField);
   };
@@ -259,7 +259,7 @@ const foldAgain = () => {};
     setSettings(found.settings);
     setParts();
     mark(found.error);
-    fill("standing", standing.is_standing ? "" : "The archive of this test is of other settings, another log or another version than campaign.toml now: reduction run brings it up to date. What is shown is reduced from the raw log.");
+    fill("standing", standing.is_standing ? "" : "The archive of this test was made with other settings, another log or another version: reduction run updates it. This page shows results from the raw log.");
     const many = changes().size;
     say(`${many ? `${many} ${many === 1 ? "setting" : "settings"} changed, not saved. ` : "As campaign.toml is. "}Reduced in ${found.seconds.toFixed(1)} s.`);
   };
@@ -268,7 +268,7 @@ const foldAgain = () => {};
     if (shown?.test !== test()) part("parts").replaceChildren();
     shown = null;
     mark(error);
-    say("This cannot be reduced; what is shown is of before.");
+    say("This cannot be reduced; the page shows the previous results.");
     for (const [key, { row, from }] of fields) {
       row.classList.toggle("changed", changes().has(key));
       if (changes().has(key)) from.textContent = "changed here, not saved";
@@ -331,7 +331,7 @@ const foldAgain = () => {};
       const kind = /^\+(?!\+\+)/.test(text) ? "plus" : /^-(?!--)/.test(text) ? "minus" : "";
       return [make("span", text, { class: kind }), "\n"];
     }));
-    fill("also", shown.also.length ? `Other tests rest on this one, or on its marks, and a run makes them anew too: ${shown.also.join(", ")}.` : "");
+    fill("also", shown.also.length ? `Other tests depend on this one or on its marks; a run will redo them too: ${shown.also.join(", ")}.` : "");
     part("save").showModal();
   };
 
