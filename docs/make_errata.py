@@ -22,20 +22,19 @@ _HEAD = """\
 
 <!-- Written by docs/make_errata.py from reduction/published/data/; change it there. -->
 
-Faults of the five reports on which this package rests, each with its evidence and with every
-printed number that it touches, recomputed from other numbers of the page or from theory. A page
-that prints a wrong number may still hold a right conclusion.
+Errors in the five source reports, each with its evidence and with every printed number that it
+affects, recomputed from other numbers of the report or from theory. A page with a wrong number may
+still have a right conclusion.
 
-*Sure*: **certain**, where the page's own numbers leave no other reading; **high**, where one
-reading is far the likeliest; **open**, where the page is wrong or doubtful and nothing says what
-is right; no word, where the printed number stands and its meaning is at fault. In the tables
-*computed* is in the printed unit, and empty where the fault is one of words or nothing can be
-computed.
+*Sure*: **certain**, if the numbers of the report allow no other reading; **high**, if one reading
+is by far the most likely; **open**, if the page is wrong or doubtful and the report does not settle
+it; no entry, if the printed number is right but its description is wrong. In the tables,
+*computed* is in the printed unit, and empty if the error is in words or nothing can be computed.
 
 ## How to cite
 
-An id names one fault for good: it is not given to another one. Link to `errata.md#` and the id in
-small letters, as `errata.md#cg-39`. In print: authors and title as in `CITATION.cff`, the version,
+An id is permanent and never reused. Link to `errata.md#` and the id in lower case, such as
+`errata.md#cg-39`. In print: authors and title as in `CITATION.cff`, the version,
 and the id, as "mooring-reduction 1.0.0, erratum CG-39". `reduction reproduce --erratum CG-39`
 prints one entry, `reduction reproduce --json` all of them.
 """

@@ -65,7 +65,7 @@ def test_every_format_is_in_the_help_of_the_command():
 
 
 def test_every_mooring_code_is_on_the_page_of_design_values():
-    (told,) = re.findall(r"behind --to: (.*?)\.</p>", _render_design_page())
+    (told,) = re.findall(r"after --to: (.*?)\.</p>", _render_design_page())
     assert ["moordyn", *told.split(", ")] == list(FORMS)
 
 

@@ -88,7 +88,9 @@ def test_an_open_question_in_the_results_is_told_with_its_place(load):
 
 
 def test_two_tables_of_results_are_refused(load):
-    with pytest.raises(SettingsError, match="results is stated both above .campaign. and in it; found a.c"):
+    with pytest.raises(
+        SettingsError, match="results is stated both above .campaign. and in it; found a.c"
+    ):
         load('results = "a.csv"\n' + NAMED)
 
 

@@ -192,12 +192,16 @@ def test_a_quoted_line_end_is_refused(read):
 
 
 def test_a_quote_that_is_not_closed_in_the_last_row_is_no_number(read):
-    with pytest.raises(LogError, match=r"log\.csv:3: a quoted field continues beyond .*found '1,2,\"3'"):
+    with pytest.raises(
+        LogError, match=r"log\.csv:3: a quoted field continues beyond .*found '1,2,\"3'"
+    ):
         read('t,x,F\n0,1,2\n1,2,"3')
 
 
 def test_a_quote_that_is_not_closed_is_told_before_the_fields_that_it_takes(read):
-    with pytest.raises(LogError, match=r"log\.csv:3: a quoted field continues beyond .*found '0,\"1,2'"):
+    with pytest.raises(
+        LogError, match=r"log\.csv:3: a quoted field continues beyond .*found '0,\"1,2'"
+    ):
         read('t,x,F\n0,1,2\n0,"1,2\n1,2,3\n')
 
 
