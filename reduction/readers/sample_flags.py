@@ -556,6 +556,45 @@ def _bridge_stamps(time: Floats, missing: Bools) -> Floats:
     return bridged
 
 
+_FEWEST_STAMPS = 100  # that show two steps of an even clock
+
+_FINE_STEP = 0.05  # of the time between readings: rounding to less moves nothing
+
+
+def _evenly_logged(time: Floats) -> tuple[Floats, float]:
+    """Times of an even clock that is written in coarse steps, and that step; else as they are, 0.
+
+    Such stamps advance by two neighbouring multiples of the step, and lie about one line no
+    farther than it rounds them.
+    """
+    steps = np.diff(time[:_STEPS_READ])
+    if steps.size < _FEWEST_STAMPS:
+        return time, 0.0
+    low, high = float(steps.min()), float(steps.max())
+    step = high - low
+    if not (low > 0 and step > _FINE_STEP * high):
+        return time, 0.0
+    multiple = low / step
+    is_either = np.minimum(steps - low, high - steps) < 1e-3 * step
+    if abs(multiple - round(multiple)) > 1e-3 * multiple or not is_either.all():
+        return time, 0.0
+    middle, start = (time.size - 1) / 2, float(time[0])
+    product = 0.0
+    for part in sample_blocks(time.size, time):
+        product += float((np.arange(part.start, part.stop) - middle) @ (time[part] - start))
+    every = product * 12 / (float(time.size) * (float(time.size) ** 2 - 1))
+    away = [np.inf, -np.inf]
+    for part in sample_blocks(time.size, time):
+        off = time[part] - start - every * np.arange(part.start, part.stop)
+        away = [min(away[0], float(off.min())), max(away[1], float(off.max()))]
+    if not away[1] - away[0] < (1 + _FINE_STEP) * step:
+        return time, 0.0
+    even = copied(time)
+    for part in sample_blocks(time.size, even):
+        even[part] = start + sum(away) / 2 + every * np.arange(part.start, part.stop)
+    return even, step
+
+
 def _step(time: Floats) -> float:
     """Median step of time, 0 where no two stamps follow each other."""
     first = np.arange(0, time.size - 1, max(1, time.size // _STEPS_READ))
@@ -589,7 +628,8 @@ def flag_record(
     tension_flag: _Flags = zeros_like(record.tension, dtype=np.uint16)
     position = record.crosshead_position
     no_stamp = _missing("time", record.time)
-    record = replace(record, time=_bridge_stamps(record.time, no_stamp))
+    time, clock_step = _evenly_logged(_bridge_stamps(record.time, no_stamp))
+    record = replace(record, time=time)
     timing = _time_faults(
         record.time, gap_factor=settings.gap_factor, rate_tolerance=settings.rate_tolerance
     )
@@ -630,6 +670,8 @@ def flag_record(
             note("rows-without-time", n_rows=count_samples(no_stamp), sample=first_lost + 1)
         )
     _check_usable(flagged)
+    if clock_step:
+        found.append(note("clock-in-steps", step=clock_step, every=timing.step))
     if timing.n_uneven:
         found.append(
             note(

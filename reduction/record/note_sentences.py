@@ -161,6 +161,11 @@ _OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "rows-resampled": (
         "note", "{n_read} rows read, {n_kept} kept, flagged: {flags}",
     ),
+    "clock-in-steps": (
+        "note",
+        "time is written in steps of {step:.3g} s: readings are taken to follow each other evenly,"
+        " {every:.6g} s apart, as all of them allow",
+    ),
     "lines-not-kept": ("note", "{n_lines} further lines without data are not stored"),
     "blocks-read": ("note", "{n_blocks} blocks of data read"),
     "lines-between-blocks-not-kept": (

@@ -74,7 +74,7 @@ def test_a_saturated_run_is_not_called_stuck_as_well():
 
 
 def test_an_uneven_rate_is_a_note():
-    time = np.cumsum(np.tile([0.1, 0.1, 0.1, 0.15], TIME.size // 4))
+    time = np.cumsum(np.tile(6 * [0.1] + 2 * [0.15], TIME.size // 8))
     (note,) = map(str, flagged(record(time=time)).notes)
     assert note == (
         "the sampling rate is not constant: 500 of 1999 time steps differ by more than 20% from "
@@ -140,3 +140,23 @@ def test_a_load_cell_that_says_nothing_is_refused():
         flagged(record(load=np.zeros(TIME.size)))
     with pytest.raises(DataError, match="'new' has no sample that can be used; .* stuck at 5 N"):
         flagged(record(load=np.full(TIME.size, 5.0)))
+
+
+def test_an_even_clock_that_is_written_in_coarse_steps_is_even():
+    true = 3.02 + np.arange(TIME.size) / 7
+    result = flagged(record(time=np.round(true, 1)))
+    np.testing.assert_allclose(result.time - true, 0.0, atol=0.01)
+    np.testing.assert_allclose(np.diff(result.time), 1 / 7, rtol=1e-4)
+    assert tuple(map(str, result.notes)) == (
+        "time is written in steps of 0.1 s: readings are taken to follow each other evenly,"
+        " 0.142857 s apart, as all of them allow",
+    )
+
+
+@pytest.mark.parametrize("late", [0.0, 0.4])
+def test_times_that_no_even_clock_would_be_written_as_stay_as_they_are(late):
+    # two rates, and one rate with a pause of three steps
+    rate = 7 if late else np.where(np.arange(TIME.size) < TIME.size // 2, 7, 8)
+    true = np.cumsum(1 / rate * np.ones(TIME.size)) + late * (np.arange(TIME.size) > 900)
+    stamps = np.round(true, 1)
+    np.testing.assert_array_equal(flagged(record(time=stamps)).time, stamps)
