@@ -1200,7 +1200,7 @@ def test_loops_of_ramps_that_begin_slowly_between_rests_are_not_cut_off(seed):
     true = np.trapezoid(4000 * answer[late], 0.02 * wave[late])
     load, strain = (one + 0.002 * rng.normal(size=fine.size) for one in (answer, wave))
     found = summary_of_log(fine + 16, 9000 + 4000 * load, 0.05 + 0.02 * strain, "position")
-    assert found.hysteresis_energy[0] == pytest.approx(true, rel=2.5e-3)
+    assert found.hysteresis_energy[0] == pytest.approx(true, rel=3.2e-3)
 
 
 @pytest.mark.parametrize("seed", range(3))

@@ -1351,10 +1351,9 @@ def _readings_at_turns(
 
 
 def _energy_beside_polygon(
-    force: Floats, stretch: Floats, moved: Floats, branch_first: Integers, branch_last: Integers
+    force: Floats, stretch: Floats, moved: Floats, begin: Integers, end: Integers
 ) -> tuple[Floats, Floats]:
     """What the polygon of the readings lacks of each loop, and how far that may be off."""
-    begin, end = branch_first[:, 0], branch_last[:, 1]
 
     def of_cycles(lacking: Floats) -> Floats:
         up_to = np.concatenate([[0.0], np.cumsum(lacking)])
@@ -1543,8 +1542,10 @@ def _led_to_corner(
         # the readings beside a corner lie on the line of the approach so far, or on the rest
         near = high - (high - low) // 4 - 1
         line = np.polyfit(np.arange(low, near), left[low:near], 1)
-        beside = np.arange(near, min(round(-line[1] / line[0]) + high - near, left.size))
-        rounded.append(np.mean(left[beside] - np.fmax(np.polyval(line, beside), 0.0)))
+        if line[0] < 0:  # and not one code of a converter
+            stop = min(-line[1] / line[0] + high - near, left.size)
+            beside = np.arange(near, max(stop, high), dtype=int)
+            rounded.append(np.mean(left[beside] - np.fmax(np.polyval(line, beside), 0.0)))
     if len(rounded) < _FEWEST_TURNS:
         return None
     spread = float(np.std(rounded)) / np.sqrt(len(rounded))
@@ -1564,9 +1565,7 @@ def _mean_of_rest(values: Floats, at: Integers, greatest: Floats, *, within: Flo
 
 _OF_A_STEP = 0.05  # of the mean step of a branch
 
-_RESTS, _CLEAR, _STEEP = 0.05, 3.0, 10.0
-"""Of the greatest step of a driven channel, and noise of its readings: within which it rests; noise
-by which its steps show a ramp. [1]"""
+_CLEAR = 3.0  # noise of a reading, and standard errors of a mean, that show a ramp or a rounding
 
 
 def _farther(values: Floats, one: Integers, other: Integers) -> Integers:
@@ -1874,7 +1873,7 @@ def _measure(
         lacking = np.zeros(first.size)
         may_lack = np.full(first.size, _energy_by_chance(force, stretch, first, last))
     else:
-        lacking, may_lack = _energy_beside_polygon(force, stretch, moved, *branches)
+        lacking, may_lack = _energy_beside_polygon(force, stretch, moved, first, last)
     energy, norm = _loop_energy(force, stretch, first, last, waveform=waveform)
     measured = np.array(
         [
@@ -1917,10 +1916,8 @@ def _integrate_over_phase(
         for one in ((tension, strain) if control == "load" else (strain, tension))
     )
     # a rest is found some noise early, where its ramp still goes on
-    (begin, leaves), (peak, end) = (
-        cycles.branch_first[block].T - low,
-        cycles.branch_last[block].T - low,
-    )
+    begin, end = cycles.first[block] - low, cycles.last[block] - low
+    peak, leaves = cycles.branch_last[block, 0] - low, cycles.branch_first[block, 1] - low
     into = np.minimum(leaves - peak, (peak - begin) // _WIDER) // 2
     found = _at_equal_phase(
         answer, moved, time[low:high], np.column_stack([begin, leaves - into]),
@@ -2170,7 +2167,7 @@ def close_loops(
 
 
 def _into_rests(cycles: Cycles) -> Cycles:
-    """Cycles that rests part, begun and ended as far inside these as noise may hide of their ramps.
+    """Cycles that rests part, first and last as far inside these as noise may hide of their ramps.
 
     Within the tolerance of a rest the first readings of a ramp belong to it, many of one that
     begins slowly, and a loop without them is cut off at its ends.
@@ -2193,16 +2190,12 @@ def _into_rests(cycles: Cycles) -> Cycles:
     reach = 1 + ramp // _WIDER // 2
     # no farther than the middle of a rest; before the first cycle and after the last may be a ramp
     room = np.minimum(reach, (cycles.first[1:] - cycles.last[:-1]) // 2)
-    first = cycles.first - np.append(0, room)
-    last = cycles.last + np.append(room, 0)
-    branch_first, branch_last = cycles.branch_first.copy(), cycles.branch_last.copy()
-    branch_first[:, 0], branch_last[:, 1] = first, last
     return replace(
-        cycles, first=first, last=last, branch_first=branch_first, branch_last=branch_last
+        cycles, first=cycles.first - np.append(0, room), last=cycles.last + np.append(room, 0)
     )
 
 
-_REACH_OF_TURN = 0.25  # of the shorter branch, in which its extremes are sought
+_REACH_OF_TURN = 0.25  # of a branch, in which its extremes are sought
 
 _OF_PHASE, _OF_TURNS, _OF_ENERGY, _OF_NORM = (
     MEASURED.index(name)
