@@ -122,7 +122,7 @@ def test_the_screen_says_that_the_data_are_synthetic(product):
     [
         (["--quantity", "colour"], 2, "is not in this archive"),
         (["--quantity", "loss_factor", "--at", "specimen"], 2, "--at is not understood"),
-        (["--quantity", "loss_factor"], 2, "which specimen is meant"),
+        (["--quantity", "loss_factor"], 2, "specimen is not stated"),
         (["--quantity", "tangent_modulus", "--at", "strain=1 ft"], 2, "ft"),
     ],
 )

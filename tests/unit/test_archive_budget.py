@@ -102,7 +102,7 @@ def test_what_has_a_budget_is_listed(archive):
     [
         ("peak_tension", {}, SettingsError, "peak_tension has no shared part.*segment_modulus"),
         ("colour", {}, SettingsError, "colour is not in this archive"),
-        ("segment_modulus", {"segment": "1"}, SettingsError, "which branch is meant"),
+        ("segment_modulus", {"segment": "1"}, SettingsError, "branch is not stated"),
         ("segment_modulus", {"cycle": "1"}, SettingsError, "does not vary with cycle"),
         ("segment_modulus", {"branch": "up", "segment": "1"}, SettingsError, "no branch 'up'"),
         ("tangent_modulus", {"strain": "3"}, SettingsError, "no bin at 3.*0.95 to 1.05"),
@@ -284,7 +284,7 @@ def test_a_slow_pull_is_read_between_its_tensions_and_told_with_the_unit():
     found = budget_from_archive(pull, name, {"tension": "250"})
     assert (found.value, found.standard_uncertainty) == pytest.approx((0.03, 3e-4))
     assert found.words == {grid: "250 N"}
-    with pytest.raises(SettingsError, match=r"which tension is meant.*\(100 N to 300 N\)"):
+    with pytest.raises(SettingsError, match=r"tension is not stated.*\(100 N to 300 N\)"):
         budget_from_archive(pull, name, {})
 
 
