@@ -121,7 +121,7 @@ def test_a_setting_is_moved_seen_saved_and_run(place, address, visit):
         "target_strain = [0.75, 1.25]\nn_cycles = 10\n",
         "target_strain = [0.75, 1.25]\nn_cycles = 10\nreduction.cycles.trim_threshold = 0.9\n",
     )
-    expect(page.locator("#standing")).to_contain_text("reduction run brings it up to date")
+    expect(page.locator("#standing")).to_contain_text("reduction run updates it")
 
     run(place)
     with open_archive(place / "processed" / "tmt-synthetic" / "T-1.nc") as archive:

@@ -253,7 +253,9 @@ def test_a_place_is_told_by_what_it_is_and_asked_for_by_that(properties):
     assert found.words == {"property": words}
     same = budget_from_archive(properties, "property_stiffness", {"property": words})
     assert same == found
-    with pytest.raises(SettingsError, match=r"property is not stated.*2 \(dynamic stiffness, line-1, R02"):
+    with pytest.raises(
+        SettingsError, match=r"property is not stated.*2 \(dynamic stiffness, line-1, R02"
+    ):
         budget_from_archive(properties, "property_stiffness", {})
 
 
