@@ -1,5 +1,7 @@
 """Unit tests of reduction.stages.strain.strain_fit: each sentence, and its absence."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from reduction.record.measurement import SpliceMarks
@@ -95,6 +97,15 @@ def test_a_growing_slack_length_is_named_and_a_scattering_one_is_not():
         (3.740, 3.760, 3.780),  # too few to tell a trend
     ):
         assert remarks(model(), marks(slack=slack)) == []
+
+
+def test_a_set_after_the_first_test_is_named_where_the_error_of_the_tape_is_stated():
+    """A rubber that keeps 2 % of its length: a step, and no trend."""
+    grown = replace(marks(slack=(3.740, 3.792, 3.790)), is_reading_stated=True)
+    (note,) = remarks(model(), grown)
+    assert "the slack length grows by 51 mm (1.4 %) from the first test to the last" in note
+    level = replace(marks(slack=(3.740, 3.744, 3.742)), is_reading_stated=True)
+    assert remarks(model(), level) == []
 
 
 LAW = {"relaxed_splice_length": 1.18, "splice_compliance": 0.001, "splice_exponent": 1.0}

@@ -1280,9 +1280,15 @@ def _on_scatter(model: StrainModel, is_stretched: Bools, expected: float) -> tup
 def _on_slack(marks: SpliceMarks) -> tuple[Note, ...]:
     """Growth of the slack length from test to test: permanent set, or a splice let out.
 
-    A trend over the rows, since single readings scatter by more than their last digit.
+    A trend over the rows, since single readings scatter by more than their last digit; or a step
+    after the first row, far beyond the stated error of the tape.
     """
     length = marks.far_thimble[marks.is_slack]
+    if marks.is_reading_stated and length.size > 1:
+        step = float(length[1:].mean() - length[0])
+        if step > _OUTLIER_NOTICE * marks.reading_uncertainty * sqrt(1 + 1 / (length.size - 1)):
+            effect = step / float(length[0])
+            return (note("slack-length-grows", marks.specimen, growth=step, effect=effect),)
     if length.size < _TREND_ROWS or np.ptp(length) == 0:
         return ()
     row = np.arange(length.size)
