@@ -5,7 +5,7 @@ import pytest
 
 from reduction.record.errors import DataError
 from reduction.stages.moduli.local_regression import accumulate_moments, fit_windows
-from reduction.stages.moduli.tangent_window import StrainGrid, window_blur
+from reduction.stages.moduli.tangent_window import StrainGrid, adapt_window, window_blur
 
 
 def slopes_of(strain, tension, half_window, n_curves=1):
@@ -57,3 +57,22 @@ def test_curve_too_short_to_bend_has_no_blur():
 def test_window_of_one_bin_is_refused():
     with pytest.raises(DataError, match="a window is a bin wide; found half_window 0"):
         window_blur([1.0, 2.0], half_window=0)
+
+
+def test_a_jump_that_the_finest_window_is_too_noisy_to_show_is_carried_by_the_next_wider_one():
+    """Lines fitted across a kink: the slope goes over as u (3 - u^2) / 4 of the jump, by hand."""
+    jump, bins = 1.0, np.arange(61)
+    true = np.where(bins > 30, jump, 0.0)
+    half_windows = [12, 6, 2]
+    slopes = [
+        jump * (0.5 + u * (3 - u**2) / 4)[None]
+        for half in half_windows
+        for u in [np.clip((bins - 30.5) / half, -1, 1)]
+    ]
+    deviation = [np.full((1, 61), each) for each in (0.005, 0.02, 0.3)]
+    change, noise, missed = adapt_window(
+        slopes, deviation, [np.zeros((1, 61))] * 3, half_windows=half_windows
+    )
+    away = np.abs(slopes[0] + change - true)[0, 27:35]
+    assert away.max() > 0.4 * jump
+    assert (away < 1.96 * np.hypot(noise, missed)[0, 27:35]).all()

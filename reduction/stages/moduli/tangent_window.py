@@ -484,7 +484,8 @@ def adapt_window(
     width, less their noise.  Of the narrowest it is the greatest difference from the next wider
     one within its width, times :math:`\sqrt 2`: on top of a jump :math:`J` every window reads
     the mean of both sides, off by :math:`J / 2`, while two windows differ by :math:`0.2\,J` to
-    :math:`0.35\,J` beside it.
+    :math:`0.35\,J` beside it.  One between, chosen because a wider one is contradicted, carries the
+    greater of the two.
 
     Examples
     --------
@@ -526,11 +527,17 @@ def adapt_window(
             )
             for narrow, square in squares.items()
         ])  # fmt: skip
+        if wide:  # where a wider one was contradicted, a narrower one too noisy says nothing new
+            of_wide = np.maximum(of_wide, missed)
         missed = np.where((chosen == wide) & (finest > wide), of_wide, missed)
         for narrow, square in squares.items():
             beside = 2 * half_windows[narrow]
-            of_narrow = _UNSEEN**2 * _near(square, beside, is_highest=True) + blur[narrow] ** 2
-            missed = np.where((chosen == narrow) & (finest == narrow), of_narrow, missed)
+            shown = square - np.where(finest > narrow, noises[narrow] ** 2, 0.0)
+            of_narrow = _UNSEEN**2 * _near(shown, beside, is_highest=True) + blur[narrow] ** 2
+            missed = np.where(chosen == narrow, of_narrow, missed)
+    # windows cross halfway over a jump: what both sides of a few bins miss, these miss too
+    around = _near(missed, half_windows[-1], is_highest=True)
+    missed = np.maximum(missed, -_near(-around, half_windows[-1], is_highest=True))
     adapted = np.choose(chosen, slope)
     change = adapted - slope[0]
     return (
