@@ -61,3 +61,37 @@ def test_a_wait_that_flickers_between_two_codes_of_a_converter_is_no_part_of_a_c
         time, position, tension, stands, settings=CycleSettings(waveform="sinusoidal")
     )
     assert np.diff(time[found.first]) == pytest.approx(7.5, abs=0.5)
+
+
+def cycles_then_slack(shape, n_cycles, wait):
+    """Reversals of the cycles found: a hold at the valley, cycles of 8 s, a wait, slack."""
+    time = np.arange(0, 80 + 8 * n_cycles, 0.05)
+    begins, ends = 40.0, 40.0 + 8 * n_cycles
+    turns = np.clip(time - begins, 0, ends - begins) / 8
+    rises = {
+        "sinusoidal": (1 - np.cos(2 * np.pi * turns)) / 2,
+        "triangular": np.abs(2 * (turns - np.round(turns))),
+        "other": np.clip(1.4 * np.abs(2 * (turns - np.round(turns))), 0, 1),
+    }[shape]
+    approach = np.minimum(0.25 * (time - 15), 0).clip(-0.5)
+    leave = -0.25 * np.maximum(time - ends - wait, 0)
+    position = 3 + rises + approach + leave
+    position = np.maximum(position, 2.5) + np.random.default_rng(1).normal(0, 0.001, time.size)
+    tension = 200 * (position[None] - 2.5)
+    stands = find_standstills(time, position, tension, settings=PhaseSettings())
+    settings = CycleSettings(waveform=shape)
+    found = find_cycles(time, position, tension, stands, settings=settings)
+    return (time[found.last] - begins) / 8, position[found.last]
+
+
+@pytest.mark.parametrize("shape", ["sinusoidal", "triangular", "other"])
+@pytest.mark.parametrize("wait", [0.0, 1.0])
+def test_a_last_cycle_after_which_the_drive_goes_to_slack_ends_at_its_valley(shape, wait):
+    ends, valleys = cycles_then_slack(shape, 10, wait)
+    np.testing.assert_allclose(ends[-2:], [9, 10], atol=0.05)
+    np.testing.assert_allclose(valleys, 3, atol=0.03)
+
+
+def test_a_sine_that_is_broken_off_before_the_drive_goes_to_slack_has_no_last_cycle():
+    ends, _ = cycles_then_slack("sinusoidal", 9.75, 1.0)
+    np.testing.assert_allclose(ends[-1], 9, atol=0.05)

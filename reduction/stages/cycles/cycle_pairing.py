@@ -429,13 +429,21 @@ def _fit_ends(
             left_out[side] = 2
             short.append(int(nodes[turn]))
             continue
-        if is_sinusoidal and (ran_on or not _keeps_pace(time, nodes, end, turn, beside, at_edge)):
+        if ran_on:
+            far = int(nodes[end])
+            nodes[end] = (
+                _end_of_sine(values, nodes[[turn, beside]], far, tolerance)
+                if is_sinusoidal
+                else _passing(values, nodes[turn], far, values[nodes[beside]])
+            )
+            ranges[end] = neighbour
+        if is_sinusoidal and (
+            nodes[end] == nodes[turn] or not _keeps_pace(time, nodes, end, turn, beside, at_edge)
+        ):
             left_out[side] = 1
             paced.append(int(nodes[turn]))
         elif ran_on:
             cut.append(int(nodes[turn]))
-            nodes[end] = _passing(values, nodes[turn], nodes[end], values[nodes[beside]])
-            ranges[end] = neighbour
         # a short one between true reversals is whole: an amplitude that grows or decays
         elif at_edge and neighbour - own > _allowed(
             neighbour, abs(int(nodes[turn] - nodes[beside])), edge, begins=side == 0, still=still
@@ -480,6 +488,34 @@ def _passing(values: Floats, turn: int, end: int, level: float) -> int:
     if at and abs(way[at - 1] - level) < abs(way[at] - level):
         at -= 1
     return turn + step * at
+
+
+def _end_of_sine(values: Floats, nodes: Indices, far: int, tolerance: float) -> int:
+    """Sample where a half cycle that ran on from a turn ends, by the one on the other side of it.
+
+    The turn itself where the two are no images of each other beyond the middle of the stroke.
+
+    Examples
+    --------
+    Two cycles, a wait of one sample at the valley, and a move to slack.
+
+    >>> values = np.concatenate([-np.cos(np.pi * np.arange(33) / 8), [-1], np.arange(-1, -6, -0.5)])
+    >>> _end_of_sine(values, np.array([24, 16]), 42, 0.0)
+    32
+    >>> values[29:32] = values[28]  # it waits half way
+    >>> _end_of_sine(values, np.array([24, 16]), 42, 0.0)
+    24
+    """
+    turn, beside = (int(node) for node in nodes)
+    step, stroke = (1 if far > turn else -1), abs(values[turn] - values[beside])
+    middle = (values[turn] + values[beside]) / 2
+    own, other = (_passing(values, turn, end, middle) for end in (far, beside))
+    image = np.arange(other, beside - step, -step)
+    at = np.clip(own + other - image, 0, values.size - 1)
+    # each passes the middle up to half a sample beside the one that is taken
+    allowed = max(_SHORT * stroke, 2 * stroke / abs(turn - beside), tolerance)
+    apart = np.abs(values[at] - values[image])
+    return turn if (apart > allowed).any() else int(at[-1])
 
 
 def _keeps_pace(
@@ -582,7 +618,8 @@ def find_half_cycles(
     at a standstill, or at an edge where the signal stands, with less than 0.7 times its range.
     Between two reversals it is whole, but for one beside a move away: a sine that begins or
     ends at its mean has moved half a range there.
-    In a sinusoidal test an end that ran on, or takes 25 % more or less time, is left out.
+    In a sinusoidal test an end that takes 25 % more or less time is left out, and one that ran
+    on is, unless it is an image of its neighbour as far as that goes (`_end_of_sine`).
     A wait at an end, too short for a standstill, is no part of the half cycle there
     (`reduction.stages.cycles.cycle_pairing._without_stands`).
 
