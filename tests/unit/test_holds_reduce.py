@@ -528,3 +528,34 @@ def test_noise_that_hides_a_fast_term_leaves_the_initial_tension_without_much_of
         away.append((level.value - true) / level.standard_uncertainty)
     assert abs(np.mean(away)) < 0.25
     assert np.mean(np.abs(away) < 1.96) > 0.93
+
+
+@pytest.mark.parametrize("onward", [-1, 1])
+def test_readings_of_the_next_ramp_are_not_in_the_hold(onward):
+    # 5 m in 10 s, a hold of 110 s, and a ramp that sets out with 0.5 m/s2; nine of its readings
+    # lie within the noise of the position, as the standstill does
+    time = np.arange(0.0, 130.0, STEP)
+    leaves = onward * 0.25 * np.clip(time - 120.05, 0, None) ** 2
+    relaxed = 400 - 5 * np.log1p(np.clip(time - 10, 0, None) / 0.5)
+    error = np.random.default_rng(3).normal(0, [[0.05], [0.5]], (2, time.size))
+    place = np.clip(time / 2, 0, 5) + leaves + error[0]
+    tension = np.where(time < 10, 40 * time, relaxed) + 80 * leaves + error[1]
+    stand = standstills(time, [(10.0, 121.0)], [tension])
+    (hold,) = reduce_holds(
+        time, place, [tension], [place], stand, specimens=("new",), settings=HoldSettings()
+    )
+    final = 400 - 5 * np.log1p(110 / 0.5)
+    error = hold.hold_final_tension - final
+    assert abs(error) < 2 * hold.hold_final_tension_standard_uncertainty < 0.8
+    assert not hold.refusals and not hold.notes
+
+
+def test_a_fall_that_lasts_longer_than_a_ramp_sets_out_is_of_the_hold():
+    time = np.arange(0.0, 130.0, STEP)
+    tension = np.interp(time, [0, 10, 110, 130], [0, 400, 390, 350])
+    place = np.clip(time / 2, 0, 5)
+    stand = standstills(time, [(10.0, 121.0)], [tension])
+    (hold,) = reduce_holds(
+        time, place, [tension], [place], stand, specimens=("new",), settings=HoldSettings()
+    )
+    assert hold.hold_final_tension == pytest.approx(390 - 2 * 10.9, abs=0.1)

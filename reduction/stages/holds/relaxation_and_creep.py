@@ -1116,6 +1116,10 @@ def select_hold(
     seconds, place, load, stretch = select_samples(
         _is_finite_and_later(*held[:3]).__getitem__, *held
     )
+    if standstills.tension_tolerance is None and last + 1 < time.size:
+        n_held = _before_way_out(seconds, load)
+        last -= seconds.size - n_held
+        seconds, place, load, stretch = (one[:n_held] for one in (seconds, place, load, stretch))
     ramp = _ramp_before(*(one[begin : first + 1] for one in (time, moved, answer)), band=band)
     earlier, peak = (
         (np.nan, np.nan) if ramp is None else _logged_peaks(time, tension, ramp, first, last)
@@ -1138,6 +1142,44 @@ def select_hold(
         n_logged=last + 1 - first,
         on_tension=standstills.tension_tolerance is not None,
     )
+
+
+def _before_way_out(time: Floats, tension: Floats) -> int:
+    """How many samples of a hold come before the tension leaves with the crosshead.
+
+    Noise of the position hides how the next ramp begins.  Where the last reading is off the line
+    over the logarithm of time through those before by more than their noise, the hold ends with
+    the last one that is within it, or on the other side.  What goes on for longer is the
+    specimen's own.
+
+    Examples
+    --------
+    >>> time = np.arange(200.0)
+    >>> tension = 400 - 10 * np.log(1 + time) + 0.1 * np.cos(2 * time)
+    >>> tension[-2:] -= 5, 30
+    >>> print(_before_way_out(time, tension))
+    198
+    """
+    on_line = min(max(time.size // 5, _FEWEST_ON_LINE), _MOST_ON_LINE)
+    tested = on_line // 4
+    begin = time.size - on_line - tested
+    if begin <= 0:
+        return time.size
+    clock, series = np.log(time[begin:] - time[0]), tension[begin:]
+    line = np.polyfit(clock[:on_line], series[:on_line], 1)
+    off = series - np.polyval(line, clock)
+    noise = max(float(np.std(off[:on_line])), _noise_of(series[:on_line]))
+    if not abs(off[-1]) > max(_LEAVES * noise, _ROUNDED * abs(series[0])):
+        return time.size
+    back = off[: -tested - 1 : -1] * np.sign(off[-1]) <= noise
+    return time.size - int(np.argmax(back))
+
+
+_FEWEST_ON_LINE, _MOST_ON_LINE = 32, 1 << 14
+
+_LEAVES = 4.0  # standard deviations
+
+_ROUNDED = 1e-9
 
 
 def _ramp_leads_to(
