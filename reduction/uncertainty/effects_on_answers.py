@@ -175,13 +175,18 @@ def _of_slip(test: ReducedTest, index: int, code: str, let_out: float, **numbers
     return replace(found, severity="note") if is_held else found
 
 
-_OF_ANSWER = {"identity-open": _NAME, "drift-in-energy": "hysteresis_energy"}
+# what the drift of the cycles adds is taken off as if it were even over each: of creep in settled
+# cycles that is right to a tenth of it, and where it takes place is in the interval
+_OF_ANSWER = {"identity-open": (_NAME, 0.0), "drift-in-energy": ("hysteresis_energy", 0.1)}
 
 _EXPANDED = 2.0  # k of 95 %
 
 
 def with_weighed_notes(test: ReducedTest) -> ReducedTest:
-    """Tell as notes those warnings whose effect lies within the interval of what they move."""
+    """Tell as notes those warnings whose effect lies within the interval of what they move.
+
+    What drift adds to H, as large as the interval that it makes, is a warning from a tenth of H on.
+    """
     summary = test.amplitude
     if summary is None:
         return test
@@ -190,9 +195,9 @@ def with_weighed_notes(test: ReducedTest) -> ReducedTest:
     def weighed(one: Note) -> Note:
         if one.code not in _OF_ANSWER or one.subject not in names:
             return one
-        name, index = _OF_ANSWER[one.code], names.index(one.subject)
+        (name, least), index = _OF_ANSWER[one.code], names.index(one.subject)
         value = abs(float(getattr(summary, name)[index]))
-        half = _EXPANDED * _standard_uncertainty(test, summary, name, index)
+        half = max(_EXPANDED * _standard_uncertainty(test, summary, name, index), least * value)
         return replace(one, severity="note") if abs(one.numbers["effect"]) * value <= half else one
 
     identity = test.identity
