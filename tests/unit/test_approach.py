@@ -106,6 +106,22 @@ def test_the_end_of_a_ramp_that_slows_down_is_known_to_its_slowing():
     assert slows == pytest.approx(2 * (0.95 - 0.3) / np.sqrt(12), rel=0.25)
 
 
+@pytest.mark.parametrize(
+    ("rounding", "noise"), [(1.0, 1e-6), (1.0, 1e-4), (3.0, 1e-6), (3.0, 1e-4), (3.0, 1e-3)]
+)
+def test_a_machine_that_slows_down_evenly_stops_within_the_interval_of_the_end(rounding, noise):
+    # from rest to rest in 15 s; over the last seconds the rate falls evenly to nothing
+    time = np.arange(0.0, 60.0, 0.05)
+    left = np.clip(END - time, 0, RAMP)
+    way = np.where(left < rounding, left**2 / (2 * rounding), left - rounding / 2)
+    place = 1 - way / (RAMP - rounding / 2)
+    place += np.random.default_rng(5).normal(0, noise, time.size)
+    found = find_approach(time, place, begin=0, first=600, last=1199, noise_range=12 * noise)
+    upto = slice(100, found.end + 1)
+    end, uncertainty = ramp_end_time(time[upto], place[upto], band=12 * noise)
+    assert abs(end - END) < 2 * uncertainty
+
+
 def one_hold(shape):
     """A Maxwell element of 40 % and 30 s beside a spring, 100 N, and its drop at one length."""
     time = np.arange(0.0, END + DURATION, 0.05)

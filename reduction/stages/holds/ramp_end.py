@@ -89,13 +89,12 @@ def ramp_end_time(time: Floats, place: Floats, *, band: float) -> tuple[float, f
     rates /= np.diff(time[-1 - rates.size - 1 : -1])
     rate = float(np.median(rates))
     last = place[-1] - place[-2]
-    width = max(slowing, 0.0)
-    if abs(rate) * step <= band:
+    is_hidden, slows = abs(rate) * step <= band, rates[-1] / rate < _SLOWS
+    # without a corner, or where noise hides whether it has one, so long before or after
+    width = max(slowing, 0.0) * (2 if is_hidden or slows else 1)
+    if is_hidden:
         width = max(width, step)
-    elif rates[-1] / rate < _SLOWS and abs(rate - rates[-1]) * step > band:
-        # it has no corner, and ends when its last part is within what noise and near ones hide
-        width *= 2
-    else:
+    elif not (slows and abs(rate - rates[-1]) * step > band):
         end = float(time[-2]) + step * float(np.clip(last / (rate * step), 0.0, 1.0))
     return end, width / 12**0.5
 
