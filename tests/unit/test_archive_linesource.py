@@ -239,9 +239,10 @@ def test_a_pull_that_was_refused_and_a_test_without_a_curve_give_no_line(folder)
             _line_source_of_test(one, name)
 
 
-def test_an_archive_without_a_curve_is_refused_by_its_name(folder, tmp_path):
+def test_an_archive_without_a_curve_or_a_level_is_refused_by_its_name(folder, tmp_path):
     with open_archive(folder / "R01.nc") as archive:
-        bare = archive.load().drop_vars(list(CURVES), errors="ignore")
+        levels = [name for name in archive.variables if str(name).startswith("test_")]
+        bare = archive.load().drop_vars([*CURVES, *levels], errors="ignore")
     path = tmp_path / "bare.nc"
     bare.to_netcdf(path, engine="netcdf4")
     with pytest.raises(ArchiveError, match=r"nothing that can be looked up; found .*bare\.nc"):
