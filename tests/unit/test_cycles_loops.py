@@ -1381,3 +1381,25 @@ def test_a_machine_that_rests_at_its_peak_alone_still_misses_its_valley(rest, co
     for name, value in (("tension_amplitude", tension), ("strain_amplitude", stretch)):
         spread = found.uncertainty[name][0]
         assert abs(getattr(found, name)[0] - value) < 2.5 * spread + 3e-4 * value < 0.04 * value
+
+
+def test_amplitude_of_a_noisy_sine_is_covered():
+    # an elastic curve that stiffens, of which the third harmonic is near the noise
+    def curve(strain):
+        return 220 * strain + 70 * strain**3
+
+    time = np.arange(0, 70, 0.1)
+    off = []
+    for seed in range(12):
+        rng = np.random.default_rng(seed)
+        strain = 0.9 - 0.4 * np.cos(2 * np.pi * (time - rng.uniform(0, 1)) / 12)
+        force = (curve(strain) + rng.normal(0, 4, time.size))[None]
+        stands = find_standstills(time, strain, force, settings=PhaseSettings())
+        settings = CycleSettings(waveform="sinusoidal")
+        cycles = find_cycles(time, strain, force, stands, settings=settings)
+        loops = close_loops(time, force, strain[None], cycles, waveform="sinusoidal")
+        found = summarise_amplitude(loops, area=[1e-4])
+        true = (curve(1.3) - curve(0.5)) / 2
+        off.append((found.tension_amplitude[0] - true) / found.uncertainty["tension_amplitude"][0])
+    assert np.mean(np.abs(off) < 2) > 0.85
+    assert np.sqrt(np.mean(np.square(off))) < 1.5

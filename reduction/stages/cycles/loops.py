@@ -788,7 +788,7 @@ class _Shape:
     """Half the range of a wave and its middle, over the amplitude of its fundamental.
 
     ``missed`` is the range that half the range may still have, by how much it changed with the
-    number of harmonics, up or down.
+    number of harmonics, up or down, and by their noise.
     """
 
     half: float = 1.0
@@ -910,7 +910,13 @@ def _shape_of_wave(
     half = (high - low) / 2
     missed = 2 * float(np.abs(half[-1] - half).max())
     rounded = WITHIN_STEP * per_harmonic * np.sqrt(1 + np.count_nonzero(is_kept))
-    return _Shape(half[-1], (high[-1] + low[-1]) / 2, float(np.hypot(missed, rounded)))
+    # odd harmonics move both extremes apart: those that are kept by their noise, and the others by
+    # what they have beyond it
+    is_odd = (orders > 1) & (orders % 2 == 1)
+    beyond = float((size**2 - 2 * spread**2)[is_odd & ~is_kept].sum())
+    by_noise = spread**2 * np.count_nonzero(is_odd & is_kept) + max(beyond, 0.0)
+    missed = float(np.linalg.norm([missed, rounded, WITHIN_STEP * np.sqrt(by_noise)]))
+    return _Shape(half[-1], (high[-1] + low[-1]) / 2, missed)
 
 
 _IRREGULAR = 0.03  # change of amplitude from one cycle to the next, median
