@@ -1353,6 +1353,14 @@ def _readings_at_turns(
         at_peak, at_end = (np.fmax(wait[at - 1], wait[at]) for at in (peak, end))
         beside = (at_peak + at_end) / 2
         missed = (top - (first + last) / 2) * beside / (time[end] - time[begin])
+        # noise hides the slow stroke of a saw alone: its readings are the lower end of what lies
+        # within its step, which is greater where the series relaxes behind a fast stroke
+        after = np.minimum(end + 1, values.size - 1)
+        above = top - np.stack([values[peak - 1], values[peak + 1]])
+        below = np.stack([values[end - 1], values[after]]) - last
+        slow, fast = np.nanmedian(np.sort(above, axis=0) + np.sort(below, axis=0), axis=1)
+        if slow < _STEEP * reading_noise(values) < fast:
+            missed = np.fmax(missed, slow)
     return way * top, way * first, way * last, missed
 
 
@@ -1568,6 +1576,8 @@ def _mean_of_rest(values: Floats, at: Integers, greatest: Floats, *, within: Flo
     beside = np.fmax(values[np.maximum(at - 1, 0)], values[np.minimum(at + 1, values.size - 1)])
     return np.where(greatest - beside < within, (greatest + beside) / 2, greatest)
 
+
+_STEEP = 20.0  # noise of a reading, between the slow steps and the fast ones
 
 _OF_A_STEP = 0.05  # of the mean step of a branch
 
