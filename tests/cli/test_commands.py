@@ -250,7 +250,16 @@ def test_the_start_of_a_command_loads_no_heavy_package():
 
 
 def test_a_look_up_of_a_published_line_loads_no_package_of_archives_or_tables():
-    heavy = {"pandas", "scipy.stats", "xarray", "netCDF4", "pyarrow", "plotly"}
+    heavy = {
+        "pandas",
+        "scipy.interpolate",
+        "scipy.optimize",
+        "scipy.stats",
+        "xarray",
+        "netCDF4",
+        "pyarrow",
+        "plotly",
+    }
     code = f"""
 import sys
 sys.argv = ["reduction", "lookup", "nylon-double-braid-0.5in-new", "--quantity", "K_ap", "--quiet",

@@ -52,8 +52,8 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.interpolate import BSpline
 
 from reduction.record.arrays import as_positive, as_same_shape
 from reduction.record.errors import DataError, FitError
@@ -312,11 +312,13 @@ _BLOCK_SAMPLES = 1 << 17  # whose rows are held at once
 _GAIN_OF_HALVING = 2**_DEGREE
 
 
-def _spline(n_coefficients: int) -> BSpline:
+def _spline(n_coefficients: int) -> scipy.interpolate.BSpline:
     """Every cubic B-spline over -1 to 1 on equal knots, as one function of u."""
     knots = np.linspace(-1, 1, n_coefficients - _DEGREE + 1)
     ends = np.ones(_DEGREE)
-    return BSpline(np.concatenate([-ends, knots, ends]), np.eye(n_coefficients), _DEGREE)
+    return scipy.interpolate.BSpline(
+        np.concatenate([-ends, knots, ends]), np.eye(n_coefficients), _DEGREE
+    )
 
 
 def _rows_of_strain(scaled: Floats, n_coefficients: int) -> Floats:
@@ -357,7 +359,7 @@ def _fitted_pieces(blocks: _PullBlocks) -> dict[int, tuple[Floats, Floats]]:
         total = np.zeros((n_blocks, size))
         for start in range(0, n_samples, _BLOCK_SAMPLES):
             part = slice(start, start + _BLOCK_SAMPLES)
-            basis = BSpline.design_matrix(
+            basis = scipy.interpolate.BSpline.design_matrix(
                 np.clip(blocks.scaled[part], -1, 1), _spline(size).t, _DEGREE
             )
             total += (sums_by_cell(cell[part], n_blocks) @ basis).toarray()
