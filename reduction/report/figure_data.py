@@ -289,7 +289,8 @@ def _intervals(coordinate: Floats, n_intervals: int) -> NDArray[np.int64]:
         rank = np.arange(coordinate.shape[0], dtype=np.int64)
         return np.asarray(rank * n_intervals // coordinate.shape[0])
     first = coordinate[finite][0]
-    place = np.maximum(rising - first, 0.0) / (rising[-1] - first) * n_intervals
+    # in this order a sample on an edge of whole numbers is on its upper side
+    place = np.maximum(rising - first, 0.0) * n_intervals / (rising[-1] - first)
     return np.asarray(np.minimum(place.astype(np.int64), n_intervals - 1))
 
 

@@ -84,7 +84,7 @@ def test_static_and_dynamic_tests_of_one_campaign_are_set_side_by_side(command, 
         for name in ("interval_modulus", "tangent_modulus"):
             whole = float(row[f"{name}_standard_uncertainty [Pa]"])
             assert whole / float(row[f"{name} [Pa]"]) > 0.1
-        assert 0 < float(row["static_dynamic_ratio_standard_uncertainty [1]"]) < 0.08 * ratio
+        assert 0 < float(row["static_dynamic_ratio_standard_uncertainty [1]"]) < 0.1 * ratio
     explained = {row["column"] for row in table(tables, "columns")}
     assert set(rows[0]) <= explained
 

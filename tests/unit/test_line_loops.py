@@ -108,7 +108,11 @@ def test_the_random_part_of_a_run_is_the_scatter_of_runs(reading):
     for name in NAMES:
         values = np.array([getattr(line, name)[0] for line in runs])
         stated = np.sqrt(np.mean([line.random_uncertainty[name][0] ** 2 for line in runs]))
-        assert stated == pytest.approx(values.std(ddof=1), rel=0.25), name
+        scatter = values.std(ddof=1)
+        # what the turns may miss is in K' of the fundamental too, which has none, and in what is
+        # computed from it
+        most = 1.25 if reading == "amplitude" else 1.5
+        assert 0.75 * scatter < stated < most * scatter, name
 
 
 @pytest.mark.parametrize("at_a_turn", [False, True], ids=["evenly", "at a turn"])

@@ -82,6 +82,13 @@ def test_no_room_and_no_channel_are_refused():
         keep_extremes(np.arange(10.0), np.ones(10), limit=3)
 
 
+def test_a_sample_on_an_edge_belongs_to_the_interval_above():
+    channel = np.ones(209)
+    channel[60] = 0.0  # where the fifteenth of 52 intervals of four ends
+    _, least, _ = least_and_greatest(np.arange(209.0), channel, n_intervals=52)
+    assert np.flatnonzero(least == 0).tolist() == [15]
+
+
 @given(CHANNELS, st.integers(3, 60))
 def test_between_least_and_greatest_lies_every_sample_of_an_interval(channel, n_intervals):
     place = np.arange(channel.size, dtype=float)

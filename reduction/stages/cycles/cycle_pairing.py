@@ -430,13 +430,13 @@ def _fit_ends(
             short.append(int(nodes[turn]))
             continue
         if ran_on:
-            far = int(nodes[end])
-            nodes[end] = (
-                _end_of_sine(values, nodes[[turn, beside]], far, tolerance)
-                if is_sinusoidal
-                else _passing(values, nodes[turn], far, values[nodes[beside]])
-            )
-            ranges[end] = neighbour
+            far, ranges[end] = int(nodes[end]), neighbour
+            if not is_sinusoidal:
+                nodes[end] = _passing(values, nodes[turn], far, values[nodes[beside]])
+            elif side == 1:
+                nodes[end] = _end_of_sine(values, nodes[[turn, beside]], far, tolerance)
+            else:  # where an approach goes over into a sine, its acceleration jumps
+                nodes[end] = nodes[turn]
         if is_sinusoidal and (
             nodes[end] == nodes[turn] or not _keeps_pace(time, nodes, end, turn, beside, at_edge)
         ):
@@ -619,7 +619,7 @@ def find_half_cycles(
     Between two reversals it is whole, but for one beside a move away: a sine that begins or
     ends at its mean has moved half a range there.
     In a sinusoidal test an end that takes 25 % more or less time is left out, and one that ran
-    on is, unless it is an image of its neighbour as far as that goes (`_end_of_sine`).
+    on is, unless it is the last and an image of its neighbour (`_end_of_sine`).
     A wait at an end, too short for a standstill, is no part of the half cycle there
     (`reduction.stages.cycles.cycle_pairing._without_stands`).
 

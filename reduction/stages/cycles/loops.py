@@ -800,7 +800,7 @@ _MOST_HARMONICS = 16
 
 _FINEST = 1e-3  # of a cycle, between phases
 
-_CYCLES_OF_SHAPE, _SAMPLES_OF_SHAPE = 60, 400  # that are looked at; of each of them
+_CYCLES_OF_SHAPE, _SAMPLES_OF_SHAPE = 100, 400  # that are looked at; of each of them
 
 _FEWEST_INSIDE = 4
 
@@ -896,8 +896,9 @@ def _shape_of_wave(
     per_harmonic = rounding / middle * np.sqrt(2 / n_phases)
     spread = float(np.hypot(spread, per_harmonic))
     size = np.hypot(of_wave[1 : order + 1], of_wave[order + 1 :])
-    # the fundamental is that of each cycle; a harmonic within the noise is none
-    is_kept = (size > _ABOVE_NOISE * spread) & (orders > 1)
+    # the fundamental is that of each cycle; a harmonic within the noise is none, but for the third,
+    # which every curve that bends has, and which moves both extremes apart
+    is_kept = ((size > _ABOVE_NOISE * spread) & (orders > 1)) | (orders == 3)
     weights = np.concatenate([[0.0], of_wave[1:] * np.tile(is_kept, 2)])
     weights[1] = 1.0
     curve = terms(np.linspace(0, 2 * np.pi, 721))
@@ -910,12 +911,8 @@ def _shape_of_wave(
     half = (high - low) / 2
     missed = 2 * float(np.abs(half[-1] - half).max())
     rounded = WITHIN_STEP * per_harmonic * np.sqrt(1 + np.count_nonzero(is_kept))
-    # odd harmonics move both extremes apart: those that are kept by their noise, and the others by
-    # what they have beyond it
-    is_odd = (orders > 1) & (orders % 2 == 1)
-    beyond = float((size**2 - 2 * spread**2)[is_odd & ~is_kept].sum())
-    by_noise = spread**2 * np.count_nonzero(is_odd & is_kept) + max(beyond, 0.0)
-    missed = float(np.linalg.norm([missed, rounded, WITHIN_STEP * np.sqrt(by_noise)]))
+    by_noise = WITHIN_STEP * spread * np.sqrt(np.count_nonzero(is_kept & (orders % 2 == 1)))
+    missed = float(np.linalg.norm([missed, rounded, by_noise]))
     return _Shape(half[-1], (high[-1] + low[-1]) / 2, missed)
 
 
