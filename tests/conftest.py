@@ -25,8 +25,8 @@ collect_ignore = ["fuzz_readers.py"]
 
 # each takes a minute or more; the first makes the campaigns that others read, and would wait for
 LONGEST = (
-    "browser/test_campaign_pages.py", "cli/test_run_workers.py", "browser/test_design_values.py",
-    "oracle/test_strangers_end_to_end.py",
+    "browser/test_campaign_pages.py", "docs/test_docs_build.py", "cli/test_run_workers.py",
+    "browser/test_design_values.py", "oracle/test_strangers_end_to_end.py",
 )  # fmt: skip
 # files in which all is nightly but a few tests, which are slow
 NIGHTLY_BUT = {

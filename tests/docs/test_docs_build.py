@@ -1,7 +1,7 @@
 """The documentation is built as it is published, and no warning comes of it.
 
 First every command of docs/get-started.md is run, in its order; then its products are those that the
-scripts of the gallery read. The build itself is nightly.
+scripts of the gallery read. Nightly each of these is run by the build, by default a few.
 """
 
 import contextlib
@@ -31,6 +31,18 @@ SCRIPTS = sorted(
     if path.parent.name in ("examples", "tutorials")
 )  # fmt: skip
 # a reader's first, one of each kind of source, and what is copied to be changed
+RUN_OFTEN = (
+    "plot_01_tether_test",
+    "plot_02_rope_design_values",
+    "plot_03_hose_against_its_test",
+    "plot_07_own_reader",
+    "plot_1_whoi_2005_10",
+)
+# references to scripts that were not run lead nowhere
+IN_PART = (
+    "-D", "nitpicky=0",
+    "-D", f"sphinx_gallery_conf.filename_pattern={'|'.join(f'/{name}.py' for name in RUN_OFTEN)}",
+)  # fmt: skip
 RUN_ALONE = [word for name in ("T-1", "T-2", "T-4-extended") for word in ("--test", name)]
 OPENED = (
     "index", "method", "errata", "gallery/index", "tutorial/plot_1_whoi_2005_10",
@@ -131,10 +143,11 @@ class Page(HTMLParser):
 
 
 @pytest.fixture(scope="module")
-def built(walked, tmp_path_factory):
+def built(request, walked, tmp_path_factory):
     """The folder of a build from a copy, so that nothing is written beside the sources.
 
-    It has what the extra `docs` brings and nothing else.
+    It has what the extra `docs` brings and nothing else. It is whole where a nightly test asks for
+    it; otherwise a few scripts of the gallery are run.
     """
     for name in NEEDED:
         pytest.importorskip(name)
@@ -144,9 +157,14 @@ def built(walked, tmp_path_factory):
     for path in ROOT.iterdir():
         if path.name not in ("docs", "processed", "reports") and not path.name.startswith("."):
             (folder / path.name).symlink_to(path)
+    is_whole = any(
+        item.get_closest_marker("nightly")
+        for item in request.session.items
+        if item.path == request.path
+    )
     done = subprocess.run(
         [sys.executable, "-m", "sphinx", "-W", "--keep-going", "-q", "-j", "2", "-b", "html",
-         "-n", "docs", "out"],
+         *(["-n"] if is_whole else IN_PART), "docs", "out"],
         cwd=folder, capture_output=True, text=True, check=False,
         env=environment_with(folder / "site", "docs") | {"REDUCTION_DOCS_WORK": str(work)},
     )  # fmt: skip
@@ -162,7 +180,6 @@ def pages(built):
     }
 
 
-@pytest.mark.nightly
 def test_every_document_has_a_page(built, pages):
     sources = {
         path.relative_to(ROOT / "docs").with_suffix(".html").as_posix()
@@ -172,7 +189,6 @@ def test_every_document_has_a_page(built, pages):
     assert sources <= pages.keys()
 
 
-@pytest.mark.nightly
 def test_every_inner_link_leads_to_a_page_and_an_anchor(built, pages):
     lost = []
     for name, page in pages.items():
@@ -191,7 +207,6 @@ def test_every_inner_link_leads_to_a_page_and_an_anchor(built, pages):
     assert not lost
 
 
-@pytest.mark.nightly
 def test_nothing_is_fetched_from_the_network(built, pages):
     fetched = {one for page in pages.values() for one in page.fetched}
     assert not [
@@ -203,17 +218,28 @@ def test_nothing_is_fetched_from_the_network(built, pages):
 
 @pytest.mark.parametrize(
     ("name", "least"),
-    [("method", 50), ("reference/api/prediction", 50)],
+    [
+        ("method", 50),
+        pytest.param("reference/api/prediction", 50, marks=pytest.mark.nightly),
+    ],
 )
-@pytest.mark.nightly
 def test_formulas_are_set(name, least, built):
     text = (built / f"{name}.html").read_text(encoding="utf-8")
     assert text.count("<math ") > least
     assert ".. math::" not in text
 
 
-@pytest.mark.nightly
-@pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.stem)
+@pytest.mark.parametrize(
+    "script",
+    [
+        pytest.param(
+            path,
+            id=path.stem,
+            marks=() if path.stem in RUN_OFTEN else pytest.mark.nightly,
+        )
+        for path in SCRIPTS
+    ],
+)
 def test_a_script_ran_and_is_shown_with_what_it_printed_and_drew(script, built):
     page = (built / PAGES_OF[script.parent.name] / f"{script.stem}.html").read_text(
         encoding="utf-8"
@@ -232,8 +258,18 @@ def test_every_figure_says_what_its_numbers_are(script):
         assert re.search(r"synthetic|published|computed|made-up", one), one[:200]
 
 
-@pytest.mark.nightly
-@pytest.mark.parametrize(("name", "width"), list(itertools.product(OPENED, (1280, 390))))
+@pytest.mark.parametrize(
+    ("name", "width"),
+    [
+        ("index", 1280),
+        ("method", 390),
+        *(
+            pytest.param(name, width, marks=pytest.mark.nightly)
+            for name, width in itertools.product(OPENED, (1280, 390))
+            if (name, width) not in (("index", 1280), ("method", 390))
+        ),
+    ],
+)
 def test_a_page_opens_from_the_disk_and_is_as_wide_as_the_screen(name, width, built, visit):
     opened = visit(built / f"{name}.html", width=width)
     assert not opened.errors

@@ -1,8 +1,9 @@
-"""Draw what `reduction run` prints: docs/images/terminal.png.
+"""Draw what `reduction run` printed before the answers came first, and what it prints now.
 
-    python docs/make_terminal_picture.py
+    python docs/make_terminal_pictures.py
 
-Needs Chromium.
+The pictures, docs/images/terminal-*.png, are of real output: the first of commit `BEFORE`, from its
+own files. Needs git and Chromium.
 """
 
 from __future__ import annotations
@@ -12,10 +13,12 @@ import os
 import shutil
 import subprocess
 import sys
+import tarfile
 import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
+BEFORE = "4205a881"
 CAMPAIGN = "raw/tmt-synthetic/campaign.toml"
 COLUMNS, LINE_HEIGHT, MARGIN, CHARACTER = 176, 17, 14, 7.24  # [1], [px], [px], [px]
 PAGE = """<!DOCTYPE html><meta charset="utf-8"><style>
@@ -27,12 +30,12 @@ b {{ color: #8fd18f; font-weight: normal }}
 {text}</pre>"""
 
 
-def output_of_run(folder: Path) -> str:
-    """What a run of the campaign prints."""
+def output_of(source: Path, folder: Path) -> str:
+    """What a run of the campaign prints with the package of a folder."""
     shutil.copytree(ROOT / "raw" / "tmt-synthetic", folder / "raw" / "tmt-synthetic")
     done = subprocess.run(  # noqa: S603 - our own command
         [sys.executable, "-m", "reduction", "run", CAMPAIGN], cwd=folder, check=True,
-        capture_output=True, text=True, env=os.environ | {"PYTHONPATH": str(ROOT)},
+        capture_output=True, text=True, env=os.environ | {"PYTHONPATH": str(source)},
     )  # fmt: skip
     return done.stdout.rstrip()
 
@@ -57,6 +60,23 @@ def draw(text: str, picture: Path, folder: Path) -> None:
     )  # fmt: skip
 
 
-if __name__ == "__main__":
+def main() -> None:
+    """Run and draw both."""
     with tempfile.TemporaryDirectory() as scratch:
-        draw(output_of_run(Path(scratch)), ROOT / "docs" / "images" / "terminal.png", Path(scratch))
+        folder = Path(scratch)
+        old = folder / "before"
+        old.mkdir()
+        packed = folder / "before.tar"
+        git = ["git", "archive", "--output", str(packed), BEFORE, "reduction"]
+        subprocess.run(git, cwd=ROOT, check=True)  # noqa: S603 - of this repository
+        with tarfile.open(packed) as archive:
+            archive.extractall(old, filter="data")
+        for name, source in (("before", old), ("now", ROOT)):
+            own = folder / f"run-{name}"
+            own.mkdir()
+            text = output_of(source, own)
+            draw(text, ROOT / "docs" / "images" / f"terminal-{name}.png", own)
+
+
+if __name__ == "__main__":
+    main()
