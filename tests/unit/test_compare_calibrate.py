@@ -378,7 +378,8 @@ def test_fitted_modulus_and_scale_trade_as_their_correlation_says():
     ratio = np.std(values, axis=0) / np.median(
         [one.value_standard_uncertainty for one in fits], axis=0
     )
-    assert np.all(ratio > 0.75) and np.all(ratio < 1.2)
+    # what the cord curve leaves open between its points is stated too, and noise does not scatter it
+    assert np.all(ratio > 0.5) and np.all(ratio < 1.2)
 
 
 def test_residuals_that_err_together_count_as_few_points():

@@ -182,18 +182,23 @@ def test_marks_of_one_pull_that_no_law_of_the_tension_follows_are_named():
     assert found.numbers["is_strain"]
 
 
+def marks_up_and_down(splice):
+    """Exact marks at slack, in three holds on the way up, and in one on the way down."""
+    free = 2.5 * (1 + np.array([0.0, 0.6, 1.0, 1.4, 13 / 15]))
+    rows = marks(
+        free + splice, free, hold=("slack", "min", "centre", "max", "centre down"),
+        reading_uncertainty=1e-5,
+    )  # fmt: skip
+    return replace(rows, is_reading_stated=True)
+
+
 def test_friction_that_holds_the_splices_while_the_rubber_relaxes_shows_when_a_hold_begins():
     """6 % of friction, all of it within the relaxation of the holds: none by their end."""
     start = np.array([0.0, 300.0, 450.0, 600.0, 400.0])
     end = start * np.array([1.0, 0.96, 0.96, 0.96, 1.03])
     rest = 1.2
     splice = rest + rest * 0.2 * start / 450.0 * np.array([1.0, 1.0, 1.0, 1.0, 1.06])
-    free = 2.5 * (1 + np.array([0.0, 0.6, 1.0, 1.4, 13 / 15]))
-    rows = marks(
-        free + splice, free, hold=("slack", "min", "centre", "max", "centre down"),
-        reading_uncertainty=1e-5,
-    )  # fmt: skip
-    rows = replace(rows, is_reading_stated=True)
+    rows = marks_up_and_down(splice)
     model = fit_strain_model(
         Specimen("new"), test_id="T-1", marks=rows, mark_tension=end, mark_tension_at_start=start
     )
@@ -205,12 +210,7 @@ def test_marks_on_the_way_down_say_the_friction_of_the_splices():
     force = np.array([0.0, 300.0, 450.0, 600.0, 400.0])
     rest, by_law = 1.2, 1.2 * 0.2 * force / 450.0
     splice = rest + by_law * np.array([1.0, 1.0, 1.0, 1.0, 1.08])
-    free = 2.5 * (1 + np.array([0.0, 0.6, 1.0, 1.4, 13 / 15]))
-    rows = marks(
-        free + splice, free, hold=("slack", "min", "centre", "max", "centre down"),
-        reading_uncertainty=1e-5,
-    )  # fmt: skip
-    rows = replace(rows, is_reading_stated=True)
+    rows = marks_up_and_down(splice)
     model = fit_strain_model(Specimen("new"), test_id="T-1", marks=rows, mark_tension=force)
     assert model.splice_friction == pytest.approx(0.08, abs=0.004)
     assert "centre down" not in model.mark_hold

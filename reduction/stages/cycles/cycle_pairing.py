@@ -491,7 +491,7 @@ def _passing(values: Floats, turn: int, end: int, level: float) -> int:
 
 
 def _end_of_sine(values: Floats, nodes: Indices, far: int, tolerance: float) -> int:
-    """Sample where a half cycle that ran on from a turn ends, by the one on the other side of it.
+    """Sample where a last half cycle that ran on from a turn ends, by the one before it.
 
     The turn itself where the two are no images of each other beyond the middle of the stroke.
 
@@ -507,13 +507,12 @@ def _end_of_sine(values: Floats, nodes: Indices, far: int, tolerance: float) -> 
     24
     """
     turn, beside = (int(node) for node in nodes)
-    step, stroke = (1 if far > turn else -1), abs(values[turn] - values[beside])
-    middle = (values[turn] + values[beside]) / 2
+    stroke, middle = abs(values[turn] - values[beside]), (values[turn] + values[beside]) / 2
     own, other = (_passing(values, turn, end, middle) for end in (far, beside))
-    image = np.arange(other, beside - step, -step)
-    at = np.clip(own + other - image, 0, values.size - 1)
+    image = np.arange(other, beside - 1, -1)
+    at = np.minimum(own + other - image, values.size - 1)
     # each passes the middle up to half a sample beside the one that is taken
-    allowed = max(_SHORT * stroke, 2 * stroke / abs(turn - beside), tolerance)
+    allowed = max(_SHORT * stroke, 2 * stroke / (turn - beside), tolerance)
     apart = np.abs(values[at] - values[image])
     return turn if (apart > allowed).any() else int(at[-1])
 

@@ -1196,7 +1196,7 @@ def _friction(model: StrainModel, readings: PooledMarks) -> tuple[float, float] 
         # the law has the tensions at the end of the holds on the way up
         relaxed = float(np.nanmean(readings.tension[up] / readings.tension_at_start[up]))
         tension.append(readings.tension_at_start[rows] * relaxed)
-    shares = []
+    reading, shares, errors = sqrt(3) * _tape_error(marks), [], []
     for one in tension:
         by_law = position_by_model(model, strain=strain, tension=one) - marks.free_length[rows]
         extension = by_law - known["relaxed_splice_length"]
@@ -1204,8 +1204,8 @@ def _friction(model: StrainModel, readings: PooledMarks) -> tuple[float, float] 
         if not size > 0:
             return None
         shares.append(float(extension @ (marks.splice_length[rows] - by_law)) / size)
-    reading = sqrt(3) * _tape_error(marks) / sqrt(size)
-    return float(np.mean(shares)), float(np.hypot(reading, np.ptp(shares) / 2))
+        errors.append(reading / sqrt(size))
+    return float(np.mean(shares)), float(np.hypot(np.mean(errors), np.ptp(shares) / 2))
 
 
 # a strain slope that differs by less than this is not worth a sentence
