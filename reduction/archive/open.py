@@ -177,7 +177,9 @@ def _as_read(built: xr.Dataset) -> xr.Dataset:
     found = built.copy(deep=False)
     for variable in found.variables.values():
         if variable.dtype.kind == "U":
-            variable.values = variable.values.astype(object)
+            texts = variable.values.astype(object)
+            # in a variable of its own: for an array alone xarray imports Dask, to ask whether it is one
+            variable.data = xr.Variable(variable.dims, texts, fastpath=True)
         variable.attrs = as_read(variable.attrs)
         variable.encoding = {}
     return found
