@@ -37,7 +37,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import compress, product
 from math import degrees, pi
 from typing import Any, Literal, NamedTuple
@@ -709,15 +709,22 @@ class _FitProblem:
         """Curves at the nodes as the test shows them where it measured."""
         return np.asarray(self.measured.reading.of(curve)[:, self.used])
 
-    def slopes(self, traced: Floats) -> Floats:
-        """Derivative of tension by each number and traced error, (n_used, n_traced)."""
-        step = _DIFFERENCE * np.eye(self.n_followed, traced.size)
-        ends = np.vstack([traced - step, traced + step])
-        p = len(self.names)
-        ends[:, :p] = np.clip(ends[:, :p], self.low, self.high)
-        below, above = np.split(self.tension_at(ends), 2)
-        width = np.diagonal(ends[self.n_followed :] - ends[: self.n_followed])
-        followed = (above - below) / width[:, None]
+    def slopes(self, traced: Floats, is_rough: bool = False) -> Floats:
+        """Derivative of tension by each number and traced error, (n_used, n_traced).
+
+        Rough ones are differences to one side.
+        """
+        p, n = len(self.names), self.n_followed
+        step = _DIFFERENCE * np.eye(n, traced.size)
+        if is_rough:
+            step[:, :p] *= np.where(traced[:p] + _DIFFERENCE > self.high, -1.0, 1.0)
+            tension = self.tension_at(np.vstack([traced, traced + step]))
+            followed = (tension[1:] - tension[0]) / np.diagonal(step)[:, None]
+        else:
+            ends = np.vstack([traced - step, traced + step])
+            ends[:, :p] = np.clip(ends[:, :p], self.low, self.high)
+            below, above = np.split(self.tension_at(ends), 2)
+            followed = (above - below) / np.diagonal(ends[n:] - ends[:n])[:, None]
         if not self.between:
             return np.asarray(followed).T
         at = traced[None, :]
@@ -746,9 +753,9 @@ class _FitProblem:
         """What is squared and summed: every strain, then every error."""
         return np.concatenate([self.remainder(x) / noise, x[len(self.names) :]])
 
-    def jacobian(self, x: Floats, noise: Floats) -> Floats:
+    def jacobian(self, x: Floats, noise: Floats, is_rough: bool = False) -> Floats:
         """Of `residual`, by the numbers and the errors."""
-        slopes = self.slopes(x[: self.n_traced])
+        slopes = self.slopes(x[: self.n_traced], is_rough)
         data = np.hstack([slopes, self.shared.T]) / noise[:, None]
         p, k = len(self.names), self.n_error
         prior = np.hstack([np.zeros((k, p)), np.eye(k)])
@@ -767,8 +774,8 @@ class _FitProblem:
         cost = np.sum(error**2, axis=1) + 1e-3 * np.sum(offsets**2, axis=1)
         return np.asarray(tried[int(np.argmin(cost))])
 
-    def solve(self, first: Floats, noise: Floats, tolerance: float = _TOLERANCE) -> Floats:
-        """Least sum of squares, from these numbers and errors.
+    def solve(self, first: Floats, noise: Floats, is_rough: bool = False) -> Floats:
+        """Least sum of squares, from these numbers and errors; rough where another search follows.
 
         Raises
         ------
@@ -779,10 +786,13 @@ class _FitProblem:
         margin = 1e-6 * (self.high - self.low)  # a search may not begin on a bound
         numbers, errors = np.split(first, [self.unit.size])
         inside = np.clip(numbers, self.low + margin, self.high - margin)
+        tolerance = _ROUGH if is_rough else _TOLERANCE
+        # dogbox takes half the steps of the default to the same minima or lower ones
         found = scipy.optimize.least_squares(
-            self.residual,
+            partial(self.residual, noise=noise),
             np.concatenate([inside, errors]),
-            jac=self.jacobian,
+            jac=partial(self.jacobian, noise=noise, is_rough=is_rough),
+            method="dogbox",
             bounds=(
                 np.concatenate([self.low, np.full(k, -np.inf)]),
                 np.concatenate([self.high, np.full(k, np.inf)]),
@@ -790,7 +800,6 @@ class _FitProblem:
             xtol=tolerance,
             ftol=tolerance,
             gtol=tolerance,
-            args=(noise,),
         )
         if not found.success:
             raise FitError(
@@ -808,7 +817,7 @@ class _FitProblem:
         """
         zero = np.zeros(self.n_error)
         apart = np.unique(begins, axis=0)
-        found = [self.solve(np.append(one, zero), noise, _ROUGH) for one in apart]
+        found = [self.solve(np.append(one, zero), noise, is_rough=True) for one in apart]
         squares = [float(np.sum(self.residual(one, noise) ** 2)) for one in found]
         return found[int(np.argmin(squares))]
 
