@@ -178,7 +178,7 @@ def _as_read(built: xr.Dataset) -> xr.Dataset:
     for variable in found.variables.values():
         if variable.dtype.kind == "U":
             texts = variable.values.astype(object)
-            # in a variable of its own: for an array alone xarray imports Dask, to ask whether it is one
+            # in a variable: given an array, xarray imports Dask, to ask whether it is one
             variable.data = xr.Variable(variable.dims, texts, fastpath=True)
         variable.attrs = as_read(variable.attrs)
         variable.encoding = {}

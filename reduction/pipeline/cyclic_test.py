@@ -195,6 +195,7 @@ def parts_of_cycles(
     specimens: tuple[Specimen, ...],
     history: History | None,
     settings: ReductionSettings,
+    lag: Sequence[float],
 ) -> dict[str, Any]:
     """Loops, curves, segments and what follows from them, by field of `ReducedTest`."""
     record, cycles = located.record, located.cycles
@@ -225,7 +226,13 @@ def parts_of_cycles(
         "segments": find_segments(curves, area=area, settings=settings.modulus),
         "end_moduli": end_moduli(strain, tension, area=area, cycles=cycles),
         "identity": check_identity(
-            strain, tension, area=area, cycles=cycles, names=record.specimens
+            strain,
+            tension,
+            area=area,
+            cycles=cycles,
+            names=record.specimens,
+            time=record.time,
+            lag=lag,
         ),
         "amplitude": amplitude,
         "trend": trend,

@@ -884,6 +884,7 @@ def reduce_test(
     stated = replace(located, record=_with_readings(record, readings))
     cycle_parts = parts_of_cycles(
         located, strain, tension, specimens=specimens, history=history, settings=settings,
+        lag=[one.lag for one in instruments],
     )  # fmt: skip
     of_first_rise, first_rise_notes = parts_of_first_loading(
         located, strain, tension, specimens, settings, history, kind=description.kind,

@@ -676,12 +676,13 @@ _OF_MODULI: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "identity-open": (
         "warning",
-        lambda effect, error, is_coarse: (
+        lambda effect, error, is_coarse, of_lag: (
             "the difference between the mean slopes of the two branches does not match the tension"
             f" lost over a cycle: residual {effect:+.1%} of the modulus (standard error"
-            f" {_share(error)}). Possible causes: channel lag, a dwell at the reversals, slip or"
-            " slack"
-            f"{', or too few samples for the curvature' if is_coarse else ''}"
+            f" {_share(error)}). "
+            + (f"The stated channel lag explains up to {of_lag:.1%} of it" if of_lag else
+               "Possible causes: channel lag, a dwell at the reversals, slip or slack"
+               f"{', or too few samples for the curvature' if is_coarse else ''}")
         ),
     ),
     "slip-cycles-missing": (

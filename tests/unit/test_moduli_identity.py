@@ -159,6 +159,21 @@ def test_tension_sampled_late_is_noted_and_sound_channels_are_not(triangle):
     assert "few samples" not in note
 
 
+@pytest.mark.parametrize(("stated", "severity"), [(0.0025, "note"), (0.0005, "warning")])
+def test_a_lag_that_is_stated_is_no_warning_where_it_explains_what_is_left(
+    stated, severity, triangle
+):
+    strain, tension = sampled(0.005)
+    _, cycles = triangle(n_cycles=40, per_cycle=100)
+    found = check_identity(
+        strain, tension, area=[AREA, AREA], cycles=cycles, names=("sound", "late"),
+        time=np.arange(strain.shape[1]) / 100, lag=[stated, stated],
+    )  # fmt: skip
+    (note,) = found.notes
+    assert note.severity == severity
+    assert ("The stated channel lag explains up to 0." in str(note)) is (severity == "note")
+
+
 def test_what_noise_explains_or_is_below_half_a_percent_is_not_noted(triangle):
     # as late as before, and as far off: but the scatter of ten cycles hides it
     assert tuple(map(str, judged(0.005, triangle, n_cycles=10, noise=8.0).notes)) == ()

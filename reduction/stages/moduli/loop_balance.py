@@ -16,6 +16,9 @@ References
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -158,6 +161,8 @@ def check_identity(
     area: ArrayLike,
     cycles: Cycles,
     names: tuple[str, ...] | None = None,
+    time: ArrayLike | None = None,
+    lag: Sequence[float] = (),
 ) -> CycleIdentity:
     r"""Difference of the stroke-mean moduli beside the tension lost, on every cycle.
 
@@ -177,6 +182,10 @@ def check_identity(
         Cycles and branches; whole branches are used, ends included. [SI]
     names : tuple of str, length n_specimens, optional
         What the notes call the specimens; else they are counted from 1.
+    time : array_like, shape (n_samples,), optional
+        Seconds since the start; needed where a lag is stated. [s]
+    lag : sequence of float, length n_specimens, optional
+        Standard uncertainty of the lag between the two channels; none is stated otherwise. [s]
 
     Returns
     -------
@@ -244,41 +253,62 @@ def check_identity(
     shape = (areas.size, cycles.n_cycles)
     if names is None:
         names = tuple(f"specimen {number}" for number in range(1, areas.size + 1))
-    difference, loss, residual = np.full((3, *shape), np.nan)
+    difference, loss = np.full((2, *shape), np.nan)
     n_pieces, worth_a_note = _MOST_PIECES, _WORTH_A_NOTE
     if cycles.n_cycles:
         steps = cycles.branch_last - cycles.branch_first
         n_pieces = int(np.clip(float(np.median(steps)) // _PIECE_SAMPLES, 1, _MOST_PIECES))
         fast, slow = np.sort(np.median(steps, axis=0)).tolist()
         worth_a_note *= (_MOST_PIECES / n_pieces) ** 2 * slow / fast
-        for row, one_area in enumerate(areas):
-            change, stroke = _tension_change(
-                strains[row], tensions[row], cycles=cycles, n_pieces=n_pieces
-            )
-            per_stroke = 1 / (one_area * np.abs(stroke).mean(axis=1))
-            load = tensions[row]
-            lost = take_samples(load, cycles.first) - take_samples(load, cycles.last)
-            # what relaxes while the machine rests at its peak is on no branch
-            peak, leaves = cycles.branch_last[:, 0], cycles.branch_first[:, 1]
-            at_rest = take_samples(load, peak) - take_samples(load, leaves)
-            lost = lost - np.where(leaves > peak + 1, at_rest, 0.0)
-            rise = change * np.sign(stroke)
-            difference[row] = (rise[:, 0] - rise[:, 1]) * per_stroke
-            loss[row] = lost * per_stroke
-            mean_modulus = rise.mean(axis=1) * per_stroke
-            residual[row] = (difference[row] + loss[row]) / mean_modulus
+
+    def sides_of(row: int, load: Floats) -> Floats:
+        """Both sides and the mean slope of the branches, shape (3, n_cycles). [Pa]."""
+        change, stroke = _tension_change(strains[row], load, cycles=cycles, n_pieces=n_pieces)
+        per_stroke = 1 / (areas[row] * np.abs(stroke).mean(axis=1))
+        lost = take_samples(load, cycles.first) - take_samples(load, cycles.last)
+        # what relaxes while the machine rests at its peak is on no branch
+        peak, leaves = cycles.branch_last[:, 0], cycles.branch_first[:, 1]
+        at_rest = take_samples(load, peak) - take_samples(load, leaves)
+        lost = lost - np.where(leaves > peak + 1, at_rest, 0.0)
+        rise = change * np.sign(stroke)
+        sides = np.stack([rise[:, 0] - rise[:, 1], lost, rise.mean(axis=1)])
+        return np.asarray(per_stroke * sides)
+
+    def of_lag(row: int) -> float:
+        """What twice the stated lag would add to the mean residual. [1]."""
+        if time is None or not any(lag):
+            return 0.0
+        since = np.asarray(time, dtype=np.float64)
+        late = np.interp(since - 2 * lag[row], since, tensions[row])
+        sides = sides_of(row, late)
+        mean_late, _ = _mean_over_cycles(((sides[0] + sides[1]) / sides[2])[None])
+        return abs(float(mean_late[0] - mean[row]))
+
+    modulus = np.full(shape, np.nan)
+    if cycles.n_cycles:
+        for row in range(areas.size):
+            difference[row], loss[row], modulus[row] = sides_of(row, tensions[row])
+    residual = (difference + loss) / modulus
     mean, error = _mean_over_cycles(residual)
+    notes = []
+    for row, (name, one, spread) in enumerate(zip(names, mean, error, strict=True)):
+        least = max(_SIGNIFICANT * spread, worth_a_note)
+        if abs(one) > least:
+            explained = of_lag(row)
+            # intervals hold the stated lag already, and what it leaves is not worth a warning
+            is_of_lag = explained > 0 and abs(one) <= explained + least
+            found = note(
+                "identity-open", name, effect=one, error=spread,
+                is_coarse=n_pieces < _MOST_PIECES, of_lag=explained if is_of_lag else 0.0,
+            )  # fmt: skip
+            notes.append(replace(found, severity="note") if is_of_lag else found)
     return CycleIdentity(
         stroke_mean_modulus_difference=difference,
         tension_loss_modulus=loss,
         identity_residual=residual,
         mean_identity_residual=mean,
         mean_identity_residual_standard_uncertainty=error,
-        notes=tuple(
-            note("identity-open", name, effect=one, error=spread, is_coarse=n_pieces < _MOST_PIECES)
-            for name, one, spread in zip(names, mean, error, strict=True)
-            if abs(one) > max(_SIGNIFICANT * spread, worth_a_note)
-        ),
+        notes=tuple(notes),
     )
 
 
