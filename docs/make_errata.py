@@ -29,7 +29,9 @@ still have a right conclusion.
 *Sure*: **certain**, if the numbers of the report allow no other reading; **high**, if one reading
 is by far the most likely; **open**, if the page is wrong or doubtful and the report does not settle
 it; no entry, if the printed number is right but its description is wrong. In the tables,
-*computed* is in the printed unit, and empty if the error is in words or nothing can be computed.
+*computed* is in the unit of the printed cell (in brackets if the cell has no number), and empty if
+the error is in words or nothing can be computed; *from* says how it was computed. The verdicts are
+explained in [printed numbers](printed-numbers.md).
 
 ## How to cite
 
@@ -45,14 +47,20 @@ def _plain(text: str) -> str:
     return re.sub(r"([\\`*_\[\]<>|$#~^])", r"\\\1", " ".join(text.split()))
 
 
+def _with_unit(printed: str, unit: str) -> str:
+    """A printed cell and its unit, unless the cell has it already; in brackets after words."""
+    if unit in {"", "1"} or re.search(rf"(?<![A-Za-z]){re.escape(unit)}[a-z]*$", printed):
+        return printed
+    return f"{printed} {unit}" if re.search("[0-9]", printed) else f"{printed} [{unit}]"
+
+
 def _row(item: ReproducedItem) -> str:
     cell = item.cell
     is_table = not cell.table.startswith(("sec", "eq", "abstract", "footnote"))
-    unit = "" if cell.unit == "1" else cell.unit
     shown = (
         f"Table {cell.table}" if is_table else cell.table,
         f"{cell.row}: {cell.column}",
-        f"{cell.printed} {unit}",
+        _with_unit(cell.printed, cell.unit),
         number_beside(item.recomputed, cell.printed),
         item.verdict.replace("_", " "),
         item.how,
@@ -62,7 +70,7 @@ def _row(item: ReproducedItem) -> str:
 
 def _entry(one: _TouchedErratum) -> list[str]:
     fault = one.erratum
-    lines = [f"### {fault.id}", "", f"{_plain(fault.place)}.", ""]
+    lines = [f"### {fault.id}", "", f"{_plain(fault.place).rstrip('.')}.", ""]
     lines += [f"- Printed: {_plain(fault.printed)}", f"- Right: {_plain(fault.corrected)}"]
     if fault.confidence:
         lines.append(f"- Sure: {fault.confidence}")

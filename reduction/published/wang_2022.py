@@ -312,10 +312,10 @@ def _errors() -> Answers:
         ("sec 5.3", "normal stress of intermediate angles", "greatest error"): Answer(
             largest, "the greatest of the three that the section names", bound="below"),
         ("sec 5.3", shear, "greatest error"): Answer(
-            wrong, "the theory is nothing at 45 deg, and no wire is: "
+            wrong, "the moment of the theory is zero at 45 deg, that of a wire is not: "
             "the rod that agrees with three-dimensional elasticity has G J strain / (4 r)"),
         ("sec 5.3", shear, "winding_angle at which it is greatest"): Answer(
-            zero, "where the torsion moment of (4) and (15) is nothing, "
+            zero, "where the torsion moment of (4) and (15) is zero, "
             "so that it misses all of any other; near 20 deg it misses more of a small one"),
     }  # fmt: skip
     for row in _NAMED:

@@ -95,7 +95,7 @@ def _sheave() -> Answers:
         ("eq 12", "load of a partial wrap", "divisor of the contact angle"): Answer(
             contact / float(np.arcsin(resultant / 2)), "resultant of the line load"),
         ("eq 13", "load of a full wrap", "factor of pi Pc"): Answer(
-            whole / pi, "sum of the line load; its resultant, which (12) gives, is nothing"),
+            whole / pi, "sum of the line load; its resultant, which (12) gives, is zero"),
         ("eq 14", "pressure under one cord", "factor"): Answer(
             pressure * diameter * width, "line load over the width of the cord"),
     }  # fmt: skip
@@ -264,7 +264,7 @@ def _angles() -> Answers:
     figure = "wrap_angle in the caption of Figure 11"
     return {
         ("sec 1.2.1", _HOSE_CLAIMS, "neutral wrap angle"): Answer(
-            float(np.degrees(NEUTRAL_ANGLE)), "atan(sqrt 2): the slope of (8) is nothing at rest"),
+            float(np.degrees(NEUTRAL_ANGLE)), "atan(sqrt 2): the slope of (8) is zero at rest"),
         ("sec 1.2.3", "cord around a cylinder", "wrap_angle in the text"): Answer(
             90.0, "(17) is (14) where the sine is one"),
         ("sec 1.2.3", "cord around a cylinder", "wrap_angle in the caption of Figure 9"): Answer(

@@ -462,5 +462,6 @@ def _claims() -> Answers:
         ("sec 5.3", "ratio P of all loads", "greatest average"): Answer(
             max(averages), "the greatest average of Table 8, P3, with all its rows"),
         ("conclusion", "wave loads", "improvement of the accuracy"): Answer(
-            averages[0], "P1 of Table 8, the one average that stands; the others are 10 to 17 %"),
+            averages[0],
+            "P1 of Table 8, the one average that is correct; the others are 10 to 17 %"),
     }  # fmt: skip

@@ -303,7 +303,7 @@ def test_odds_of_the_two_strengths_of_the_polyester_braid_are_those_of_its_errat
     densities = [student.pdf(np.log(one) / scatter, 6) for one in (low, high)]
     odds = densities[0] / densities[1]
     (evidence,) = (one.evidence for one in errata_of(REPORT) if one.id == "CG-15")
-    assert f"K_ap {low[0]:.2f} and H {low[1]:.2f} of the print" in evidence
+    assert f"{low[0]:.2f} of the printed K_ap and {low[1]:.2f} of the printed H" in evidence
     assert f"{high[0]:.2f} and {high[1]:.2f} with 7000" in evidence
     assert f"({100 * scatter[0]:.1f} and {100 * scatter[1]:.0f} %)" in evidence
-    assert f"about {np.prod(odds):.0f} to 1 for 6400, {odds[0]:.0f} to 1 by K_ap" in evidence
+    assert f"about {np.prod(odds):.0f} to 1 for 6400, or {odds[0]:.0f} to 1 from K_ap" in evidence
