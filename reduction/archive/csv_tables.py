@@ -191,7 +191,6 @@ def _by_response(archive: xr.Dataset) -> xr.Dataset:
             variable = _stacked(archive, names, own)
             if variable is not None:
                 stacked[f"response{own}"] = variable
-    dataset = archive.assign(stacked)
     if "term_unit_engineering" in archive:
         of_term = archive.variables["term_unit_engineering"].values
         # the unit of a term stands there as what is multiplied, not as what is divided by
@@ -199,25 +198,27 @@ def _by_response(archive: xr.Dataset) -> xr.Dataset:
             [[combined_unit(unit, [str(own)], [-1]) for own in row] for unit in units]
             for row in of_term
         ]
-        dims = ("experiment", "response", "term")
-        dataset["coefficient_engineering_unit"] = (dims, np.array(full, dtype=np.str_))
-    dataset["run_is_there"] = (
-        ("experiment", "run"),
-        _marked(archive.variables["run_name"].values != ""),
+        stacked["coefficient_engineering_unit"] = xr.Variable(
+            ("experiment", "response", "term"), np.array(full, dtype=np.str_)
+        )
+    stacked["run_is_there"] = xr.Variable(
+        ("experiment", "run"), _marked(archive.variables["run_name"].values != "")
     )
-    dataset["run_plan"] = (
+    stacked["run_plan"] = xr.Variable(
         ("experiment", "run", "factor"),
         archive.variables["run_plan"].values[:, :, : archive.sizes["factor"]],
     )
-    if "response_effect" in dataset:
+    if "response_effect" in stacked:
         is_column = archive.variables["plan_column_name"].values[:, None, :] != ""
-        known = np.isfinite(dataset.variables["response_effect"].values)
-        if "response_effect_refusal" in dataset:
-            is_refused = dataset.variables["response_effect_refusal"].values != ""
+        known = np.isfinite(stacked["response_effect"].values)
+        if "response_effect_refusal" in stacked:
+            is_refused = stacked["response_effect_refusal"].values != ""
             known |= is_refused[:, :, None] & is_column
-        dims = ("experiment", "response", "plan_column")
-        dataset["effect_is_there"] = (dims, _marked(known))
-    return dataset
+        stacked["effect_is_there"] = xr.Variable(
+            ("experiment", "response", "plan_column"), _marked(known)
+        )
+    # at once: xarray aligns hundreds of variables whenever one is added
+    return archive.assign(stacked)
 
 
 def _stacked(archive: xr.Dataset, names: Sequence[str], what: str) -> xr.Variable | None:
