@@ -80,6 +80,13 @@ SLOW_FOLDERS = ("browser", "docs", "faults", "fuzz")
 SLOW_FIXTURES = {"synthetic", "static", "nylon_campaign", "hose_campaign", "campaigns", "browser"}
 
 
+@pytest.hookimpl(wrapper=True)
+def pytest_collect_file():
+    """Examples are those of the package: in tests and their helpers there is nothing to look for."""
+    found = yield
+    return [one for one in found if type(one).__name__ != "DoctestModule"]
+
+
 def pytest_collection_finish(session):
     """What was collected stays to the end: it is not looked through for circles again."""
     gc.collect()

@@ -1,5 +1,7 @@
 """Experiments over runs made from a law, for the tests of archives and tables of them."""
 
+from functools import cache
+
 import numpy as np
 
 from reduction.experiments.designs import box_behnken, plackett_burman
@@ -89,6 +91,7 @@ def laws(rng, coded, count):
     return 10.0 ** rng.uniform(-1, 5, (count, 1)) * shape * noise
 
 
+@cache
 def surface_experiment(
     name="half-inch", *, seed=3, names=RESPONSES, missing=(), specimens=None, treatment="fixed"
 ):
@@ -163,6 +166,7 @@ def surface_experiment(
     return with_shared_surfaces(result)
 
 
+@cache
 def screening_experiment(name="screening", *, seed=5, missing=()):
     """Five factors in twelve runs, with six dummies."""
     rng = np.random.default_rng(seed)
