@@ -31,7 +31,7 @@ from unittest.mock import MagicMock, patch
 import numpy as np
 import xarray as xr
 
-import reduction
+from reduction.archive.open import in_memory, reading
 from reduction.batch import run_campaign as runs
 from reduction.campaign.load import load_campaign
 from reduction.lines.archive_source import lines_of_archive
@@ -141,8 +141,8 @@ def archives_of(folder: Path) -> Iterator[tuple[str, xr.Dataset]]:
     """Every archive of a test, by its name."""
     for path in sorted(folder.glob("*/*.nc")):
         if path.stem not in NO_TESTS:
-            with reduction.open_archive(path) as archive:
-                yield path.stem, archive.load()
+            with reading(path) as archive:
+                yield path.stem, in_memory(archive)
 
 
 _NO_PAGE = {"return_value.write.return_value": (None, CampaignAnswers((), False, (), frozenset()))}

@@ -51,20 +51,24 @@ class Splice:
 
     def strain(self, free: Array, tension: Array) -> Array:
         """Strain of the splice without slip."""
-        toe = 5e-4
         free = np.asarray(free, dtype=float)
-        reduced = np.maximum(tension, 0.0) / self.reference_tension
-        driven = (reduced + toe) ** self.exponent - toe**self.exponent
-        if self.law == "hyperbolic":
-            driven = reduced / (reduced + self.bend) * (1.0 + self.bend)
+        weight = {"tension": 1.0, "hyperbolic": 1.0, "mixture": self.share}.get(self.law, 0.0)
+        # a power of every sample is what takes long, and is asked for only where it counts
+        driven = self._driven(tension) if weight > 0.0 else np.zeros_like(free)
         follow = free
         if self.law == "saturating":
             follow = np.expm1(-free / self.bend) / np.expm1(-1.0 / self.bend)
         elif self.law == "stiffening":
             follow = free * (1.0 + (free / self.bend) ** 2) / (1.0 + self.bend**-2)
-        weight = {"tension": 1.0, "hyperbolic": 1.0, "mixture": self.share}.get(self.law, 0.0)
         total: Array = self.at_one * (weight * driven + (1.0 - weight) * follow)
         return total
+
+    def _driven(self, tension: Array) -> Array:
+        reduced = np.maximum(tension, 0.0) / self.reference_tension
+        if self.law == "hyperbolic":
+            return np.asarray(reduced / (reduced + self.bend) * (1.0 + self.bend))
+        toe = 5e-4
+        return np.asarray((reduced + toe) ** self.exponent - toe**self.exponent)
 
 
 @dataclass(frozen=True)
