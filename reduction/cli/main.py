@@ -4,7 +4,8 @@ Each stands with its options in the module of its group; the work is elsewhere. 
 packages are imported inside the commands, so that ``--help`` answers at once.
 """
 
-from __future__ import annotations
+# annotations are values in this module: as texts, those of every command would be evaluated twice
+# whenever one starts
 
 import gc
 import os
