@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from reduction import __version__
 from reduction.archive.open import open_archive
 from reduction.archive.test_dataset import to_dataset
 from reduction.quantities.names import TEST_SCHEMA
@@ -14,7 +15,7 @@ from reduction.record.measurement import Quality
 
 
 def build(test):
-    return to_dataset(test, version="1.2.3", command="reduction run")
+    return to_dataset(test, version=__version__, command="reduction run")
 
 
 def test_every_kind_of_product_comes_back_as_it_was(any_test, write):

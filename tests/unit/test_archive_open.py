@@ -10,6 +10,7 @@ import netCDF4
 import numpy as np
 import pytest
 
+from reduction import __version__
 from reduction.archive import open as module
 from reduction.archive.dataset_builder import SCHEMA_VERSION
 from reduction.archive.open import (
@@ -19,6 +20,8 @@ from reduction.archive.open import (
     open_archive,
     reading,
 )
+from reduction.archive.test_dataset import to_dataset
+from reduction.archive.write import write_archive
 from reduction.record.errors import ArchiveError
 
 
@@ -186,9 +189,13 @@ def opened(monkeypatch):
     return names
 
 
-def test_an_archive_is_opened_once_and_given_as_it_is_on_the_disk(rich_test, write, opened):
-    path, opener = write(rich_test), ReadOnce()
-    with reading(path) as on_disk:
+@pytest.mark.parametrize("version", [__version__, "1.2.3"])
+def test_an_archive_is_opened_once_and_given_as_it_is_on_the_disk(
+    rich_test, tmp_path, opened, version
+):
+    path, opener = tmp_path / "T-1.nc", ReadOnce()
+    write_archive(to_dataset(rich_test, version=version, command="reduction run"), path)
+    with open_archive(path) as on_disk:
         for _ in range(3):
             with opener(path) as archive:
                 assert archive.identical(on_disk)
@@ -203,7 +210,7 @@ def test_a_file_that_was_replaced_is_read_anew(rich_test, bare_test, write, open
     with opener(path):
         pass
     write(bare_test).replace(path)
-    with opener(path) as archive, reading(path) as on_disk:
+    with opener(path) as archive, open_archive(path) as on_disk:
         assert archive.identical(on_disk)
     assert len(opened) == 2
 
@@ -226,7 +233,7 @@ def test_a_file_that_is_replaced_while_it_is_read_is_read_anew(
     monkeypatch.setattr(module, "reading", replaced)
     with opener(path):
         pass
-    with opener(path) as archive, reading(path) as on_disk:
+    with opener(path) as archive, open_archive(path) as on_disk:
         assert archive.identical(on_disk)
 
 
@@ -245,7 +252,7 @@ def test_a_step_cannot_change_what_the_next_one_is_given(rich_test, write):
             assert "added" not in archive
             archive["added"] = 1.0
             archive.variables["diameter"].values[...] = 0
-    with opener(path) as archive, reading(path) as on_disk:
+    with opener(path) as archive, open_archive(path) as on_disk:
         assert archive.identical(on_disk)
 
 
@@ -256,7 +263,7 @@ def test_where_the_disk_is_full_archives_are_read_again(rich_test, write, opened
     monkeypatch.setattr(module.ScratchFile, "put", full)
     path, opener = write(rich_test), ReadOnce()
     for _ in range(2):
-        with opener(path) as archive, reading(path) as on_disk:
+        with opener(path) as archive, open_archive(path) as on_disk:
             assert archive.identical(on_disk)
     assert len(opened) == 2
 
@@ -265,7 +272,7 @@ def test_an_archive_in_memory_outlives_its_file(rich_test, write):
     path = write(rich_test)
     with open_archive(path) as archive:
         kept = in_memory(archive)
-    with reading(path) as on_disk:
+    with open_archive(path) as on_disk:
         assert kept.identical(on_disk)
 
 
@@ -299,10 +306,9 @@ def test_an_error_in_a_block_is_that_of_the_block(rich_test, write):
             archive.variables["none"]
 
 
-def test_what_is_read_by_the_schema_is_what_xarray_opens(rich_test, write, monkeypatch):
+def test_what_is_read_by_the_schema_is_what_xarray_opens(rich_test, write):
     path = write(rich_test)
-    with reading(path) as on_disk:
-        monkeypatch.setattr(module, "__version__", on_disk.attrs["software_version"])
+    with open_archive(path) as on_disk:
         found = module._read_own(path)
         assert found is not None
         assert found.identical(on_disk)

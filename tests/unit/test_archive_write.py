@@ -17,10 +17,11 @@ from reduction.record.errors import ArchiveError
 AGAIN = """
 import pickle, sys
 from pathlib import Path
+from reduction import __version__
 from reduction.archive.test_dataset import to_dataset
 from reduction.archive.write import write_archive
 test = pickle.loads(Path(sys.argv[1]).read_bytes())
-write_archive(to_dataset(test, version="1.2.3", command="reduction run"), Path(sys.argv[2]))
+write_archive(to_dataset(test, version=__version__, command="reduction run"), Path(sys.argv[2]))
 """
 
 
@@ -57,8 +58,9 @@ def test_another_process_writes_the_same_bytes(rich_test, archives, tmp_path):
     assert hashlib.sha256(again.read_bytes()).digest() == hashlib.sha256(first).digest()
 
 
-def test_nothing_is_left_beside_the_archive(rich_test, write):
-    path = write(rich_test)
+def test_nothing_is_left_beside_the_archive(rich_test, tmp_path):
+    path = tmp_path / "T-1.nc"
+    write_archive(to_dataset(rich_test, version="1.2.3", command="reduction run"), path)
     assert [entry.name for entry in path.parent.iterdir()] == ["T-1.nc"]
 
 
