@@ -22,7 +22,8 @@ ROOT = Path(__file__).parents[1]
 SHARE = 5_000_000  # bytes of what was printed that are kept
 # what most commands load
 LOADED = (
-    "reduction.cli.main", "reduction.cli.campaigns", "reduction.batch.run_campaign", "reduction.batch.run_campaign",
+    "reduction.cli.main", "reduction.cli.campaigns", "reduction.cli.remote_paths", "reduction.campaign.load",
+    "reduction.batch.run_campaign",
     "reduction.report.campaign_page", "reduction.archive.csv_tables", "reduction.readers.sniff",
     "reduction.lines.line_lookup", "reduction.pages.design_values",
 )  # fmt: skip

@@ -4,12 +4,17 @@ Same as ``compliance-checker -t cf:1.11 -c strict FILE...``, but quick: the chec
 the same questions of the file again for each pair of variables (25 s for 200 of them),
 and here each answer is remembered.  It knows no groups: each group is given to it as a flat file
 with the coordinates that it inherits.  Each archive is held against the schema too.  Exit status 0
-says that nothing was found.
+says that nothing was found.  With ``--serve`` paths are read line by line, as tests/rulesofcf.py
+writes them.
 """
 
 import copy
 import functools
+import json
+import os
 import sys
+import tempfile
+import traceback
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -49,5 +54,28 @@ def main(paths):
     return 0 if passed and all(passed) else 1
 
 
+def serve():
+    """Answer each line of paths from a process of its own, which begins with everything loaded."""
+    for line in sys.stdin:
+        with tempfile.TemporaryFile() as out:
+            child = os.fork()
+            if not child:
+                os.dup2(out.fileno(), 1)
+                os.dup2(out.fileno(), 2)
+                status = 1
+                try:
+                    status = main(json.loads(line))
+                except BaseException:
+                    traceback.print_exc()
+                finally:
+                    sys.stdout.flush()
+                    sys.stderr.flush()
+                    os._exit(status)
+            status = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+            out.seek(0)
+            sys.stdout.write(json.dumps([status, out.read().decode()]) + "\n")
+            sys.stdout.flush()
+
+
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(serve() if sys.argv[1:] == ["--serve"] else main(sys.argv[1:]))

@@ -1,16 +1,14 @@
 """Comparisons in an archive: every number in its place, what is not known absent, CF kept."""
 
 import hashlib
-import subprocess
-import sys
 from dataclasses import fields, replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 from archive_check import check_archive
 from compared_hoses import LOOP, NOT_APART, SOURCE, TRUTH, agreeing, dataset, differing, trading
 from measured_hoses import INCH
+from rulesofcf import held_against_cf
 
 from reduction.archive.open import open_archive
 from reduction.archive.shared_errors import FREEDOM
@@ -21,7 +19,6 @@ from reduction.quantities.names import COMPARISON_SCHEMA
 from reduction.record.errors import ArchiveError
 from reduction.record.measurement import Origin
 
-COMPLIANCE = Path(__file__).parents[1] / "compliance.py"
 CURVES = ("ascending", "descending", "midline")
 
 
@@ -274,9 +271,7 @@ def test_notes_stand_once_with_the_comparison_they_are_of(archive):
 
 def test_the_file_keeps_every_rule(path):
     assert check_archive(path) == []
-    done = subprocess.run(
-        [sys.executable, str(COMPLIANCE), str(path)], capture_output=True, text=True, check=False
-    )
+    done = held_against_cf(path)
     assert done.returncode == 0, done.stdout
     assert "All tests passed!" in done.stdout
 

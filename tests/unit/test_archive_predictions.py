@@ -1,10 +1,7 @@
 """Predicted hoses in an archive: every number in its place, what is not known absent, CF kept."""
 
 import hashlib
-import subprocess
-import sys
 from dataclasses import fields
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -19,6 +16,7 @@ from predicted_hoses import (
     predicted,
     working_tension,
 )
+from rulesofcf import held_against_cf
 
 from reduction.archive.campaign_products import EVENTS
 from reduction.archive.open import open_archive
@@ -30,7 +28,6 @@ from reduction.quantities.flags import HOSE_STATES
 from reduction.quantities.names import PREDICTION_SCHEMA
 from reduction.record.errors import ArchiveError
 
-COMPLIANCE = Path(__file__).parents[1] / "compliance.py"
 SHORT_CORD = CordCurve(np.array([0.0, 0.2]), np.array([0.0, 130.0]))
 
 
@@ -196,9 +193,7 @@ def test_every_variable_is_of_the_schema_with_its_dimensions(archive):
 
 def test_the_file_keeps_every_rule(path):
     assert check_archive(path) == []
-    done = subprocess.run(
-        [sys.executable, str(COMPLIANCE), str(path)], capture_output=True, text=True, check=False
-    )
+    done = held_against_cf(path)
     assert done.returncode == 0, done.stdout
     assert "All tests passed!" in done.stdout
 
