@@ -28,6 +28,8 @@ LONGEST = (
     "browser/test_campaign_pages.py", "docs/test_docs_build.py", "cli/test_run_workers.py",
     "browser/test_design_values.py", "oracle/test_strangers_end_to_end.py",
 )  # fmt: skip
+# each takes ten seconds or more and would be among the last by its name: a process would be left alone
+LATE = ("unit/test_verify.py", "unit/test_workers.py", "unit/test_strain_fit.py")
 # files in which all is nightly but a few tests, which are slow
 NIGHTLY_BUT = {
     "cli/test_run_workers.py": ("test_products_have_the_same_bytes_on_any_number_of_workers[2]",),
@@ -128,8 +130,8 @@ def pytest_collection_modifyitems(config, items):
             or not slow_places.isdisjoint((item.path, *item.path.parents))
         ):
             item.add_marker(pytest.mark.slow)
-    places = {tests / name: place for place, name in enumerate(LONGEST)}
-    items.sort(key=lambda item: places.get(item.path, len(LONGEST)))
+    places = {tests / name: place for place, name in enumerate((*LONGEST, *LATE))}
+    items.sort(key=lambda item: places.get(item.path, len(places)))
 
 
 # a process of the tests has one browser, whichever folder asks for it first

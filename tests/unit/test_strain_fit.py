@@ -147,17 +147,14 @@ def test_a_vague_exponent_is_held_at_one_and_the_history_gives_it():
 )
 def test_joint_covariance_is_that_of_many_campaigns(count, tolerance):
     law = {"method": "tension-driven"}
-    names = list(fit(**law).coefficients)
-    drawn = np.array(
-        [
-            [fit(noise=READING, seed=one, **law).coefficients[n] for n in names]
-            for one in range(count)
-        ]
-    )
-    expected = np.sqrt(np.diag(fit(**law).covariance))
+    model = fit(**law)
+    names = list(model.coefficients)
+    fitted = [fit(noise=READING, seed=one, **law).coefficients for one in range(count)]
+    drawn = np.array([[one[name] for name in names] for one in fitted])
+    covariance = model.covariance
+    expected = np.sqrt(np.diag(covariance))
     np.testing.assert_allclose(drawn.std(axis=0), expected, rtol=tolerance)
     correlation = np.corrcoef(drawn.T)
-    covariance = fit(**law).covariance
     stated = covariance / np.outer(expected, expected)
     np.testing.assert_allclose(correlation, stated, atol=1.25 * tolerance)
 
