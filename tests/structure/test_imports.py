@@ -54,12 +54,18 @@ def tree(path):
     return ast.parse(path.read_text(encoding="utf-8"))
 
 
+@cache
+def nodes(path):
+    """All that stands in a module, gone through once for all rules."""
+    return tuple(ast.walk(tree(path)))
+
+
 def room(path):
     return path.relative_to(PACKAGE).with_suffix("").parts[0]
 
 
 def imports(path):
-    for node in ast.walk(tree(path)):
+    for node in nodes(path):
         if isinstance(node, ast.Import):
             for alias in node.names:
                 yield alias.name.split("."), node.lineno
@@ -122,7 +128,7 @@ def test_imports_below_the_edge_are_numpy_and_scipy():
 def touching_files(path):
     if room(path) in EDGES:
         return
-    for node in ast.walk(tree(path)):
+    for node in nodes(path):
         if isinstance(node, ast.Call):
             name = getattr(node.func, "id", getattr(node.func, "attr", ""))
             if name in PLAIN:
@@ -137,7 +143,7 @@ def test_only_edge_modules_touch_files():
 def inside_functions(path):
     if room(path) == "cli" or path.relative_to(PACKAGE).as_posix() in LATE:
         return
-    for function in ast.walk(tree(path)):
+    for function in nodes(path):
         if isinstance(function, (ast.FunctionDef, ast.AsyncFunctionDef)):
             for node in ast.walk(function):
                 if isinstance(node, (ast.Import, ast.ImportFrom)):
@@ -150,7 +156,7 @@ def test_imports_stand_at_the_top_but_in_the_command_line_and_of_what_loads_long
 
 
 def asserting_or_catching_all(path):
-    for node in ast.walk(tree(path)):
+    for node in nodes(path):
         if isinstance(node, ast.Assert):
             yield node.lineno, "assert"
         if isinstance(node, ast.ExceptHandler):

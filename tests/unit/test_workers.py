@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import os
 from concurrent.futures import ThreadPoolExecutor
+from typing import Any
 
 import numpy as np
 import pytest
 
 from reduction.record import arrays as workers
+from reduction.record import samples as samples
 from reduction.record.arrays import run_blocks
 from reduction.record.settings import ModulusSettings
 from reduction.stages.cycles.cycle_product import Cycles
+from reduction.stages.moduli import local_regression, tangent_modulus
 from reduction.stages.moduli.tangent_modulus import tangent_curves
 
 
@@ -69,8 +72,17 @@ def test_of_long_blocks_fewer_run_at_a_time(
 def test_the_moduli_have_the_same_bytes_on_any_number_of_processors(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Two blocks and more: 500,000 samples of 2,500 noisy cycles."""
-    n_cycles, half = 2500, 100
+    """Blocks are short here, so that 80,000 samples of 400 noisy cycles are several."""
+    n_blocks = []
+
+    def counted(function: Any, items: Any, **options: Any) -> list[Any]:
+        todo = list(items)
+        n_blocks.append(len(todo))
+        return run_blocks(function, todo, **options)
+
+    monkeypatch.setattr(local_regression, "_BLOCK_SAMPLES", 1 << 14)
+    monkeypatch.setattr(tangent_modulus, "run_blocks", counted)
+    n_cycles, half = 400, 100
     rng = np.random.default_rng(3)
     ramp = np.linspace(0.75, 1.25, half)
     strain = np.tile(np.concatenate([ramp, ramp[::-1]]), n_cycles)
@@ -97,3 +109,5 @@ def test_the_moduli_have_the_same_bytes_on_any_number_of_processors(
         )
         found.append((curves.tangent_modulus.tobytes(), curves.tangent_modulus_scatter.tobytes()))
     assert found[0] == found[1]
+    # of fewer samples no threads are started
+    assert min(n_blocks) > 2 and strain.size > samples.BLOCK
