@@ -15,6 +15,10 @@ from reduction.stages.cycles.cycle_product import Cycles
 # command does it
 gc.set_threshold(100_000, 20, 50)
 
+# a run puts fifty files on the disk and waits 7 ms for each, as long as it works; no power fails
+# while it is tested, and tests/faults holds the order of these calls in processes of their own
+os.fsync = os.fstat
+
 # an example takes as long as the machine lets it: others may work beside
 hypothesis.settings.register_profile("some", deadline=None, max_examples=20)
 hypothesis.settings.register_profile("nightly", deadline=None, max_examples=100)
