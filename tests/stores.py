@@ -155,7 +155,9 @@ class _Handler(BaseHTTPRequestHandler):
 def server():
     """A server on the loopback of this machine."""
     with Server() as one:
-        thread = threading.Thread(target=one.serve_forever, daemon=True)
+        thread = threading.Thread(
+            target=one.serve_forever, kwargs={"poll_interval": 0.02}, daemon=True
+        )
         thread.start()
         try:
             yield one
