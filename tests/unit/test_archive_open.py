@@ -15,6 +15,7 @@ from reduction.archive import open as module
 from reduction.archive.dataset_builder import SCHEMA_VERSION
 from reduction.archive.open import (
     ReadOnce,
+    as_kept,
     failing_reads,
     in_memory,
     open_archive,
@@ -313,3 +314,15 @@ def test_what_is_read_by_the_schema_is_what_xarray_opens(rich_test, write):
         assert found is not None
         assert found.identical(on_disk)
         assert list(found.variables) == list(on_disk.variables)
+
+
+def test_what_is_kept_of_an_archive_that_was_just_written_is_what_a_reader_finds(any_test, write):
+    built = to_dataset(any_test, version=__version__, command="reduction run")
+    path, opener = write(any_test), ReadOnce()
+    opener.keep(path, as_kept(built))
+    with opener(path) as kept, open_archive(path) as on_disk:
+        del on_disk.attrs["values_sha256"]  # of the file
+        assert kept.identical(on_disk)
+        assert list(kept.variables) == list(on_disk.variables)
+        for name, variable in kept.variables.items():
+            assert variable.dtype == on_disk.variables[name].dtype
