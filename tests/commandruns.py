@@ -29,12 +29,14 @@ def reduction(*arguments, cwd=ROOT, **environment):
             [sys.executable, "-m", "reduction", *words], cwd=cwd, capture_output=True, text=True,
             check=False, env=os.environ | {"PYTHONPATH": str(ROOT)} | environment,
         )  # fmt: skip
-    done = _loaded().run(*words, cwd=cwd, seconds=900, environment=environment, is_bounded=False)
+    done = loaded_process().run(
+        *words, cwd=cwd, seconds=900, environment=environment, is_bounded=False
+    )
     return subprocess.CompletedProcess(words, done.status, done.out, done.errors)
 
 
 @cache
-def _loaded():
+def loaded_process():
     """The process from which commands are forked; it ends with that of the tests."""
     runs = BoundedRuns().__enter__()
     atexit.register(runs.__exit__)

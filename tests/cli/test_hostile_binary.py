@@ -5,7 +5,7 @@ import tomllib
 
 import numpy as np
 import pytest
-from boundedruns import BoundedRuns
+from commandruns import loaded_process
 from hostile_archives import ARCHIVES
 from hostile_hdf5 import HDF5
 from hostile_matlab import MATLAB
@@ -127,8 +127,7 @@ REFUSED_ARCHIVES = {
 
 @pytest.fixture(scope="module")
 def bounded():
-    with BoundedRuns() as runs:
-        yield runs
+    return loaded_process()
 
 
 def check_ended(done, statuses):

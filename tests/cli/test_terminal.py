@@ -8,8 +8,7 @@ import shutil
 import threading
 
 import pytest
-from boundedruns import BoundedRuns
-from commandruns import ROOT, reduction
+from commandruns import ROOT, loaded_process, reduction
 
 pytestmark = pytest.mark.slow
 
@@ -47,8 +46,8 @@ def at_terminal():
         os.close(ours)
         return done.status, b"".join(said).decode()
 
-    with BoundedRuns() as runs:
-        yield run
+    runs = loaded_process()
+    return run
 
 
 def places(folder):
