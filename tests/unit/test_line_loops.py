@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -75,6 +77,16 @@ def test_triangular_cycles_need_the_fundamental_and_the_note_says_so():
     assert by_amplitude.relaxation_time[0] > 1.3 * TIME
     (note,) = map(str, by_amplitude.notes)
     assert note.startswith("the loops are not elliptical: E'' from loop area is 0.6")
+
+
+def test_losses_of_the_break_in_say_nothing_of_the_ellipses_of_a_run():
+    time, tension, strain = series(6)
+    loops = loops_of(time, tension, strain)
+    lost = loops.loss_over_time.copy()
+    lost[:, :2] *= 2.5  # a slow part of the rope that relaxes in the first two cycles
+    settling = replace(loops, loss_over_time=lost)
+    assert tuple(map(str, identify_run(settling, **K0, break_in_cycles=2).notes)) == ()
+    assert "not elliptical" in str(identify_run(settling, **K0).notes[0])
 
 
 def test_the_random_part_is_the_scatter_of_the_cycles():

@@ -197,15 +197,16 @@ def _amplitude_correlation(loops: Loops) -> Floats:
     return np.nan_to_num(correlation)
 
 
-def _remarks(loops: Loops, line: LineParameters) -> tuple[Note, ...]:
-    """What is odd about the loops for a line of three parameters."""
+def _remarks(loops: Loops, line: LineParameters, break_in_cycles: int = 0) -> tuple[Note, ...]:
+    """What is odd about the loops for a line of three parameters, after the break-in."""
     remarks = list(line.notes)
     known = line.reason == 0
     if line.reading == "amplitude" and known.any():
         own = np.broadcast_to(line.loss_spring_constant, known.shape)[known]
-        # one line a run is held against the mean of its cycles
+        # one line a run is held against the mean of the cycles that it was made from
         lost = loops.loss_over_time
-        lost = lost if lost.shape == known.shape else np.nanmean(lost, axis=1)
+        if lost.shape != known.shape:
+            lost = np.nanmean(lost[:, break_in_cycles:], axis=1)
         ratio = float(np.nanmedian(own / lost[known]))
         if abs(ratio - 1) > _NOT_AN_ELLIPSE:
             remarks.append(note("loops-no-ellipses", ratio=ratio))
@@ -217,7 +218,7 @@ def _remarks(loops: Loops, line: LineParameters) -> tuple[Note, ...]:
         remarks.append(
             note("line-uncertainty-skewed", n_skewed=n_skewed, n_lines=skewed.size, limit=_SKEWED)
         )
-    slack = loops.valley_tension <= _SLACK_SHARE * loops.peak_tension
+    slack = (loops.valley_tension <= _SLACK_SHARE * loops.peak_tension)[:, break_in_cycles:]
     if slack.any():
         n_slack = int(slack.sum())
         remarks.append(note("line-slack-in-loops", n_slack=n_slack, n_loops=slack.size))
@@ -402,4 +403,4 @@ def identify_run(
         random[name] = np.abs(getattr(line, name)) * np.hypot(_scatter(moved[row]), of_loops)
         both[name] = np.hypot(random[name], line.shared_uncertainty[name])
     line = replace(line, random_uncertainty=random, uncertainty=both)
-    return replace(line, notes=_remarks(loops, line))
+    return replace(line, notes=_remarks(loops, line, break_in_cycles))
