@@ -73,6 +73,36 @@ def relaxing(rng: np.random.Generator) -> Law:
     return at
 
 
+def between(rng: np.random.Generator) -> Law:
+    """Draw a fast and a slow relaxation: the loss is least within the frequencies."""
+    time = np.exp(rng.uniform(np.log([0.05, 2.0]), np.log([0.2, 8.0])))
+    share, stiffer = rng.uniform(0.3, 1.0, 2), rng.uniform(1, 3)
+
+    def at(levels: Floats) -> tuple[Floats, Floats, Floats]:
+        frequency, mean, swing = levels.T
+        static = 1.5 * (1 + stiffer * (mean - 0.21) + 4 * (mean - 0.21) ** 2)
+        turn = 2 * np.pi * frequency[:, None] * time
+        storage = static + (share * turn**2 / (1 + turn**2)).sum(axis=1)
+        loss = (share * turn / (1 + turn**2)).sum(axis=1)
+        spring = np.hypot(storage, loss)
+        return spring, np.pi * (swing / spring) ** 2 * loss, static
+
+    return at
+
+
+def stiffening(rng: np.random.Generator) -> Law:
+    """Draw a stiffness that rises as an exponential of the mean load, at a constant loss angle."""
+    rate, share, angle = rng.uniform(8, 20), rng.uniform(0.2, 0.6), rng.uniform(0.05, 0.15)
+
+    def at(levels: Floats) -> tuple[Floats, Floats, Floats]:
+        frequency, mean, swing = levels.T
+        static = 1.2 * (1 + share * np.exp(rate * (mean - 0.21)))
+        spring = static * (1.6 + 0.1 * np.log(frequency / 0.2)) * (swing / 0.08) ** -0.05
+        return spring, np.pi * swing**2 / spring * np.sin(angle), static
+
+    return at
+
+
 def powers(rng: np.random.Generator) -> Law:
     """Draw powers of all three levels, in stiffness and loss angle."""
     of_stiffness = rng.uniform([0.02, 0.1, -0.4], [0.12, 0.8, -0.05])
@@ -108,6 +138,8 @@ LAWS: dict[str, Callable[[np.random.Generator], Law]] = {
     "constant loss angle": lambda rng: line(rng, "angle"),
     "spring-pot": lambda rng: line(rng, "fractional"),
     "three relaxation times": relaxing,
+    "loss least within the frequencies": between,
+    "exponential in the mean load": stiffening,
     "powers": powers,
     "slip from an amplitude on": slipping,
 }

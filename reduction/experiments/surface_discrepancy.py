@@ -10,10 +10,11 @@ the lower ones say of their size:
 
     \delta(x) = \sum_\alpha \gamma_\alpha \left(x^\alpha - x^T (X^T X)^{-1} X^T X^\alpha\right),
     \qquad
-    \gamma_{kkk} \sim a_k \rho_k^2 / 3, \quad \gamma_{kkkk} \sim a_k \rho_k^3 / 4
+    \gamma_{kkk}^2 \sim (a_k \rho_k^2 / 3)^2 + (c_k \rho_k)^2, \quad
+    \gamma_{kkkk}^2 \sim (a_k \rho_k^3 / 4)^2 + (11 c_k \rho_k^2 / 12)^2
 
 with the half range of a factor over its centre, rho, by which the terms of a logarithm or a power
-of the factor fall from order to order.
+of the factor fall from order to order, and c the curvature beyond that of a line and a logarithm.
 
 References
 ----------
@@ -37,6 +38,9 @@ from reduction.experiments.response_matrix import block_contrasts
 from reduction.record.measurement import Floats, Integers, read_only_arrays
 
 _ORDERS = (3, 4)
+
+_OF_SQUARE = np.array([0.0, 0.0, 1.0, 1.0, 11 / 12])
+"""Terms of the square of a logarithm, by order: (ln(1 + x))^2 = x^2 - x^3 + 11/12 x^4 - .."""
 
 _NO_ZERO = 0.5
 """Fall of the terms from order to order of a factor that may be zero or less."""
@@ -83,6 +87,7 @@ def discrepancy_of(surfaces: ResponseSurfaces) -> SurfaceDiscrepancy:
     .. math::
 
         a_k^2 = \max\left[b_k^2, (2 b_{kk} / \rho_k)^2\right], \qquad
+        c_k = b_{kk} - \min(\max(b_{kk}, -\rho_k b_k / 2), 0) \; (b_k > 0), \qquad
         \gamma_\alpha^2 = \theta \prod_k \rho_k^{2 \alpha_k} / \bar\rho^2
 
     Parameters
@@ -105,7 +110,9 @@ def discrepancy_of(surfaces: ResponseSurfaces) -> SurfaceDiscrepancy:
     Method: the bias of [2]_ with the sizes of its terms drawn, as the discrepancy of [1]_.  Along
     a factor the terms fall as those of its logarithm, :math:`\rho^n / n`, with one amplitude: the
     larger of what slope and curvature say, since a relaxation within the range bends more than the
-    logarithm of its slope, and halfway through it has a slope without curvature.  Terms of several
+    logarithm of its slope, and halfway through it has a slope without curvature.  What bends more
+    than a line or a logarithm of its slope, or the other way, has an extreme near the levels or
+    rises as an exponential: it falls as the square of a logarithm, beside it.  Terms of several
     factors have one scale, from the interactions and from
     what the runs scatter about the surface beyond their repeats (or at all, where none is
     repeated): the only terms of third order of which a Box-Behnken design sees anything.  From
@@ -200,22 +207,29 @@ def _sizes(
     powers = surfaces.exponents
     n_moved = (powers > 0).sum(axis=1)
     # one factor by itself: slope and curvature say how large the series is
-    amplitude = np.array(
-        [
-            max(
-                square[(powers == np.eye(ratio.size)[k] * order).all(axis=1)][0]
-                * (order / ratio[k] ** (order - 1)) ** 2
-                for order in (1, 2)
-            )
-            for k in range(ratio.size)
-        ]
-    )  # fmt: skip
+    slope, curve = (
+        np.array(
+            [
+                (powers == np.eye(ratio.size)[k] * order).all(axis=1).argmax()
+                for k in range(ratio.size)
+            ]
+        )
+        for order in (1, 2)
+    )
+    amplitude = np.maximum(square[slope], square[curve] * (2 / ratio) ** 2)
+    # what a line, a logarithm and all between them bend less than: a parabola in the logarithm
+    coefficient = surfaces.coefficient[row]
+    ends = np.sort([np.zeros(ratio.size), -ratio / 2 * coefficient[slope]], axis=0)
+    beyond = coefficient[curve] - np.clip(coefficient[curve], *ends)
+    beyond = np.maximum(beyond**2 - variance[curve] - (ratio / 2) ** 2 * variance[slope], 0.0)
     order = more.sum(axis=1)
     size = np.zeros(len(more))
     alone = (more > 0).sum(axis=1) == 1
     factor = np.argmax(more[alone], axis=1)
-    size[alone] = (
-        amplitude[factor] * ratio[factor] ** (2.0 * (order[alone] - 1)) / order[alone] ** 2
+    power = 2.0 * (order[alone] - 2)
+    size[alone] = ratio[factor] ** power * (
+        amplitude[factor] * (ratio[factor] / order[alone]) ** 2
+        + beyond[factor] * _OF_SQUARE[order[alone]] ** 2
     )
     if alone.all():
         return size, 2.0 * ratio.size

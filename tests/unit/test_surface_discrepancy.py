@@ -32,8 +32,30 @@ def test_a_parabola_of_three_levels_misses_what_its_slope_and_curvature_suggest(
     )  # fmt: skip
     at = np.array([-1.0, -0.6, 0.0, 0.3, 1.0])
     size = max(slope, abs(2 * curvature / rho))
-    wanted = size * np.hypot(rho**2 / 3 * (at**3 - at), rho**3 / 4 * (at**4 - at**2))
+    beyond = curvature + rho / 2 * slope  # what a logarithm of this slope does not bend
+    cubic = np.hypot(size * rho**2 / 3, beyond * rho)
+    quartic = np.hypot(size * rho**3 / 4, beyond * rho**2 * 11 / 12)
+    wanted = np.hypot(cubic * (at**3 - at), quartic * (at**4 - at**2))
     np.testing.assert_allclose(discrepancy_of(found).at(at[:, None])[0], wanted, atol=1e-9)
+
+
+def test_a_loss_that_is_least_between_the_levels_is_within_the_interval():
+    """ln(f/f_0 + f_0/f): a slow and a fast relaxation, least at f_0 of 0.22 Hz."""
+
+    def law(f):
+        return f / np.sqrt(0.05) + np.sqrt(0.05) / f
+
+    coded = np.array([-1.0, 0.0, 1.0, -1.0, 1.0])[:, None]
+    found = fit_surfaces(
+        coded, [law(0.3 + 0.2 * coded[:, 0])], factor_names=["f"], response_names=["y"],
+        low=[0.1], high=[0.5], units="coded", with_tests=False, transforms="log",
+    )  # fmt: skip
+    discrepancy = discrepancy_of(found)
+    between = np.array([[-0.5]])
+    left, middle, right = np.log(law(np.array([0.1, 0.3, 0.5])))
+    missed = 0.375 * left + 0.75 * middle - 0.125 * right - np.log(law(0.2))
+    assert missed == pytest.approx(0.099, abs=1e-3)
+    assert missed / 2 < discrepancy.at(between)[0, 0] < missed
 
 
 def test_nothing_is_missed_at_the_runs_of_one_factor_and_something_between_them():
