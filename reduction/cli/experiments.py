@@ -44,6 +44,7 @@ from reduction.experiments.surface_warnings import (
     drift_over_order,
     drifting_responses,
     negative_surfaces,
+    stray_runs,
 )
 from reduction.quantities.units import UnitSystem, combined_unit, display_unit
 from reduction.record.errors import DataError, FitError, SettingsError
@@ -701,6 +702,7 @@ def notes_of_fit(runs: RunSeries, surfaces: ResponseSurfaces) -> tuple[str, ...]
         *map(str, surfaces.notes),
         *_unstated(runs),
         *map(str, negative_surfaces(surfaces)),
+        *map(str, stray_runs(surfaces)),
         *map(str, drifting_responses(surfaces, drift)),
     )
 

@@ -45,6 +45,7 @@ from reduction.experiments.surface_warnings import (
     drift_over_order,
     drifting_responses,
     negative_surfaces,
+    stray_runs,
 )
 from reduction.experiments.term_selection import ReducedSurfaces, reduce_terms
 from reduction.record.errors import DataError, FitError, SettingsError
@@ -363,6 +364,7 @@ def fit_experiment(
         notes += _missing_surfaces(runs, surfaces, response_names)
         notes += surfaces.notes
         notes += negative_surfaces(surfaces)
+        notes += stray_runs(surfaces)
         drift = drift_over_order(surfaces, _places_in_order(runs, run_order))
         notes += drifting_responses(surfaces, drift)
         if _FROM_SLOW_PULL & set(response_names):

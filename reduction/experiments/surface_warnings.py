@@ -1,4 +1,4 @@
-r"""Warnings about fitted surfaces: impossible values, drift over the run order.
+r"""Warnings about fitted surfaces: impossible values, drift over the run order, stray runs.
 
 Whether a response drifts over the order of the runs, beyond what the surface says.
 
@@ -14,6 +14,8 @@ References
    sec. 4.1 (a variable that enters after the others).
 .. [3] CG-D-39-80, sec. 4.3 (runs in the order of rising load, on one line) and 4.4 (surfaces of
    quantities that are above zero by nature).
+.. [4] R. D. Cook and S. Weisberg, Residuals and Influence in Regression. New York: Chapman and
+   Hall, 1982, sec. 2.2.2 (the largest of many deleted residuals, by Bonferroni).
 """
 
 from __future__ import annotations
@@ -28,8 +30,9 @@ from reduction.experiments.designs import model_matrix
 from reduction.experiments.fit_results import ResponseSurfaces
 from reduction.experiments.least_squares_fit import fit_least_squares, two_sided_p
 from reduction.experiments.response_matrix import block_contrasts
+from reduction.experiments.response_transform import back_transform
 from reduction.experiments.surface_points import evaluate_surfaces
-from reduction.quantities.names import SCALES
+from reduction.quantities.names import SCALES, response_of_surface
 from reduction.record.errors import DataError
 from reduction.record.measurement import Floats
 from reduction.record.notes import Note, note
@@ -122,6 +125,15 @@ _DRIFTS = 0.05
 """A p below this is worth a word."""
 
 
+def _replaced(surfaces: ResponseSurfaces) -> set[str]:
+    """Responses that have a transformed surface beside their own, which is the one in use."""
+    return {
+        name
+        for name in surfaces.response_names
+        if any(scale + name in surfaces.response_names for scale in SCALES)
+    }
+
+
 def negative_surfaces(surfaces: ResponseSurfaces) -> tuple[Note, ...]:
     """Surfaces that fall below zero among the levels, over runs that are all above it.
 
@@ -162,11 +174,7 @@ def negative_surfaces(surfaces: ResponseSurfaces) -> tuple[Note, ...]:
     measured = np.where(surfaces.transform_exponent == 1, 1.0, np.nan)[:, None] * (
         surfaces.fitted + surfaces.residual
     )
-    bent = {
-        name
-        for name in surfaces.response_names
-        if any(scale + name in surfaces.response_names for scale in SCALES)
-    }
+    bent = _replaced(surfaces)
     return tuple(
         note("surface-below-zero", response=name)
         for name, low, values in zip(surfaces.response_names, lowest, measured, strict=True)
@@ -217,8 +225,113 @@ def drifting_responses(surfaces: ResponseSurfaces, drift: Drift) -> tuple[Note, 
             found=f"{drift.p_value.size} responses",
             needed=f"{surfaces.reason.size}",
         )
+    # of a logarithm the slope is a share itself
+    size = np.where(
+        surfaces.transform_exponent == 0, 1.0, np.nan_to_num(np.abs(surfaces.fitted)).mean(axis=1)
+    )
+    share = np.divide(drift.slope, size, out=np.full(size.shape, np.nan), where=size > 0)
     return tuple(
-        note("response-drifts", response=name, slope=float(slope), p=float(p))
-        for name, slope, p in zip(surfaces.response_names, drift.slope, drift.p_value, strict=True)
+        note("response-drifts", response=name, slope=float(slope), share=float(part), p=float(p))
+        for name, slope, part, p in zip(
+            surfaces.response_names, drift.slope, share, drift.p_value, strict=True
+        )
         if p < _DRIFTS
+    )
+
+
+_STRAY = 1e-3
+"""Probability of naming a run of a response where all runs scatter alike; an upper bound."""
+
+_STRAY_SHARE = 0.03
+"""Distance of a run from the others below which it is not named, as a share of the response.
+
+What a quadratic misses is no scatter, and may be as unlikely for one; it is seldom as large."""
+
+
+def stray_runs(surfaces: ResponseSurfaces) -> tuple[Note, ...]:
+    r"""Runs that the surface of all others misses by far more than their scatter.
+
+    .. math::
+
+        d_i = \frac{e_i}{1 - h_i}, \qquad
+        n\, P(\lvert t_{n - p - 1}\rvert > \lvert t_i\rvert) < 0.001
+
+    Parameters
+    ----------
+    surfaces : ResponseSurfaces
+        As fitted, with tests.
+
+    Returns
+    -------
+    notes : tuple of Note
+        One for each run, or set of runs that are alike, with the responses that it is stray in.
+
+    Raises
+    ------
+    ValueError
+        If residuals and leverages do not pair up.
+
+    Notes
+    -----
+    Method: the largest deleted residual against the Student distribution of as many as there are
+    runs [4]_, and a distance of at least 3 % of the response.  In a Box-Behnken design of three
+    factors the residuals of two runs on opposite sides of the centre are equal and opposite: one
+    too high looks like the other too low, and both are named.
+
+    Examples
+    --------
+    >>> from reduction.experiments.designs import box_behnken
+    >>> from reduction.experiments.response_surfaces import fit_surfaces
+    >>> runs = box_behnken(3).coded
+    >>> noise = 1e-3 * np.array([1, -1, 1, 1, -1, -1, 1, -1, 1, -1, 1, 1, -1, 1, -1])
+    >>> found = fit_surfaces(runs, [3 + runs[:, 0] + noise + (np.arange(15) == 13)],
+    ...     units="coded", factor_names=["f", "T", "a"], response_names=["y"], low=[0] * 3,
+    ...     high=[1] * 3, run_names=[f"R{run}" for run in range(1, 16)])
+    >>> [str(one)[:67] for one in stray_runs(found)]
+    ['run R14 (+33 %) is off the surface of the other runs in y (p 5e-11)']
+    """
+    leverage, t = surfaces.diagnostics.leverage, surfaces.diagnostics.deleted_residual
+    n_used = np.isfinite(t).sum(axis=1, keepdims=True)
+    freedom = np.where(surfaces.degrees_of_freedom > 1, surfaces.degrees_of_freedom - 1, np.nan)
+    p = np.minimum(n_used * two_sided_p(t, freedom[:, None]), 1.0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        off = surfaces.residual / (1 - leverage)
+        others = surfaces.fitted + surfaces.residual - off
+        exponent = surfaces.transform_exponent[:, None]
+        plain = np.array([one == "none" for one in surfaces.transform])[:, None]
+        share = np.where(
+            plain,
+            off / np.abs(others),
+            back_transform(others + off, exponent) / back_transform(others, exponent) - 1,
+        )
+    found: list[tuple[set[int], list[int]]] = []
+    replaced = _replaced(surfaces)
+    strays = np.isfinite(p) & (p < _STRAY) & (np.abs(share) > _STRAY_SHARE)
+    rows = [row for row, name in enumerate(surfaces.response_names) if name not in replaced]
+    for row in sorted(
+        (row for row in rows if strays[row].any()), key=lambda row: np.nanmin(p[row])
+    ):
+        runs = set(np.flatnonzero(strays[row]).tolist())
+        same = next((one for one in found if one[0] & runs), None)
+        if same is None:
+            found.append((runs, [row]))
+        else:
+            same[1].append(row)
+    return tuple(
+        note(
+            "run-off-the-others",
+            runs=" or ".join(
+                f"{surfaces.run_names[run]} ({100 * share[of[0], run]:+.2g} %)"
+                for run in sorted(runs)
+            ),
+            responses=", and in ".join(
+                surfaces.response_names[row]
+                if plain[row, 0]
+                else response_of_surface(surfaces.response_names[row])
+                for row in of
+            ),
+            p=float(np.nanmin(p[of[0]])),
+            n_runs=len(runs),
+        )
+        for runs, of in found
     )

@@ -69,10 +69,21 @@ def _squared(unit: str) -> str:
     return re.sub(r"([A-Za-z]+)(-?\d+)?", lambda found: f"{found[1]}{2 * int(found[2] or 1)}", unit)
 
 
+def response_of_surface(name: str) -> str:
+    """The response that a surface is of, whatever its scale.
+
+    Examples
+    --------
+    >>> response_of_surface("log_frequency_times_relaxation_time")
+    'relaxation_time'
+    """
+    return name.removeprefix(next((one for one in SCALES if name.startswith(one)), ""))
+
+
 def rows_of_response(name: str) -> Iterator[Quantity]:
     """Give what is said of one surface, of a response or its transform; or of several together."""
-    scale = next((one for one in SCALES if name.startswith(one)), "")
-    of = name.removeprefix(scale)
+    of = response_of_surface(name)
+    scale = name.removesuffix(of)
     # a surface of a transform is evaluated in the unit of the response itself
     own = "response_unit" if name == "response" else SINGLE_QUANTITIES[of].unit
     unit = "1" if scale else "unit" if name == "response" else own

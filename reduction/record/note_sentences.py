@@ -1154,10 +1154,20 @@ _OF_EXPERIMENTS: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "the surface of {response} falls below zero within the levels, although no run does. Set"
         ' transform = "log"',
     ),
+    "run-off-the-others": (
+        "warning",
+        lambda runs, responses, p, n_runs: (
+            f"run {runs} is off the surface of the other runs in {responses} (p {p:.1g}). Check its"
+            " log, load and levels, or repeat it"
+            + (
+                f"; the residuals do not show which of the {n_runs} is wrong" if n_runs > 1 else ""
+            )
+        ),
+    ),
     "response-drifts": (
         "warning",
-        "{response} drifts with run order: its residuals change by {slope:+.3g} per run (p"
-        " {p:.2g})",
+        "{response} drifts with run order: its residuals change by {slope:+.3g} per run,"
+        " {share:+.2%} of the response (p {p:.2g})",
     ),
 }  # fmt: skip
 

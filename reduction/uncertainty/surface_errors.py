@@ -44,7 +44,7 @@ from reduction.experiments.fit_results import ResponseSurfaces
 from reduction.experiments.response_transform import back_transform, back_transformed_change
 from reduction.experiments.surface_discrepancy import discrepancy_of
 from reduction.experiments.surface_points import SurfaceValues, evaluate_surfaces
-from reduction.quantities.names import SCALES
+from reduction.quantities.names import response_of_surface
 from reduction.record.contributions import (
     combined_standard_uncertainty,
     coverage_factor,
@@ -306,7 +306,7 @@ def with_shared_surfaces(result: ExperimentResult) -> ExperimentResult:
     names = None if blocks is None else np.unique(blocks, return_inverse=True)[1]
     rows = []
     for index, name in enumerate(surfaces.response_names):
-        of = _measured(name)
+        of = response_of_surface(name)
         own = shared.values[of] * _slope_of_scale(result, surfaces, index, of)
         if surfaces.transform[index] == "log-times-frequency" and "frequency" in shared.values:
             # of the product both factors err
@@ -336,11 +336,6 @@ def _of_several_runs(response: Floats, level: Floats) -> Bools:
     """Errors of more than one run: that of one (its temperature) is in the scatter already."""
     moves = (np.nan_to_num(response) != 0) | (np.nan_to_num(level) != 0).any(axis=2)
     return np.asarray(moves.sum(axis=1) > 1)
-
-
-def _measured(name: str) -> str:
-    """The response that a surface is of, whatever its scale."""
-    return name.removeprefix(next((one for one in SCALES if name.startswith(one)), ""))
 
 
 def _slope_of_scale(
