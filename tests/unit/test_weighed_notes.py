@@ -23,3 +23,18 @@ def test_drift_that_is_taken_off_is_a_warning_where_the_energy_hangs_on_it(
     told = note("drift-in-energy", name, energy=1.0, closed=1 + effect, effect=effect)
     test = replace(rich_test, amplitude=summary, contributions=None, loop_notes=(told,))
     assert [one.severity for one in with_weighed_notes(test).loop_notes] == [severity]
+
+
+def test_drift_of_a_step_in_which_the_rope_beds_in_is_no_warning(rich_test):
+    name = rich_test.specimens[0].name
+    told = note("drift-in-energy", name, energy=30.2, closed=33.5, effect=0.11)
+    for kind, severity in (("cyclic", "warning"), ("bedding-in", "note")):
+        test = replace(
+            rich_test, description=replace(rich_test.description, kind=kind), loop_notes=(told,)
+        )
+        known = np.abs(test.amplitude.hysteresis_energy) * 0.01
+        uncertainty = test.amplitude.uncertainty | {"hysteresis_energy": known}
+        test = replace(
+            test, contributions=None, amplitude=replace(test.amplitude, uncertainty=uncertainty)
+        )
+        assert [one.severity for one in with_weighed_notes(test).loop_notes] == [severity]
