@@ -321,7 +321,7 @@ def stray_runs(surfaces: ResponseSurfaces) -> tuple[Note, ...]:
         note(
             "run-off-the-others",
             runs=" or ".join(
-                f"{surfaces.run_names[run]} ({100 * share[of[0], run]:+.2g} %)"
+                f"{surfaces.run_names[run]} ({100 * share[of[0], run]:+.0f} %)"
                 for run in sorted(runs)
             ),
             responses=", and in ".join(
