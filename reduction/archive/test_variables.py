@@ -62,6 +62,8 @@ COEFFICIENTS = {
     "splice_offset": "splice_offset",
     "splice_strain_curvature": "splice_strain_curvature",
     "splice_strain_cubic": "splice_strain_cubic",
+    "splice_limit": "splice_limit",
+    "splice_saturation": "splice_saturation",
     "free_length_intercept": "free_length_intercept",
     "free_length_slope": "free_length_slope",
     "free_fraction": "free_fraction",

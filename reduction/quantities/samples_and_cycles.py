@@ -448,6 +448,18 @@ OF_RECORD: tuple[Quantity, ...] = (
             tables=("splice_coefficients",),
         ),
         measured(
+            "splice_limit",
+            "1",
+            "splice strain that saturates with the tension: limit a in a (1 - exp(-b F))",
+            tables=("splice_coefficients",),
+        ),
+        measured(
+            "splice_saturation",
+            "N-1",
+            "rate b at which splice strain saturates with the tension: a (1 - exp(-b F))",
+            tables=("splice_coefficients",),
+        ),
+        measured(
             "free_length_intercept",
             "m",
             "free length at position zero, from the fitted line",

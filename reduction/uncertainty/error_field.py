@@ -175,44 +175,50 @@ def _used(model: StrainModel) -> Bools:
 
 
 def _splice_error(
-    model: StrainModel, load: Floats, gain: float, offset: float, law: tuple[float, float]
+    model: StrainModel, load: Floats, gain: float, offset: float, law: Floats
 ) -> Floats:
-    """Error of the strain by that of the tension and by those of ln c and n of the law."""
+    """Error of the strain by that of the tension and by those of the law (`_splice_terms`)."""
     if model.method not in _BY_TENSION:
         return np.zeros(load.shape)
     known = model.coefficients
-    compliance, exponent = known["splice_compliance"], known["splice_exponent"]
     share = known["relaxed_splice_length"] / known["relaxed_free_length"]
     # where the splices follow the free length too, that takes up a part of it
     share /= 1 + share * known.get("splice_strain_ratio", 0.0)
     force = np.maximum(load, 0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
-        logarithm = np.where(force > 0, np.log(force), 0.0)
         relative = np.where(force > 0, gain + offset / force, 0.0)
-    of_factor, of_exponent = law
-    splice = compliance * force**exponent
-    change = splice * (exponent * relative + of_factor + logarithm * of_exponent)
+    steepness, terms = _splice_terms(known, force)
+    change = steepness * relative + np.tensordot(law, terms[: law.size], axes=1)
     return np.where(np.isnan(load), np.nan, -share * change)
 
 
-def _refitted(
-    model: StrainModel, gain: float, offset: float, is_read: Bools
-) -> tuple[float, float]:
-    """Change of ln c and n of the splice law by the marks that a wrong cell read."""
+def _splice_terms(known: dict[str, float], force: Floats) -> tuple[Floats, Floats]:
+    """Change of the splice strain with ln F, and with ln c and n; ln a and ln b if it saturates."""
+    with np.errstate(divide="ignore"):
+        logarithm = np.where(force > 0, np.log(force), 0.0)
+    exponent, limit = known["splice_exponent"], known.get("splice_limit", 0.0)
+    power = known["splice_compliance"] * force**exponent
+    steepness, terms = exponent * power, [power, logarithm * power]
+    if limit:
+        reached = known["splice_saturation"] * force
+        rising = limit * reached * np.exp(-reached)
+        steepness, terms = steepness + rising, [*terms, -limit * np.expm1(-reached), rising]
+    return steepness, np.stack(terms)
+
+
+def _refitted(model: StrainModel, gain: float, offset: float, is_read: Bools) -> Floats:
+    """Change of the law of the splices by the marks that a wrong cell read (`_splice_terms`)."""
     used = _used(model)
     if model.method not in _BY_TENSION or not is_read.any():
-        return 0.0, 0.0
+        return np.zeros(2)
     force = model.mark_tension[used]
-    exponent = model.coefficients["splice_exponent"]
     # marks weigh by the strain of the splices there, as in their fit
-    weight = force**exponent
-    wanted = -exponent * (gain + offset / force) * weight * is_read[used]
-    basis = np.stack([weight, np.log(force) * weight], axis=1)
+    steepness, terms = _splice_terms(model.coefficients, force)
+    wanted = -steepness * (gain + offset / force) * is_read[used]
     # an average over laws follows what a change of the exponent does, and more
-    if exponent == HELD_EXPONENT and model.method != "mixed":
-        basis = basis[:, :1]
-    solved = np.linalg.lstsq(basis, wanted, rcond=None)[0]
-    return float(solved[0]), float(solved[1]) if solved.size > 1 else 0.0
+    if model.coefficients["splice_exponent"] == HELD_EXPONENT and model.method != "mixed":
+        terms = terms[:1]
+    return np.asarray(np.linalg.lstsq(terms.T, wanted, rcond=None)[0])
 
 
 def _splice_method_error(

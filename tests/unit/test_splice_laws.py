@@ -182,3 +182,105 @@ def test_the_mean_carries_the_variance_of_its_laws(splice):
         )
         variance = by_mean @ found.covariance[:6, :6] @ by_mean
         assert np.sqrt(variance) == pytest.approx(np.sqrt(own), rel=0.1)
+
+
+def three_tests(splice_of, tape=1e-3, scatter=0.0):
+    """Marks of three tests, in the later ones of a softer rubber, by splices of the tension."""
+    levels = np.array([0.0, 0.75, 1.0, 1.25, 0.5, 1.0, 1.5, 1.0, 1.5, 2.0])
+    soft = np.array([1.0] * 4 + [0.93] * 3 + [0.86] * 3)
+    tension = soft * 300.0 * levels * (1 - 0.25 * levels + 0.09 * levels**2)
+    error = scatter * np.random.default_rng(1).standard_normal(levels.size) * (levels > 0)
+    return SpliceReadings(
+        levels, splice_of(tension) + error, tension, np.array([0] * 4 + [1] * 3 + [2] * 3),
+        levels == 0, 0.45, tape, np.zeros((2, 2)), tension_uncertainty=np.zeros(levels.size),
+    )  # fmt: skip
+
+
+def strain_by(values, reference, free, tension):
+    """Splice strain of an average, by its formula."""
+    relative = tension / reference
+    share = 0.0
+    if values[7] > 0:
+        share = (1 - np.exp(-values[7] * relative)) / (1 - np.exp(-values[7]))
+    by_strain = values[0] + free * (values[1] + free * (values[2] + free * values[3]))
+    return by_strain + values[4] * relative ** values[5] + values[6] * share
+
+
+def of_average(found, free, tension):
+    """Splice strain of the average and its standard uncertainty, by differences."""
+    values = np.array(found.values[:8])
+    slope = np.zeros(8)
+    for place in range(8):
+        step = 1e-6 * np.eye(8)[place]
+        slope[place] = (
+            strain_by(values + step, found.reference, free, tension)
+            - strain_by(values, found.reference, free, tension)
+        ) / 1e-6
+    spread = (found.covariance + found.between)[:8, :8]
+    return strain_by(values, found.reference, free, tension), np.sqrt(slope @ spread @ slope)
+
+
+def exponential(tension):
+    return 0.25 * (1 - np.exp(-tension / 200.0))
+
+
+def test_splices_that_saturate_over_three_tests_have_a_law():
+    """No power of the tension follows them, and the rubber of each test has other tensions."""
+    found = fit_splice_laws(three_tests(exponential))
+    assert found.laws[0].name == "saturating"
+    assert found.laws[0].values[6] == pytest.approx(exponential(found.reference), rel=1e-4)
+    assert found.laws[0].values[7] == pytest.approx(found.reference / 200.0, rel=1e-3)
+    # in the cycles the rubber is softer still
+    strain, spread = of_average(found, 1.2, 150.0)
+    assert abs(strain - exponential(150.0)) < 1.96 * spread
+    assert spread < 2 * TAPE * np.sqrt(3)
+
+
+@pytest.mark.parametrize(
+    "splice_of",
+    [
+        lambda tension: 0.35 * tension / (tension + 250.0),
+        lambda tension: 0.25 * np.arctan(tension / 200.0) * 2 / np.pi,
+        lambda tension: 0.12 * np.log1p(tension / 100.0),
+        lambda tension: 0.09 * (1 - np.exp(-tension / 80.0)) + 2.5e-4 * tension,
+    ],
+    ids=["hyperbola", "arctan", "logarithm", "unlike ends"],
+)
+def test_splices_that_soften_otherwise_are_within_the_interval(splice_of):
+    found = fit_splice_laws(three_tests(splice_of, scatter=1.7e-3))
+    for free, tension in ((0.6, 120.0), (1.2, 170.0), (1.9, 300.0)):
+        strain, spread = of_average(found, free, tension)
+        assert abs(strain - splice_of(tension)) < 1.96 * spread
+        assert spread < 0.005
+
+
+def test_the_mean_of_laws_of_unlike_bends_is_that_of_their_strains():
+    """A mean saturation of laws that saturate early and late is that of neither."""
+    found = fit_splice_laws(
+        three_tests(lambda tension: 0.03 * (tension > 0) + 0.2 * (tension / 400.0) ** 0.72)
+    )
+    limited = [law.values[7] for law, w in zip(found.laws, found.weight, strict=True) if w > 0.01]
+    assert np.ptp(limited) > 0.5
+    given = three_tests(exponential)
+    for free, tension in zip(given.free[1:], given.tension[1:], strict=True):
+        wanted = sum(
+            weight * strain_by(law.values, found.reference, free, tension)
+            for law, weight in zip(found.laws, found.weight, strict=True)
+        )
+        strain, _ = of_average(found, free, tension)
+        assert strain == pytest.approx(wanted, abs=0.2 * TAPE)
+
+
+def test_a_mark_below_all_others_is_not_set_aside_for_a_law_that_saturates():
+    """Of splices by x2 / (1 + x2), x = F / 350 N, read to .3 mm, all marks but the lowest do."""
+    tension = np.array([0.0, 403.0, 605, 800, 557, 864, 1156])
+    free = np.array([0.0, 0.566, 0.972, 1.391, 0.977, 1.495, 2.025])
+    splice = np.array([0.0, 0.1273, 0.1659, 0.1833, 0.1572, 0.1876, 0.2011])
+    found = fit_splice_laws(
+        SpliceReadings(
+            free, splice, tension, np.array([0, 0, 0, 0, 1, 1, 1]), free == 0, 0.45, 2.5e-4,
+            np.zeros((2, 2)),
+            tension_uncertainty=np.array([0, 0.0143, 0.0081, 0.0079, 0.0073, 0.0063, 0.009]),
+        )
+    )  # fmt: skip
+    assert found.set_aside is None

@@ -44,6 +44,20 @@ def test_splices_stretch_by_the_tension_they_carry():
     assert found == pytest.approx([3.74, by_hand], rel=1e-12)
 
 
+def test_splices_that_saturate_stretch_to_their_limit():
+    saturating = StrainModel("T", "mixed", {
+        "relaxed_free_length": 2.55, "relaxed_splice_length": 1.19, "splice_offset": 0.0,
+        "splice_strain_ratio": 0.0, "splice_strain_curvature": 0.0, "splice_strain_cubic": 0.0,
+        "splice_compliance": 0.0, "splice_exponent": 1.0, "splice_limit": 0.25,
+        "splice_saturation": 1 / 300.0,
+    })  # fmt: skip
+    found = position_by_model(saturating, strain=[0.0, 1.0, 1.0], tension=[0.0, 300.0, 1e5])
+    by_hand = 2.55 * 2.0 + 1.19 * (1 + 0.25 * np.array([1 - np.exp(-1.0), 1.0]))
+    assert found == pytest.approx([3.74, *by_hand], rel=1e-12)
+    back = strain_by_model(saturating, position=found, tension=[0.0, 300.0, 1e5])
+    assert back == pytest.approx([0.0, 1.0, 1.0], abs=1e-12)
+
+
 def test_one_strain_at_several_tensions_is_several_lengths():
     found = position_by_model(MODELS[0], strain=1.0, tension=TENSION)
     assert found.shape == (4,)

@@ -101,3 +101,25 @@ def test_a_method_that_knows_no_tension_has_the_cell_of_the_samples_alone():
     parts = _load_parts(InstrumentErrors("new", tension_instrument="A", **SIZE), line, POINTS)
     assert {one.of for one, _ in parts} == {"A"}
     assert all(not rows[1].any() for _, rows in parts)
+
+
+def test_a_wrong_gain_of_the_cell_of_the_marks_leaves_the_strain_of_splices_that_saturate():
+    """Marks and samples have one wrong tension: the splices strain what the tape says."""
+    saturating = StrainModel(
+        "new", "mixed",
+        {"relaxed_free_length": FREE, "relaxed_splice_length": SPLICES, "splice_offset": 0.0,
+         "splice_strain_ratio": 0.0, "splice_strain_curvature": 0.0, "splice_strain_cubic": 0.0,
+         "splice_compliance": 0.0, "splice_exponent": 1.0, "splice_limit": 0.25,
+         "splice_saturation": 1 / 300.0},
+        mark_hold=("slack", "min", "centre", "max", "far"), mark_tension=MARKS,
+        mark_load_cell=("A",) * 5,
+    )  # fmt: skip
+    parts = {}
+    for cell in ("A", "B"):
+        errors = InstrumentErrors("new", tension_gain=0.01, tension_instrument=cell)
+        parts[cell] = {one.of: rows[1] for one, rows in _load_parts(errors, saturating, POINTS)}
+    np.testing.assert_allclose(parts["A"]["A"], 0.0, atol=1e-12)
+    reached = POINTS / 300.0
+    by_hand = -SPLICES / FREE * 0.25 * reached * np.exp(-reached) * 0.01
+    np.testing.assert_allclose(parts["B"]["B"], by_hand, rtol=1e-9)
+    np.testing.assert_allclose(parts["B"]["A"], -by_hand, rtol=1e-9)

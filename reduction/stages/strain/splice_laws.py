@@ -3,11 +3,12 @@ r"""The laws that tape readings at the splice toes can carry, each fitted, judge
 Every law says by how much the splices lengthen,
 
 .. math:: \varepsilon_s = s_0 + \rho\,\varepsilon + \kappa\,\varepsilon^2
-   + \gamma\,\varepsilon^3 + c F^n
+   + \gamma\,\varepsilon^3 + c F^n + a\,(1 - e^{-b F})
 
 and they differ in the terms that they have: the splices strain by the tension that they carry
-(:math:`c, n`), by a share of what the free length does (:math:`\rho`), by a share that changes
-along the stroke (:math:`\kappa, \gamma`), by both, or after they have bedded in (:math:`s_0`).
+(:math:`c, n`, or up to a limit, :math:`a, b`), by a share of what the free length does
+(:math:`\rho`), by a share that changes along the stroke (:math:`\kappa, \gamma`), by both, or
+after they have bedded in (:math:`s_0`).
 
 Tape readings tell a law of tension from one of strain by their bend alone, and a loop of the one
 has another width than a loop of the other.  Each side therefore has laws that bend as they need, a
@@ -45,11 +46,33 @@ LAWS: dict[str, tuple[str, ...]] = {
     "bedded curve": ("offset", "strain", "square"),
     "bedded mixture": ("offset", "strain", "tension"),
     "mixture with curve": ("strain", "square", "tension"),
+    "saturating": ("saturating",),
+    "bedded saturating": ("offset", "saturating"),
+    "saturating mixture": ("strain", "saturating"),
+    "saturating with line": ("tension", "saturating"),
 }
 """Laws and the terms of the splice strain that each of them has."""
 
-TERMS = ("offset", "strain", "square", "cube", "tension")
-"""Of `FittedLaw.values`: the last one is the splice strain at the reference tension."""
+SATURATING = {
+    "saturating": "tension-driven",
+    "bedded saturating": "bedded tension-driven",
+    "saturating mixture": "mixture",
+    "saturating with line": "tension-driven",
+}
+"""Laws of which the strain by the tension tends to a limit, and what they are without one."""
+
+TERMS = {"offset": 0, "strain": 1, "square": 2, "cube": 3, "tension": 4, "saturating": 6}
+"""Places in `FittedLaw.values`: the last two are splice strains at the reference tension."""
+
+OF_TENSION = frozenset({"tension", "saturating"})
+"""Terms by which splices strain by the tension that they carry."""
+
+_EXPONENT, _SATURATION, _N_VALUES = 5, 7, 10
+_OF_TENSION = np.arange(4, 8)  # both of them, each with its shape
+
+_TENSIONS = 24  # at which laws that saturate are compared
+
+_RANK = 1e-6  # of the change of these strains with a law: what less than this says is nothing
 
 REJECTED = 0.001
 """A law that sound marks would miss this rarely by as much is not used. [1]"""
@@ -72,6 +95,11 @@ _EXPONENTS = np.linspace(0.3, 1.9, 9)
 
 # of the exponent between those: a bend of the misfit that no range holds says nothing of it
 _FINE_EXPONENTS = np.linspace(0.3, 1.9, 33)
+
+# of the saturation b times the reference tension: a straight line has none, and above the last
+# splices no longer lengthen
+_SATURATIONS = np.array([0.1, 0.3, 0.6, 1.0, 1.5, 2.0, 2.7, 3.5, 4.5, 6.0, 8.0])
+_FINE_SATURATIONS = np.linspace(0.1, 8.0, 33)
 
 _NOWHERE = 1e12
 
@@ -139,12 +167,13 @@ class SpliceReadings:
 @dataclass(frozen=True)
 @read_only_arrays
 class FittedLaw:
-    """One law at its best: coefficients of `TERMS`, exponent and relaxed lengths, with covariance.
+    """One law at its best: coefficients of `TERMS`, shapes and relaxed lengths, with covariance.
 
-    Shape (8,) and (8, 8), zero of a term that it lacks; the last two are by how much free and
-    splice length are longer than the slack rows say, relative.  ``chi_square`` is against the
-    stated error of the tape, with ``freedom``; ``chance`` is its probability, ``criterion`` that
-    of Akaike.
+    Shape (10,) and (10, 10), zero of a term that it lacks.  After the tension stands its exponent,
+    after the saturating term its saturation, b times the reference tension; the last two are by how
+    much free and splice length are longer than the slack rows say, relative.  ``chi_square`` is
+    against the stated error of the tape, with ``freedom``; ``chance`` is its probability,
+    ``criterion`` that of Akaike.
     """
 
     name: str
@@ -164,14 +193,22 @@ class FittedLaw:
 
     @property
     def spread(self) -> Floats:
-        """Covariance; of a doubtful law by the errors that its misfit asks for, shape (8, 8)."""
+        """Covariance; of a doubtful law by the errors that its misfit asks for, shape (10, 10)."""
         is_doubtful = self.freedom > 0 and self.chance < _DOUBT
         return self.covariance * (self.chi_square / self.freedom if is_doubtful else 1.0)
 
     @property
     def n_terms(self) -> int:
         """Number of its coefficients."""
-        return len(LAWS[self.name]) + int(self.covariance[5, 5] > 0)
+        shapes = np.diag(self.covariance)[[_EXPONENT, _SATURATION]]
+        return len(LAWS[self.name]) + int(np.count_nonzero(shapes))
+
+    def by_tension(self, relative: Floats) -> tuple[Floats, Floats]:
+        """Splice strain by a tension over the reference, and its change with the logarithm."""
+        power = self.values[TERMS["tension"]] * relative ** self.values[_EXPONENT]
+        limited, steepness = _saturated(relative, float(self.values[_SATURATION]))
+        size = self.values[TERMS["saturating"]]
+        return power + size * limited, self.values[_EXPONENT] * power + size * steepness
 
 
 @dataclass(frozen=True)
@@ -181,15 +218,15 @@ class SpliceAverage:
 
     Parameters
     ----------
-    values : ndarray, shape (8,)
-        Mean coefficients of `TERMS`, mean exponent, and by how much relaxed free and splice length
-        are longer than the slack rows say, relative. [1]
-    covariance : ndarray, shape (8, 8)
+    values : ndarray, shape (10,)
+        Mean coefficients of `TERMS` and of their shapes, and by how much relaxed free and splice
+        length are longer than the slack rows say, relative. [1]
+    covariance : ndarray, shape (10, 10)
         By the tape alone. [1]
-    between : ndarray, shape (8, 8)
+    between : ndarray, shape (10, 10)
         By which law it is. [1]
     reference : float
-        Tension at which the splices strain by the last of the coefficients. [N]
+        Tension at which the splices strain by the coefficients of `OF_TENSION`. [N]
     laws : tuple of FittedLaw
         Every law that was fitted, best first.
     weight : ndarray, shape (n_laws,)
@@ -310,16 +347,12 @@ def fit_splice_laws(readings: SpliceReadings, *, specimen: str = "") -> SpliceAv
     weight = _with_both_sides(laws, weight, is_sure if is_told else passing)
     values = np.array([law.values for law in laws])
     mean = weight @ values
-    # powers of like exponents add up to one of their mean, weighed by what each strains
-    share = weight * values[:, 4]
-    mean[5] = share @ values[:, 5] / share.sum() if share.sum() > 0 else 1.0
-    # what an exponent is off by is worth what its own law strains by the tension, and that of the
-    # mean what the mean strains by it
-    worth = np.ones_like(values)
-    if mean[4] > 0:
-        worth[:, 5] = values[:, 4] / mean[4]
-    away = (values - mean) * worth
-    spread = np.array([law.spread for law in laws]) * worth[:, :, None] * worth[:, None, :]
+    away = values - mean
+    spread = np.array([law.spread for law in laws])
+    top = 1.2 * float(np.nan_to_num(kept.tension).max(initial=0.0)) / kept.reference
+    mean[_OF_TENSION], worth, beyond = _mean_by_tension(values, weight, top)
+    away[:, _OF_TENSION] = beyond
+    spread = np.einsum("kia,kab,kjb->kij", worth, spread, worth)
     offset, variance = _offsets(kept, laws[int(np.argmax(weight))], slip)
     return SpliceAverage(
         values=mean,
@@ -336,11 +369,76 @@ def fit_splice_laws(readings: SpliceReadings, *, specimen: str = "") -> SpliceAv
     )
 
 
+def _mean_by_tension(values: Floats, weight: Floats, top: float) -> tuple[Floats, Floats, Floats]:
+    """Mean strain by the tension, what errors of each law are worth in it, and its distance.
+
+    Shapes (4,), (n_laws, 10, 10) and (n_laws, 4).  Powers of like exponents add up to one of their
+    mean, weighed by what each strains: what an exponent is off by is worth what its own law strains
+    by the tension, and that of the mean what the mean strains by it.  Laws that saturate add up to
+    no law of their kind: there the mean is what lies nearest to all of them up to the top tension,
+    and errors and distances are those of the strain.
+    """
+    own = values[:, _OF_TENSION]
+    mean = weight @ own
+    worth = np.repeat(np.eye(values.shape[1])[None], weight.size, axis=0)
+    mean[1] = (weight * own[:, 0]) @ own[:, 1] / mean[0] if mean[0] > 0 else 1.0
+    if not mean[2] > 0:
+        mean[3] = 0.0
+        if mean[0] > 0:
+            worth[:, _EXPONENT, _EXPONENT] = own[:, 0] / mean[0]
+        return mean, worth, (own - mean) * worth[:, _OF_TENSION, _OF_TENSION]
+    relative = np.linspace(0.0, top, _TENSIONS + 1)[1:]
+    strains = np.array([_strain_by_tension(one, relative)[0] for one in own])
+    wanted = weight @ strains
+    used = weight > 0
+    low = np.array([0.0, _EXPONENTS[0], 0.0, _SATURATIONS[0]])
+    high = np.array([np.inf, _EXPONENTS[-1], np.inf, _SATURATIONS[-1]])
+    mean[3] = (weight * own[:, 2]) @ own[:, 3] / mean[2]
+
+    def missed(law: Floats) -> Floats:
+        return np.asarray(_strain_by_tension(law, relative)[0] - wanted)
+
+    def slope(law: Floats) -> Floats:
+        return _strain_by_tension(law, relative)[1].T
+
+    starts = (mean, *own[used & (own[:, 2] > 0)])
+    found = [
+        scipy.optimize.least_squares(
+            missed, np.clip(one, low, high), slope, (low, high), xtol=1e-12, ftol=1e-12, gtol=1e-14
+        )
+        for one in starts
+    ]
+    mean = min(found, key=lambda one: float(one.cost)).x
+    strain, change = _strain_by_tension(mean, relative)
+    back = np.linalg.pinv(change.T, rcond=_RANK)
+    for law in np.flatnonzero(used):
+        worth[law][np.ix_(_OF_TENSION, _OF_TENSION)] = (
+            back @ _strain_by_tension(own[law], relative)[1].T
+        )
+    beyond = np.where(used[:, None], (strains - strain) @ back.T, 0.0)
+    return mean, worth, beyond
+
+
+def _strain_by_tension(law: Floats, relative: Floats) -> tuple[Floats, Floats]:
+    """Strain by a tension over the reference, and its change with the four numbers of a law."""
+    size, exponent, limited, saturation = law
+    power = relative**exponent
+    share, _ = _saturated(relative, saturation)
+    whole = -np.expm1(-saturation)
+    of_bend = (
+        (relative * np.exp(-saturation * relative) - share * np.exp(-saturation)) / whole
+        if saturation > 0
+        else relative * (1 - relative) / 2
+    )
+    strain = size * power + limited * share
+    return strain, np.stack([power, size * power * np.log(relative), share, limited * of_bend])
+
+
 def _sides(laws: Sequence[FittedLaw]) -> Bools:
     """Which laws are of tension alone, and which of strain alone, shape (2, n_laws)."""
     terms = [frozenset(LAWS[law.name]) - {"offset"} for law in laws]
     return np.array(
-        [[only == {"tension"} for only in terms], ["tension" not in only for only in terms]]
+        [[only <= OF_TENSION for only in terms], [not only & OF_TENSION for only in terms]]
     )
 
 
@@ -350,12 +448,12 @@ def _is_told_apart(readings: SpliceReadings, laws: Sequence[FittedLaw]) -> bool:
     driven = [law for law in laws if _sides([law])[0].any()]
     if not driven:
         return True
-    law, tension = driven[0].values, readings.tension[loaded]
+    tension = readings.tension[loaded]
     # the tension as a curve over the strain, as marks of one pull have it
     powers = np.vander(readings.free[loaded], min(_CURVE, tension.size))
     curve = powers @ np.linalg.lstsq(powers, np.log(tension), rcond=None)[0]
-    strain = law[5] * law[4] * (tension / readings.reference) ** law[5]
-    shown = strain * (np.log(tension) - curve) / (np.sqrt(3) * readings.tape)
+    steepness = driven[0].by_tension(tension / readings.reference)[1]
+    shown = steepness * (np.log(tension) - curve) / (np.sqrt(3) * readings.tape)
     return float(scipy.special.chdtrc(1, shown @ shown)) < REJECTED
 
 
@@ -405,11 +503,17 @@ def _judged(readings: SpliceReadings) -> _Judged:
     if not laws or np.unique(readings.test).size < 2 or laws[0].chance >= _DOUBT:
         return _Judged(laws, 0.0)
     best = laws[0]
+    shapes = {law.name: _shape(law) for law in laws}
+
+    def shape_of(name: str) -> float:
+        own = shapes.get(name, 1.0)
+        return own if name in SATURATING else float(best.values[_EXPONENT])
+
     tried = [
         (found.criterion, float(slip))
         for slip in readings.tape * _SLIPS
         for name in LAWS
-        if (found := _fit(readings, name, float(best.values[5]), float(slip))) is not None
+        if (found := _fit(readings, name, shape_of(name), float(slip))) is not None
     ]
     criterion, slip = min(tried)
     # one more number was found from the marks
@@ -424,45 +528,49 @@ def _fitted(readings: SpliceReadings, slip: float) -> list[FittedLaw]:
 
 
 def _law(readings: SpliceReadings, name: str, slip: float) -> FittedLaw | None:
-    """One law; of the tension with an exponent of its own, where the marks fix one."""
-    at_one = _fit(readings, name, 1.0, slip)
+    """One law; of the tension with an exponent or a saturation, where the marks fix one."""
+    is_limited = name in SATURATING
+    at_one = _fit(readings, SATURATING.get(name, name), 1.0, slip)
+    if not is_limited and (at_one is None or not set(LAWS[name]) & OF_TENSION):
+        return at_one
+    # without a bend it is another of the laws
+    without = None if is_limited else at_one
     loaded = readings.tension[~readings.is_slack]
-    if at_one is None or "tension" not in LAWS[name]:
-        return at_one
     # of two marks the tension alone may have one that leaves none to spare: no misfit judges it
-    if loaded.size < len(LAWS[name]) + (1 if LAWS[name] == ("tension",) else 3):
-        return at_one
-    if loaded.max() < _SPAN * loaded.min():
-        return at_one
+    spare = 1 if LAWS[name] == ("tension",) else 3 + (is_limited and len(LAWS[name]) > 1)
+    if loaded.size < len(LAWS[name]) + spare or loaded.max() < _SPAN * loaded.min():
+        return without
+    grid = _SATURATIONS if is_limited else _EXPONENTS
 
-    def criterion(exponent: float) -> float:
-        found = _fit(readings, name, exponent, slip)
+    def criterion(shape: float) -> float:
+        found = _fit(readings, name, shape, slip)
         return _NOWHERE if found is None else min(found.criterion, _NOWHERE)
 
     # a sharp minimum lies between the points of any grid, so that it is followed down
-    grid = np.array([criterion(float(one)) for one in _EXPONENTS])
-    place = int(np.argmin(grid))
-    ends = _EXPONENTS[max(place - 1, 0)], _EXPONENTS[min(place + 1, _EXPONENTS.size - 1)]
+    place = int(np.argmin([criterion(float(one)) for one in grid]))
+    ends = grid[max(place - 1, 0)], grid[min(place + 1, grid.size - 1)]
     search = scipy.optimize.minimize_scalar(
         criterion, bounds=ends, method="bounded", options={"xatol": 1e-5}
     )
-    exponent, best = float(search.x), float(search.fun)
-    # a number more than the straight line has
-    if best + 2 >= at_one.criterion:
-        return at_one
-    below, law, above = (_fit(readings, name, exponent + way, slip) for way in (-_STEP, 0.0, _STEP))
+    shape, best = float(search.x), float(search.fun)
+    # a number more than the straight line has; what saturates below the lowest mark is an offset
+    is_offset = is_limited and shape > grid[-1] - _STEP
+    if is_offset or best + 2 >= (_NOWHERE if at_one is None else at_one.criterion):
+        return without
+    below, law, above = (_fit(readings, name, shape + way, slip) for way in (-_STEP, 0.0, _STEP))
     if below is None or law is None or above is None:
-        return at_one
+        return without
     bend = (below.criterion - 2 * best + above.criterion) / _STEP**2
     slope = (above.values - below.values) / (2 * _STEP)
-    slope[5] = 1.0
-    room = min(exponent - _EXPONENTS[0], _EXPONENTS[-1] - exponent)
+    slope[_SATURATION if is_limited else _EXPONENT] = 1.0
+    room = min(shape - grid[0], grid[-1] - shape)
     if bend * room**2 > 2:  # one standard deviation is within the range
         variance = 2 / bend
     else:
-        misfit = np.array([criterion(float(one)) for one in _FINE_EXPONENTS])
+        fine = _FINE_SATURATIONS if is_limited else _FINE_EXPONENTS
+        misfit = np.array([criterion(float(one)) for one in fine])
         likelihood = np.exp((misfit.min() - misfit) / 2)
-        away = _FINE_EXPONENTS - exponent
+        away = fine - shape
         variance = float(likelihood @ away**2 / likelihood.sum())
     return replace(
         law,
@@ -472,30 +580,49 @@ def _law(readings: SpliceReadings, name: str, slip: float) -> FittedLaw | None:
     )
 
 
-def _terms(readings: SpliceReadings, exponent: float) -> dict[str, Floats]:
+def _shape(law: FittedLaw) -> float:
+    """Exponent of a law, or its saturation."""
+    return float(law.values[_SATURATION if law.name in SATURATING else _EXPONENT])
+
+
+def _saturated(relative: Floats, saturation: float) -> tuple[Floats, Floats]:
+    """1 - exp(-b F) over its value at the reference tension, and its change with ln F."""
+    if saturation == 0.0:
+        return relative, relative
+    at_reference = -np.expm1(-saturation)
+    limited = -np.expm1(-saturation * relative) / at_reference
+    return limited, saturation * relative * np.exp(-saturation * relative) / at_reference
+
+
+def _terms(readings: SpliceReadings, exponent: float, saturation: float) -> dict[str, Floats]:
     free = readings.free
-    load = np.maximum(np.nan_to_num(readings.tension), 0.0)
+    load = np.maximum(np.nan_to_num(readings.tension), 0.0) / readings.reference
     return {
         "offset": (~readings.is_slack).astype(np.float64),
         "strain": np.where(readings.is_slack, 0.0, free),
         "square": np.where(readings.is_slack, 0.0, free**2),
         "cube": np.where(readings.is_slack, 0.0, free**3),
-        "tension": np.where(readings.is_slack, 0.0, (load / readings.reference) ** exponent),
+        "tension": np.where(readings.is_slack, 0.0, load**exponent),
+        "saturating": np.where(readings.is_slack, 0.0, _saturated(load, saturation)[0]),
     }
 
 
-def _fit(readings: SpliceReadings, name: str, exponent: float, slip: float) -> FittedLaw | None:
+def _fit(readings: SpliceReadings, name: str, shape: float, slip: float) -> FittedLaw | None:
     """One law by generalised least squares; None where the marks cannot carry it."""
-    places = [TERMS.index(term) for term in LAWS[name]]
+    places = [TERMS[term] for term in LAWS[name]]
     rows = np.arange(readings.free.size)
-    if "tension" in LAWS[name]:
+    is_driven = bool(set(LAWS[name]) & OF_TENSION)
+    exponent, saturation = (1.0, shape) if name in SATURATING else (shape, 0.0)
+    if is_driven:
         is_known = readings.is_slack | (np.nan_to_num(readings.tension) > 0)
         if not is_known.all():
             return None
     loaded = ~readings.is_slack
     if "cube" in LAWS[name] and loaded.sum() < len(LAWS[name]) + _SPARE:
         return None
-    columns = _terms(readings, exponent)
+    columns = _terms(readings, exponent, saturation)
+    load = np.maximum(np.nan_to_num(readings.tension), 0.0) / readings.reference
+    steepness = np.where(readings.is_slack, 0.0, _saturated(load, saturation)[1])
     design = np.stack([columns[term] for term in LAWS[name]], axis=1)
     # columns by their size: a tension has another than a strain
     size = np.sqrt((design**2).sum(axis=0))
@@ -504,7 +631,7 @@ def _fit(readings: SpliceReadings, name: str, exponent: float, slip: float) -> F
     known = np.zeros((len(places) + 2,) * 2)
     if "offset" in LAWS[name]:
         # the first column: what splices settle by is small, whatever the readings would carry
-        usual = _BEDDING if "tension" in LAWS[name] else _INTERCEPT
+        usual = _BEDDING if is_driven else _INTERCEPT
         known[0, 0] = (usual * size[0]) ** -2
     # lengths that count as exact stay as they are
     known[-2:, -2:] = np.linalg.inv(readings.relaxed + _EXACT * np.eye(2))
@@ -516,12 +643,17 @@ def _fit(readings: SpliceReadings, name: str, exponent: float, slip: float) -> F
         weighed = np.linalg.solve(covariance, whole)
         normal = np.linalg.inv(whole.T @ weighed + known)
         solved = normal @ weighed.T @ readings.splice
-        values = np.append(np.zeros(len(TERMS)), exponent)
+        values = np.zeros(_N_VALUES)
+        values[[_EXPONENT, _SATURATION]] = exponent, saturation
         values[places] = solved[:-2] / size
         slope = np.where(loaded, _per_strain(readings.free) @ values[1:4], 0.0)
-        per_tension = exponent * values[4] * columns["tension"]
+        per_tension = exponent * values[TERMS["tension"]] * columns["tension"]
+        per_tension = per_tension + values[TERMS["saturating"]] * steepness
     # splices that shorten under load, or that stretch more than what they hold
-    if values[4] < 0 or (1 + readings.share * slope).min() <= 0.05:
+    if (
+        values[list(map(TERMS.__getitem__, OF_TENSION))].min() < 0
+        or (1 + readings.share * slope).min() <= 0.05
+    ):
         return None
     lengths = solved[-2:]
     residual = readings.splice - whole @ solved
@@ -530,8 +662,9 @@ def _fit(readings: SpliceReadings, name: str, exponent: float, slip: float) -> F
     chi_square = float(misfit @ np.linalg.solve(covariance[np.ix_(judged, judged)], misfit))
     chi_square += float(solved @ known @ solved)
     scale = np.concatenate([1 / size, np.ones(2)])
-    at = np.array([*places, 6, 7])
-    own = np.zeros((8, 8))
+    values[-2:] = lengths
+    at = np.array([*places, _N_VALUES - 2, _N_VALUES - 1])
+    own = np.zeros((_N_VALUES, _N_VALUES))
     own[np.ix_(at, at)] = normal * np.outer(scale, scale)
     falling = _per_strain(readings.free[loaded])
     spare = _MOST_FALL * np.sqrt(np.einsum("ri,ij,rj->r", falling, own[1:4, 1:4], falling))
@@ -546,7 +679,7 @@ def _fit(readings: SpliceReadings, name: str, exponent: float, slip: float) -> F
     misfit_term = chi_square if np.isinf(worth) else (worth + count) * np.log1p(chi_square / worth)
     return FittedLaw(
         name=name,
-        values=np.concatenate([values, lengths]),
+        values=values,
         covariance=own,
         chi_square=chi_square,
         freedom=count - len(places),
@@ -608,23 +741,30 @@ def _outlier(readings: SpliceReadings, slip: float) -> int | None:
             return None
         errors = []
         for law in others:
-            columns = _terms(readings, float(law.values[5]))
-            design = np.array([columns[term][row] for term in TERMS])
+            columns = _terms(readings, float(law.values[_EXPONENT]), float(law.values[_SATURATION]))
+            design, at = np.array([columns[term][row] for term in TERMS]), list(TERMS.values())
             slope = float(_per_strain(readings.free[row]) @ law.values[1:4])
             own = readings.tape**2 * (2 * (1 + readings.share * slope) ** 2 + 1) + slip**2
             if readings.tension_uncertainty.size:
-                of_tension = law.values[5] * law.values[4] * design[4]
+                of_tension = law.by_tension(readings.tension[[row]] / readings.reference)[1][0]
                 own += (of_tension * readings.tension_uncertainty[row]) ** 2
-            of_law = float(design @ law.covariance[:5, :5] @ design)
-            away = readings.splice[row] - design @ law.values[:5]
+            of_law = float(design @ law.covariance[np.ix_(at, at)] @ design)
+            away = readings.splice[row] - design @ law.values[at]
             errors.append(abs(away) / np.sqrt(own + of_law))
         far[row] = min(errors)
     worst = int(np.argmax(far))
     if far[worst] <= _FAR:
         return None
-    # without it the marks have to agree with a law: else it is not the mark that is wrong
-    laws = _judged(readings.without(worst)).laws
-    return worst if laws and laws[0].chance >= REJECTED else None
+    # without it the marks have to agree with a law: else it is not the mark that is wrong; one that
+    # saturates says nothing of what lies below or above all other marks
+    kept = readings.without(worst)
+    known = kept.tension[~kept.is_slack]
+    is_inside = known.min() <= readings.tension[worst] <= known.max()
+    agrees = any(
+        law.chance >= REJECTED and (is_inside or law.name not in SATURATING)
+        for law in _judged(kept).laws
+    )
+    return worst if agrees else None
 
 
 def _refusal(readings: SpliceReadings, laws: Sequence[FittedLaw], specimen: str) -> DataError:

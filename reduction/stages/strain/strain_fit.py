@@ -61,6 +61,7 @@ from reduction.record.settings import StrainMethod, StrainSettings
 from reduction.stages.standstills import Standstills
 from reduction.stages.strain.splice_laws import (
     LAWS,
+    OF_TENSION,
     REJECTED,
     FittedLaw,
     SpliceAverage,
@@ -929,24 +930,21 @@ def _fit_mixed(readings: PooledMarks, average: SpliceAverage | None) -> _MixedFi
     given = _splice_readings(readings, relaxed)
     if average is None:
         average = average_over_laws(readings)
-    free, splice = (float(one) for one in relaxed.values * (1 + average.values[6:]))
+    free, splice = (float(one) for one in relaxed.values * (1 + average.values[-2:]))
     tests = list(dict.fromkeys(marks.test))
     own = [tests.index(test) for test in dict.fromkeys(np.array(marks.test)[readings.is_own])]
     offset, of_slip = _own_offset(average, own[0] if own else None)
     names = (
         "relaxed_free_length", "relaxed_splice_length", "splice_offset", "splice_strain_ratio",
         "splice_strain_curvature", "splice_strain_cubic", "splice_compliance", "splice_exponent",
+        "splice_limit", "splice_saturation",
     )  # fmt: skip
-    strained, exponent = (float(one) for one in average.values[4:6])
-    compliance = strained * average.reference**-exponent
-    values = [free, splice, *average.values[:4].tolist(), compliance, exponent]
+    law, to_law = _law_in_si(average.values, average.reference)
+    values = [free, splice, *law.tolist()]
     values[2] += offset
-    # from the strain at the reference tension to that at one newton, and to lengths
-    to_si = np.zeros((8, 8))
-    to_si[[0, 1], [6, 7]] = relaxed.values
-    to_si[[2, 3, 4, 5, 6, 7], [0, 1, 2, 3, 4, 5]] = 1.0
-    to_si[6, 4] = average.reference**-exponent
-    to_si[6, 5] = -compliance * np.log(average.reference)
+    to_si = np.zeros((len(names), len(names)))
+    to_si[[0, 1], [-2, -1]] = relaxed.values
+    to_si[2:, :-2] = to_law
     covariance = to_si @ average.covariance @ to_si.T
     between = to_si @ average.between @ to_si.T
     covariance[2, 2] += of_slip
@@ -960,6 +958,24 @@ def _fit_mixed(readings: PooledMarks, average: SpliceAverage | None) -> _MixedFi
         notes=_scatter_notes(marks, relaxed, _NO_FIT),
     )
     return _MixedFit(average, model, rows)
+
+
+def _law_in_si(values: Floats, reference: float) -> tuple[Floats, Floats]:
+    """Coefficients of a law from the strains at a reference tension, and their change with these.
+
+    The compliance is the strain at one newton, the limit what the saturating term tends to.
+    """
+    law, change = np.array(values[:-2]), np.eye(values.size - 2)
+    strained, exponent, limited, saturation = (float(one) for one in law[4:])
+    law[4] = compliance = strained * reference**-exponent
+    change[4, 4:6] = reference**-exponent, -compliance * np.log(reference)
+    law[7] = saturation / reference
+    change[7, 7] = 1 / reference
+    if limited > 0:
+        share = -np.expm1(-saturation)
+        law[6] = limited / share
+        change[6, 6:8] = 1 / share, -limited * np.exp(-saturation) / share**2
+    return law, change
 
 
 def _own_offset(average: SpliceAverage, place: int | None) -> tuple[float, float]:
@@ -1032,7 +1048,7 @@ def _on_laws(fit: _MixedFit, readings: PooledMarks) -> tuple[Note, ...]:
         weight > 0 and law.chance < REJECTED
         for law, weight in zip(average.laws, average.weight, strict=True)
     ):
-        is_strain = "tension" not in LAWS[best.name]
+        is_strain = not OF_TENSION & set(LAWS[best.name])
         notes.append(note("splice-side-rejected", marks.specimen, is_strain=is_strain))
     if not average.is_checked:
         carried = [
@@ -1059,14 +1075,8 @@ def _on_laws(fit: _MixedFit, readings: PooledMarks) -> tuple[Note, ...]:
 def _effect_on_modulus(model: StrainModel, law: FittedLaw, reference: float) -> float:
     """Change of a modulus by another law, over the middle of what was marked."""
     other = dict(model.coefficients)
-    strained, exponent = (float(one) for one in law.values[4:6])
-    names = (
-        "splice_offset", "splice_strain_ratio", "splice_strain_curvature", "splice_strain_cubic",
-    )  # fmt: skip
-    other |= dict(zip(names, law.values[:4].tolist(), strict=True))
-    other |= {
-        "splice_compliance": strained * reference**-exponent, "splice_exponent": exponent,
-    }  # fmt: skip
+    # after the relaxed lengths, which stay
+    other |= dict(zip(list(other)[2:], _law_in_si(law.values, reference)[0].tolist(), strict=True))
     middle = (model.position_low + model.position_high) / 2
     force = np.full(2, model.tension_high if np.isfinite(model.tension_high) else 0.0) / 2
     place = np.array([middle, middle + 0.01 * (model.position_high - model.position_low + 1e-9)])

@@ -379,11 +379,14 @@ def _mixed_strain(
     splice_strain_cubic: float,
     splice_compliance: float,
     splice_exponent: float,
+    splice_limit: float = 0.0,
+    splice_saturation: float = 0.0,
 ) -> Floats:
     r"""Strain where the splices strain by what they carry, and by what the free length does.
 
     .. math:: \ell_0 (1 + \varepsilon)
-       + \ell_s (1 + s_0 + \rho\varepsilon + \kappa\varepsilon^2 + \gamma\varepsilon^3 + c F^n) = p
+       + \ell_s \left(1 + s_0 + \rho\varepsilon + \kappa\varepsilon^2 + \gamma\varepsilon^3
+       + c F^n + a (1 - e^{-b F})\right) = p
 
     Notes
     -----
@@ -409,8 +412,8 @@ def _mixed_strain(
     slope = 1 + share * splice_strain_ratio
     as_positive("1 + splice_strain_ratio * splice length / free length", slope)
     # NaN stays NaN, but of a law that knows no tension
-    by_tension = (
-        splice_compliance * np.maximum(load, 0.0) ** splice_exponent if splice_compliance else 0.0
+    by_tension = _by_tension(
+        np.maximum(load, 0.0), splice_compliance, splice_exponent, splice_limit, splice_saturation
     )
     excess = place * (1 / relaxed_free_length) - 1 - share * (1 + splice_offset + by_tension)
     if splice_strain_curvature == splice_strain_cubic == 0:
@@ -420,6 +423,14 @@ def _mixed_strain(
         with np.errstate(invalid="ignore"):
             return np.asarray(2 * excess / (slope + np.sqrt(root)))
     return _cubic_root(excess, slope, share * splice_strain_curvature, share * splice_strain_cubic)
+
+
+def _by_tension(
+    load: Floats, compliance: float, exponent: float, limit: float, saturation: float
+) -> Floats:
+    """Splice strain by a tension not below zero; zero, also of NaN, of a law that knows none."""
+    power = compliance * load**exponent if compliance else np.zeros(load.shape)
+    return power - limit * np.expm1(-saturation * load) if limit else power
 
 
 def _cubic_root(excess: Floats, slope: float, square: float, cube: float) -> Floats:
@@ -720,7 +731,8 @@ def _mixed_sensitivity(
     .. math:: \frac{\partial\varepsilon}{\partial\theta}
        = -\frac{\partial g}{\partial\theta} \Big/ \frac{\partial g}{\partial\varepsilon}, \qquad
        g = \ell_0 (1 + \varepsilon) + \ell_s
-       (1 + s_0 + \rho\varepsilon + \kappa\varepsilon^2 + \gamma\varepsilon^3 + c F^n) - p
+       (1 + s_0 + \rho\varepsilon + \kappa\varepsilon^2 + \gamma\varepsilon^3 + c F^n
+       + a (1 - e^{-b F})) - p
     """
     strain = _mixed_strain(position, tension, **coefficients)
     free, splice = coefficients["relaxed_free_length"], coefficients["relaxed_splice_length"]
@@ -729,8 +741,12 @@ def _mixed_sensitivity(
     load = np.maximum(np.broadcast_to(np.asarray(tension, dtype=np.float64), strain.shape), 0.0)
     power = load ** coefficients["splice_exponent"]
     square = strain * strain
+    limit = coefficients.get("splice_limit", 0.0)
+    saturation = coefficients.get("splice_saturation", 0.0)
     # NaN stays NaN, but of a law that knows no tension
-    by_tension = compliance * power if compliance else np.zeros(strain.shape)
+    by_power = compliance * power if compliance else np.zeros(strain.shape)
+    by_tension = _by_tension(load, compliance, coefficients["splice_exponent"], limit, saturation)
+    left = np.exp(-saturation * load)
     of_splices = ratio * strain + curvature * square + cubic * square * strain
     own = {
         "relaxed_free_length": 1 + strain,
@@ -740,8 +756,11 @@ def _mixed_sensitivity(
         "splice_strain_curvature": splice * square,
         "splice_strain_cubic": splice * square * strain,
         "splice_compliance": splice * power,
-        "splice_exponent": splice * by_tension * np.log(np.where(load > 0, load, 1.0)),
+        "splice_exponent": splice * by_power * np.log(np.where(load > 0, load, 1.0)),
     }
+    if "splice_limit" in coefficients:
+        own["splice_limit"] = splice * (1 - left)
+        own["splice_saturation"] = splice * limit * load * left
     slope = free + splice * (ratio + 2 * curvature * strain + 3 * cubic * square)
     # where there is no strain nothing moves it
     return {name: np.where(np.isnan(strain), np.nan, -one / slope) for name, one in own.items()}
@@ -811,8 +830,13 @@ def position_by_model(model: StrainModel, *, strain: ArrayLike, tension: ArrayLi
 
 
 def _mixed_length(strain: Floats, tension: Floats, known: dict[str, float]) -> Floats:
-    compliance, exponent = known["splice_compliance"], known["splice_exponent"]
-    by_tension = compliance * np.maximum(tension, 0.0) ** exponent if compliance else 0.0
+    by_tension = _by_tension(
+        np.maximum(tension, 0.0),
+        known["splice_compliance"],
+        known["splice_exponent"],
+        known.get("splice_limit", 0.0),
+        known.get("splice_saturation", 0.0),
+    )
     by_strain = known["splice_strain_ratio"] + strain * (
         known["splice_strain_curvature"] + known["splice_strain_cubic"] * strain
     )
