@@ -186,7 +186,8 @@ def _splice_error(
     share /= 1 + share * known.get("splice_strain_ratio", 0.0)
     force = np.maximum(load, 0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
-        relative = np.where(force > 0, gain + offset / force, 0.0)
+        # below the wrong zero itself, splices are off by no more than what they strain
+        relative = np.where(force > 0, gain + offset / np.maximum(force, abs(offset)), 0.0)
     steepness, terms = _splice_terms(known, force)
     change = steepness * relative + np.tensordot(law, terms[: law.size], axes=1)
     return np.where(np.isnan(load), np.nan, -share * change)

@@ -34,6 +34,7 @@ def test_the_rich_test_fills_every_variable_that_a_log_can_have(rich_test, bare_
         "reference_position",
         "free_length_intercept", "free_length_slope", "splice_strain_ratio", "strain_gauge_length",
         "splice_offset", "splice_strain_cubic", "splice_strain_curvature", "strain_reference_tension",
+        "splice_limit", "splice_saturation",
         "relaxed_gauge_length", "uncertainty_source_degrees_of_freedom", "sample_index",
         "crosshead_displacement_random", "crosshead_displacement_uncertainty_contribution",
     }  # fmt: skip

@@ -123,3 +123,13 @@ def test_a_wrong_gain_of_the_cell_of_the_marks_leaves_the_strain_of_splices_that
     by_hand = -SPLICES / FREE * 0.25 * reached * np.exp(-reached) * 0.01
     np.testing.assert_allclose(parts["B"]["B"], by_hand, rtol=1e-9)
     np.testing.assert_allclose(parts["B"]["A"], -by_hand, rtol=1e-9)
+
+
+def test_a_wrong_zero_of_the_cell_is_no_slope_without_bounds_at_a_tension_near_none():
+    errors = InstrumentErrors("new", tension_offset=1.0, tension_instrument="B")
+    load = np.array([1e-3, 1e-2, 0.1, 0.99])
+    parts = {one.of: rows for one, rows in _load_parts(errors, model(("A",) * 5), load)}
+    # by as much as the splices strain in one newton, per newton
+    law = SPLICES / FREE * COMPLIANCE * EXPONENT * load ** (EXPONENT - 1)
+    assert (np.abs(parts["B"][4]) <= 2 * law).all()
+    assert (np.abs(parts["B"][1]) <= law * load * 1.001).all()
