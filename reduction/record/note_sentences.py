@@ -401,6 +401,12 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         " law by {share:+.1%} +- {spread:.1%}; strain is not corrected for it, and the intervals"
         " include it",
     ),
+    "splice-creep-unknown": (
+        "note",
+        "the marks were read in holds: if the splices creep by 10 % of their extension from the"
+        " time of a cycle to that of a mark, strain amplitudes are {effect:.1%} too small; the"
+        " intervals include 2 %",
+    ),
     "splice-friction-unknown": ("note", _unknown_friction),
     "splice-friction-matters": ("warning", _unknown_friction),
     "mark-set-aside": (

@@ -86,10 +86,13 @@ LEVEL = 0.005
 _USUAL_TAPE = 0.005 * 0.3048
 _USUAL_READINGS = 4.0  # that this counts for, beside those of slack rows
 
-# of the extension of the splices: from the time of a cycle to that of a mark are two decades, in
-# each of which fibres creep by 2 to 3 %.  Any share up to both is as likely: a judgement, as no
-# measurement of splices is known.
-_CREEP = 0.05 / 3**0.5
+# of the extension of the splices: what they creep by from the time of a cycle to that of a mark.
+# A judgement, as large as that of friction: no measurement of splices is known.
+_CREEP = 0.02
+
+_CREEP_TOLD = 0.1  # of their extension, of which a note states the effect
+
+_CREEP_NOTICE = 0.005  # of a strain amplitude, from which it is stated
 
 _ANY = 12**0.5  # of a range, any value of which is as likely
 
@@ -1209,7 +1212,19 @@ def _average_at_marks(
                                       spread=spread)),
         )  # fmt: skip
     fit = replace(fit, model=model)
-    return replace(model, notes=(*model.notes, *_on_laws(fit, readings))), fit
+    notes = (*model.notes, *_on_laws(fit, readings), *_on_creep(model, marks, stretched))
+    return replace(model, notes=notes), fit
+
+
+def _on_creep(model: StrainModel, marks: SpliceMarks, rows: Integers) -> tuple[Note, ...]:
+    """What creep of the splices, which no mark shows, would do to a strain amplitude."""
+    free = marks.free_length[rows]
+    if np.ptp(free) < _CREEP_NOTICE * model.coefficients["relaxed_free_length"]:
+        return ()
+    effect = _CREEP_TOLD * _line_slope(free, marks.splice_length[rows])
+    if effect < _CREEP_NOTICE:
+        return ()
+    return (note("splice-creep-unknown", marks.specimen, effect=effect),)
 
 
 def _friction(model: StrainModel, readings: PooledMarks) -> tuple[float, float] | None:
