@@ -198,7 +198,7 @@ def _amplitude_correlation(loops: Loops) -> Floats:
 
 
 def _remarks(loops: Loops, line: LineParameters, break_in_cycles: int = 0) -> tuple[Note, ...]:
-    """What is odd about the loops for a line of three parameters, after the break-in."""
+    """What is odd about the loops for a line of three parameters."""
     remarks = list(line.notes)
     known = line.reason == 0
     if line.reading == "amplitude" and known.any():
@@ -218,7 +218,7 @@ def _remarks(loops: Loops, line: LineParameters, break_in_cycles: int = 0) -> tu
         remarks.append(
             note("line-uncertainty-skewed", n_skewed=n_skewed, n_lines=skewed.size, limit=_SKEWED)
         )
-    slack = (loops.valley_tension <= _SLACK_SHARE * loops.peak_tension)[:, break_in_cycles:]
+    slack = loops.valley_tension <= _SLACK_SHARE * loops.peak_tension
     if slack.any():
         n_slack = int(slack.sum())
         remarks.append(note("line-slack-in-loops", n_slack=n_slack, n_loops=slack.size))
