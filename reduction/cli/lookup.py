@@ -127,7 +127,10 @@ def _no_products(path: Path) -> SettingsError:
 
 
 def one_line_of(lines: Sequence[LineSource], quantity: str, name: str | None) -> LineSource:
-    """The line that was meant: by its name, else the only one that has the quantity."""
+    """The line that was meant: by its name, else the only one that has the quantity.
+
+    Of an experiment and its runs, the experiment.
+    """
     named = [line for line in lines if name in (None, line.name)]
     if not named:
         # of "T-1 new" the test or the specimen alone, as far as it leaves one
@@ -153,6 +156,11 @@ def one_line_of(lines: Sequence[LineSource], quantity: str, name: str | None) ->
             f"none of {len(named)} lines has {quantity}",
             needed=f"one of {', '.join(there)}" if there else None,
         )
+    fitted = [line for line in having if line.surfaces]
+    if len(fitted) == 1 and all(
+        one.specimens and set(one.specimens) <= set(fitted[0].specimens) for one in having
+    ):
+        return fitted[0]
     if len(having) > 1:
         raise SettingsError(
             f"several lines have {quantity}",

@@ -1,10 +1,16 @@
 import csv
 import json
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
 import xarray as xr
+
+from reduction.cli.lookup import one_line_of
+from reduction.lines.lookup_product import LineLevels
+from reduction.lines.published_source import published_sources
+from reduction.record.errors import SettingsError
 
 LBF = 4.4482216152605
 NYLON = "nylon-double-braid-0.5in-new"
@@ -447,6 +453,24 @@ def test_one_line_of_a_campaign_is_named_by_its_test_and_specimen(command, two_t
     none = command("lookup", two_tests, *ask, "T-99")
     assert "there is no line 'T-99'" in none.stderr
     assert '--line "T-1 new"' in none.stderr
+
+
+def test_of_an_experiment_and_its_runs_the_experiment_answers():
+    fitted = replace(published_sources()[f"{BRAID}-new"], name="nylon", specimens=("line-1",))
+    level = LineLevels(
+        "apparent_spring_constant", ("frequency",), np.ones((1, 1)), *np.ones((3, 1)), ("R01",)
+    )
+    run = replace(fitted, name="R01 line-1", surfaces={}, curves=(), levels=(level,))
+    of = "apparent_spring_constant"
+    assert one_line_of([run, fitted], of, None) is fitted
+    assert one_line_of([run, fitted], of, "R01 line-1") is run
+    # another rope, and a line of which nothing says what it was
+    for other in (
+        replace(run, name="R01 line-2", specimens=("line-2",)),
+        replace(run, specimens=()),
+    ):
+        with pytest.raises(SettingsError, match="several lines have"):
+            one_line_of([other, fitted], of, None)
 
 
 def test_products_that_are_not_made_yet_are_told_with_the_command_that_makes_them(
