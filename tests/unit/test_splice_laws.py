@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from reduction.record.errors import DataError
 from reduction.stages.strain.splice_laws import LAWS, SpliceReadings, fit_splice_laws
 
 FREE = np.array([0.0, 0.5, 0.8, 1.0, 1.3, 1.6, 1.9, 2.2, 2.5])
@@ -284,3 +285,17 @@ def test_a_mark_below_all_others_is_not_set_aside_for_a_law_that_saturates():
         )
     )  # fmt: skip
     assert found.set_aside is None
+
+
+def test_a_mark_below_a_kink_is_not_set_aside_for_a_law_that_the_others_hardly_pass():
+    """Of splices of 15 % at 400 N and a fifth of that slope above, read to .3 mm."""
+    tension = np.array([0.0, 303.0, 451, 598, 414, 645, 861])
+    free = np.array([0.0, 0.5753, 0.9797, 1.4013, 0.9810, 1.5059, 2.0314])
+    splice = np.array([0.0, 0.11472, 0.15482, 0.16565, 0.15270, 0.16988, 0.1860])
+    given = SpliceReadings(
+        free, splice, tension, np.array([0, 0, 0, 0, 1, 1, 1]), free == 0, 0.45, 2.6e-4,
+        np.zeros((2, 2)),
+        tension_uncertainty=np.array([0, 0.0143, 0.009, 0.0097, 0.0077, 0.0063, 0.0087]),
+    )  # fmt: skip
+    with pytest.raises(DataError, match="no law"):
+        fit_splice_laws(given)

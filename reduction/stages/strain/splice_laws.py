@@ -755,13 +755,15 @@ def _outlier(readings: SpliceReadings, slip: float) -> int | None:
     worst = int(np.argmax(far))
     if far[worst] <= _FAR:
         return None
-    # without it the marks have to agree with a law: else it is not the mark that is wrong; one that
-    # saturates says nothing of what lies below or above all other marks
+    # without it the marks have to agree with a law: else it is not the mark that is wrong; below or
+    # above all others it may as well be the law, so that they have to agree well, and one that
+    # saturates says nothing there
     kept = readings.without(worst)
     known = kept.tension[~kept.is_slack]
     is_inside = known.min() <= readings.tension[worst] <= known.max()
     agrees = any(
-        law.chance >= REJECTED and (is_inside or law.name not in SATURATING)
+        law.chance >= (REJECTED if is_inside else _DOUBT)
+        and (is_inside or law.name not in SATURATING)
         for law in _judged(kept).laws
     )
     return worst if agrees else None
