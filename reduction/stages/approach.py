@@ -229,8 +229,11 @@ def _after_cut_step(left: Floats, end: int, noise_range: float) -> int:
     """One sample later, where the channel goes on by more than noise and then stands at once.
 
     Of a ramp that stops between two samples, so small a part of a step may be left that it passes
-    for slow.  What settles goes on for longer than one step.
+    for slow.  What settles goes on for longer than one step, or after a step that was cut.
     """
+    steps = -np.diff(left[max(end - 2, 0) : end + 1])
+    if steps.size == 2 and steps[1] < _WHOLE * steps[0] - noise_range:
+        return end
     later = left[end + 1 : end + 1 + _LEVEL_SAMPLES]
     if later.size < _LEVEL_SAMPLES or not np.isfinite(later).all():
         return end
@@ -239,6 +242,8 @@ def _after_cut_step(left: Floats, end: int, noise_range: float) -> int:
     stands = abs(later[0] - np.median(later[1:])) < max(SLOW_SHARE * ahead, unknown)
     return end + 1 if ahead > unknown and stands else end
 
+
+_WHOLE = 0.8  # of the step before it, that one is which the ramp has not been cut in
 
 _FROM_NOISE = 0.25  # of its range: three of its deviations
 
