@@ -166,11 +166,10 @@ def test_a_mark_on_the_way_down_belongs_to_the_hold_that_was_reached_from_above(
 
 
 def test_marks_of_one_pull_that_no_law_of_the_tension_follows_are_named():
-    """Splices that lock up: 0.25 (1 - exp(-F / 300 N))."""
-    force = np.array([0.0, 250.0, 400.0, 600.0, 850.0, 1200.0])
-    rest = 1.2
-    splice = rest * (1 + 0.25 * (1 - np.exp(-force / 300.0)))
-    free = 2.5 * (1 + np.array([0.0, 0.5, 0.9, 1.4, 1.9, 2.4]))
+    """Splices that stretch by a tenth of the strain, whose tension has an inflection."""
+    strain = np.array([0.0, 0.5, 0.9, 1.4, 1.9, 2.4])
+    force = 200 * strain + 270 * ((strain - 1.2) ** 3 + 1.2**3)
+    splice, free = 1.2 * (1 + 0.1 * strain), 2.5 * (1 + strain)
     rows = marks(
         free + splice, free, hold=("slack", "30 %", "60 %", "min", "centre", "max"),
         reading_uncertainty=1e-3,
