@@ -96,8 +96,6 @@ tension = "1200 N"
 """
     found = assembly(command, written(tmp_path, text))
     assert found["synthetic"] is True
-    # the slack rows of the tape say 2.5547 and 1.1821 m, each to 2 mm; the stretched rows say more
-    assert found["slack_length"] == pytest.approx([3.7368] * 3, abs=3e-3)
     assert "by mixed" in found["sources"][0]
     strain, length = found["working"][0]["tether_strain"][0], found["working"][0]["total_length"]
     told = dict(re.findall(
@@ -105,10 +103,16 @@ tension = "1200 N"
         found["sources"][0],
     ))  # fmt: skip
     law = {name: float(value.rstrip(".")) for name, value in told.items()}
+    # the slack rows of the tape say 2.5547 and 1.1821 m, each to 2 mm; the stretched rows, by how
+    # much the splices settle, of which 3 % is known beforehand
+    assert abs(law["splice offset"]) < 0.03
+    settled = 3.7368 + 1.1821 * law["splice offset"]
+    assert found["slack_length"] == pytest.approx([settled] * 3, abs=3e-3)
     stretched = (
         law["splice offset"] + law["splice strain ratio"] * strain
         + law["splice strain curvature"] * strain**2
         + law["splice compliance"] * 400 ** law["splice exponent"]
+        + law["splice limit"] * (1 - np.exp(-400 * law["splice saturation"]))
     )  # fmt: skip
     splices = law["relaxed splice length"] * (1 + stretched)
     assert length == pytest.approx(law["relaxed free length"] * (1 + strain) + splices, abs=2e-3)
