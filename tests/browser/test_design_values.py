@@ -91,7 +91,7 @@ def test_random_questions_have_the_answers_of_the_command(made, shown, monkeypat
     assert shown.beyond == []
 
 
-@pytest.mark.parametrize("n_asked", [4, BY_HAND])
+@pytest.mark.parametrize("n_asked", [2, BY_HAND])
 def test_questions_put_into_the_form_are_answered_in_the_same_words(
     n_asked, made, shown, monkeypatch
 ):

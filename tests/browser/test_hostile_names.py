@@ -72,6 +72,7 @@ def test_a_name_is_text_and_breaks_no_layout(hostile, visit, width):
     assert shown.beyond == []
 
 
+@pytest.mark.nightly
 def test_a_name_is_text_where_a_reader_points(hostile, visit):
     _, page = hostile
     shown = visit(page)

@@ -472,7 +472,13 @@ def test_bad_input_is_refused(monkeypatch):
         _calibrate_hose(design, test, ["wrap_angle"])
 
 
-@pytest.mark.parametrize("names", [("wrap_angle",), ("wrap_angle", "cord_strain_scale")])
+@pytest.mark.parametrize(
+    "names",
+    [
+        ("wrap_angle",),
+        pytest.param(("wrap_angle", "cord_strain_scale"), marks=pytest.mark.nightly),
+    ],
+)
 def test_a_cord_of_another_law_between_its_points_is_no_error_of_the_hose(names):
     """The load of the cord goes as e^1.15: what is stated of the hose explains its pressure."""
     stated = {

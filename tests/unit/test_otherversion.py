@@ -69,6 +69,7 @@ def test_without_git_it_is_said_what_is_missing(monkeypatch, tmp_path):
         otherversion._find_checkout(tmp_path)
 
 
+@pytest.mark.nightly
 def test_what_pip_says_is_handed_on(tmp_path):
     (tmp_path / "source").mkdir()
     with pytest.raises(SettingsError, match="revision old cannot be installed; found ") as refused:
