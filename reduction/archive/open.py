@@ -254,9 +254,8 @@ def _read_own(path: Path) -> xr.Dataset | None:
             attributes = {
                 name: _as_text(text) for name, text in file.attrs.items() if name != "_NCProperties"
             }
-            is_own = attributes.get("software_version") == __version__
             # products of a whole campaign are of no test
-            is_own = is_own and "test" in attributes
+            is_own = attributes.get("software_version") == __version__ and "test" in attributes
             if not is_own or attributes.get("schema_version") != SCHEMA_VERSION:
                 return None
             held: dict[str, _Stored] = {}

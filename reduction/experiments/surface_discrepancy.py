@@ -208,12 +208,7 @@ def _sizes(
     n_moved = (powers > 0).sum(axis=1)
     # one factor by itself: slope and curvature say how large the series is
     slope, curve = (
-        np.array(
-            [
-                (powers == np.eye(ratio.size)[k] * order).all(axis=1).argmax()
-                for k in range(ratio.size)
-            ]
-        )
+        [np.flatnonzero((powers == order * own).all(axis=1))[0] for own in np.eye(ratio.size)]
         for order in (1, 2)
     )
     amplitude = np.maximum(square[slope], square[curve] * (2 / ratio) ** 2)

@@ -243,7 +243,7 @@ def _after_cut_step(left: Floats, end: int, noise_range: float) -> int:
     return end + 1 if ahead > unknown and stands else end
 
 
-_WHOLE = 0.8  # of the step before it, that one is which the ramp has not been cut in
+_WHOLE = 0.8  # share of the step before it: a shorter one was cut by the end of the ramp
 
 _FROM_NOISE = 0.25  # of its range: three of its deviations
 

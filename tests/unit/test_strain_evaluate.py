@@ -135,13 +135,14 @@ def test_a_model_without_coefficients_has_no_sensitivity():
 @pytest.mark.parametrize(
     "bend", [(0.0, 0.0), (0.02, 0.0), (0.02, -0.004)], ids=["straight", "curved", "cubic"]
 )
-@pytest.mark.parametrize("limit", [{}, {"splice_limit": 0.2, "splice_saturation": 1 / 300}])
+@pytest.mark.parametrize("limit", [(0.0, 0.0), (0.2, 1 / 300)], ids=["power", "saturating"])
 def test_sensitivity_of_mixed_strain_is_its_derivative(bend, limit):
     coefficients = {
         "relaxed_free_length": 2.55, "relaxed_splice_length": 1.19, "splice_offset": 0.01,
         "splice_strain_ratio": 0.11, "splice_strain_curvature": bend[0],
         "splice_strain_cubic": bend[1], "splice_compliance": 0.11 / 450, "splice_exponent": 0.9,
-    } | limit  # fmt: skip
+        "splice_limit": limit[0], "splice_saturation": limit[1],
+    }  # fmt: skip
     # slack, and a tension below zero, which counts as none; nothing known, and no tension known
     place = np.array([5.0, 6.5, 7.5, 3.8, np.nan, 6.0])
     load = np.array([100.0, 400, 900, -2, 100, np.nan])

@@ -379,8 +379,8 @@ def _mixed_strain(
     splice_strain_cubic: float,
     splice_compliance: float,
     splice_exponent: float,
-    splice_limit: float = 0.0,
-    splice_saturation: float = 0.0,
+    splice_limit: float,
+    splice_saturation: float,
 ) -> Floats:
     r"""Strain where the splices strain by what they carry, and by what the free length does.
 
@@ -400,8 +400,8 @@ def _mixed_strain(
     >>> strain = _mixed_strain(
     ...     [6.5518], [450.0], relaxed_free_length=2.55, relaxed_splice_length=1.19,
     ...     splice_offset=0.0, splice_strain_ratio=0.11, splice_strain_curvature=0.0,
-    ...     splice_strain_cubic=0.0,
-    ...     splice_compliance=0.11 / 450, splice_exponent=1.0)
+    ...     splice_strain_cubic=0.0, splice_compliance=0.11 / 450, splice_exponent=1.0,
+    ...     splice_limit=0.0, splice_saturation=0.0)
     >>> print(strain.round(4))
     [1.]
     """
@@ -741,8 +741,7 @@ def _mixed_sensitivity(
     load = np.maximum(np.broadcast_to(np.asarray(tension, dtype=np.float64), strain.shape), 0.0)
     power = load ** coefficients["splice_exponent"]
     square = strain * strain
-    limit = coefficients.get("splice_limit", 0.0)
-    saturation = coefficients.get("splice_saturation", 0.0)
+    limit, saturation = coefficients["splice_limit"], coefficients["splice_saturation"]
     # NaN stays NaN, but of a law that knows no tension
     by_power = compliance * power if compliance else np.zeros(strain.shape)
     by_tension = _by_tension(load, compliance, coefficients["splice_exponent"], limit, saturation)
@@ -757,10 +756,9 @@ def _mixed_sensitivity(
         "splice_strain_cubic": splice * square * strain,
         "splice_compliance": splice * power,
         "splice_exponent": splice * by_power * np.log(np.where(load > 0, load, 1.0)),
+        "splice_limit": splice * (1 - left),
+        "splice_saturation": splice * limit * load * left,
     }
-    if "splice_limit" in coefficients:
-        own["splice_limit"] = splice * (1 - left)
-        own["splice_saturation"] = splice * limit * load * left
     slope = free + splice * (ratio + 2 * curvature * strain + 3 * cubic * square)
     # where there is no strain nothing moves it
     return {name: np.where(np.isnan(strain), np.nan, -one / slope) for name, one in own.items()}
@@ -834,8 +832,8 @@ def _mixed_length(strain: Floats, tension: Floats, known: dict[str, float]) -> F
         np.maximum(tension, 0.0),
         known["splice_compliance"],
         known["splice_exponent"],
-        known.get("splice_limit", 0.0),
-        known.get("splice_saturation", 0.0),
+        known["splice_limit"],
+        known["splice_saturation"],
     )
     by_strain = known["splice_strain_ratio"] + strain * (
         known["splice_strain_curvature"] + known["splice_strain_cubic"] * strain
