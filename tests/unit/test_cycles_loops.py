@@ -440,6 +440,29 @@ def test_the_period_of_ramps_is_told_by_their_flanks():
     assert error < stated < 2 * error
 
 
+def test_the_frequency_of_a_few_noisy_ramps_is_that_of_the_machine_within_its_uncertainty():
+    # noise and rounding of .3 % of the stroke each: one reading tells a flank to .24 samples, the
+    # mean of nine to a third of it
+    per_cycle, off, last = 80.37, [], []
+    for seed in range(100):
+        time, wave, cycles = triangles(per_cycle, 8, 0.2)
+        noisy = wave + np.random.default_rng(seed).normal(0, 3e-3, time.size)
+        strain = np.round(noisy / 3e-3) * 3e-3
+        loops = close_loops(time, wave[None], strain[None], cycles)
+        summary = summarise_amplitude(loops, area=[1.0])
+        off.append([summary.frequency[0] * per_cycle - 1,
+                    summary.uncertainty["frequency"][0] * per_cycle])  # fmt: skip
+        last.append([loops.frequency[0, -1] * per_cycle - 1,
+                     loops.uncertainty["frequency"][0, -1] * per_cycle])  # fmt: skip
+    one_time = np.hypot(3e-3, 3e-3 / np.sqrt(12)) / 2 * per_cycle / np.sqrt(9)
+    # two ends, each the mean of rise and fall, in seven cycles
+    assert np.std([one for one, _ in off]) == pytest.approx(one_time / per_cycle / 7, rel=0.2)
+    for error, stated in (np.transpose(off), np.transpose(last)):
+        assert (np.abs(error) < 1.96 * stated).mean() > 0.93
+        # the greater of two estimates, one of them of six differences
+        assert np.median(stated) < 2 * error.std()
+
+
 @pytest.mark.parametrize("growth", [0.02, -0.02])
 def test_a_sine_that_grows_has_the_stiffness_of_its_extremes(growth):
     # each stroke has one amplitude; a spring with a Maxwell element of a fifth of it and .15 cycles

@@ -18,6 +18,8 @@ from reduction.stages.cycles.cycle_product import Cycles
 
 _FLANK = 8  # part of a branch, on either side of its middle, that gives its speed
 
+_READINGS = 9  # of a flank, whose mean is less noisy than one
+
 _STEEP = 0.25  # of the mean speed of a branch
 
 _BEYOND_NOISE = 6
@@ -212,8 +214,12 @@ def own_periods(
     spread[last] = np.hypot(spread[last - 1], np.sqrt(2) * of_fall[last])
     second = np.diff(period[touch - 1])
     jitter = np.sqrt(np.median(second**2) / _OF_SECOND) if second.size else 0.0
-    return period, np.maximum(spread, jitter)
+    of_jitter = np.full(spread.shape, jitter)
+    of_jitter[last] *= _OF_LAST
+    return period, np.maximum(spread, of_jitter)
 
+
+_OF_LAST = np.sqrt(5)  # a sum that ends with its fall alone, to one that ends with both flanks
 
 _ALIKE = 0.02  # of a cycle with its rest, by which rests may differ and be a part of the wave
 
@@ -237,12 +243,22 @@ def _flank_to_flank(
 ) -> tuple[Floats, Floats, Bools]:
     """Time between the flanks of touching branches, spread of one time, and whether they are.
 
-    At one level of both, about a sample in the middle of each; each half way up its own where the
+    At one level of both, about the middle of each; each half way up its own where the
     ends of most lie apart by more than readings miss of a corner, as of amplitudes that change.
+    The mean of readings about the middle lies on the flank, with less of their noise and rounding.
     """
     reach = np.maximum((end - begin) // _FLANK, 1)
     low, high = np.maximum(middle - reach, begin), np.minimum(middle + reach, end)
-    at, level = take_samples(time, middle), take_samples(driven, middle)
+    share = np.linspace(0, 1, _READINGS)[:, None]
+    about = np.rint(low + share * (high - low)).astype(middle.dtype)
+    readings = take_samples(driven, about)
+    known = np.isfinite(readings)
+    n_known = np.maximum(known.sum(axis=0), 1)
+    at, level = (
+        np.where(known, one, 0.0).sum(axis=0) / n_known
+        for one in (take_samples(time, about), readings)
+    )
+    n_apart = np.minimum(n_known, high - low + 1)[touch]
     rise = take_samples(driven, high) - take_samples(driven, low)
     ends = take_samples(driven, np.stack([begin, end]))
     whole = ends[1] - ends[0]
@@ -270,7 +286,7 @@ def _flank_to_flank(
         is_irregular = is_other.mean() > _IRREGULAR
         found = at_half_way if is_irregular else at_one_level
         beside = of_step if is_irregular else np.where(is_other, of_way, 0.0)
-        own = np.hypot(noise / np.abs(speed[touch]), beside)
+        own = np.hypot(noise / np.sqrt(n_apart) / np.abs(speed[touch]), beside)
     return found, own, steep[touch] & steep[touch - 1] & alike & (found > 0)
 
 

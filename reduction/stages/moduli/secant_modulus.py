@@ -306,6 +306,10 @@ def _mean_frequency(loops: Loops, break_in_cycles: int) -> tuple[Floats, Floats]
             n = int(known.sum())
         if not n:
             continue
+        # the last of a row may have no end of its own, and add twice what its beginning is off by
+        while n > 2 and own[row, known][-1] > _IMPRECISE * np.median(own[row, known]):
+            known[np.flatnonzero(known)[-1]] = False
+            n -= 1
         period = 1 / frequency[row, known]
         mean[row] = n / period.sum()
         jitter = np.sqrt(np.mean(np.diff(period) ** 2) / 3) if n > 1 else 0.0
@@ -331,6 +335,8 @@ def _line_over(time: Floats, values: Floats) -> tuple[float, float]:
 _FEWEST_OF_LINE = 4
 
 _WAITING, _MOST_ALIKE = 0.15, 0.75  # of a frequency; of the cycles
+
+_IMPRECISE = 1.3  # times the usual uncertainty of a cycle's frequency
 
 
 def summarise_amplitude(
