@@ -368,13 +368,12 @@ def _line_source_of_test(dataset: xr.Dataset, specimen: str) -> LineSource:
 
 
 def _levels_of_specimen(dataset: xr.Dataset, place: int) -> tuple[LineLevels, ...]:
-    """What a cyclic test of a rope has at its own level; nothing of a tether, or of bedding in."""
-    is_rope = "specimen_kind" in dataset and str(dataset["specimen_kind"].values[place]) in _ROPES
+    """What a cyclic test has at its own level; nothing of bedding in."""
     names = [f"test_{one}" for one in CYCLE]
     is_level = (
         dataset.attrs.get("test_kind") == "cyclic" and "bedding_first_stiffness" not in dataset
     )
-    if not (is_rope and is_level and all(one in dataset for one in names)):
+    if not (is_level and all(one in dataset for one in names)):
         return ()
     at = np.array([[float(dataset.variables[one].values[place]) for one in names]])
     if not np.isfinite(at).all():
@@ -545,7 +544,7 @@ def lines_of_folder(folder: Path) -> list[LineSource]:
     ropes = [
         _rope(folder, name, own)
         for name, own in tests.items()
-        if len(own) > 1 and any(line.levels for line in own)
+        if len(own) > 1 and own[0].kind in _ROPES and any(line.levels for line in own)
     ]
     pooled = {line.name for line in ropes}
     lines = []
@@ -567,7 +566,7 @@ def ropes_with_pulls(folder: Path) -> list[LineSource]:
     DataError
         If there is none.
     """
-    lines = [line for line in lines_of_folder(folder) if line.levels]
+    lines = [line for line in lines_of_folder(folder) if line.levels and line.kind in _ROPES]
     found = [line for line in lines if line.curves and not line.surfaces]
     if not found:
         why = (text for line in lines for text in line.absent.values())

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from reduction.archive.open import reading
 from reduction.cli.lookup import one_line_of
 from reduction.lines.lookup_product import LineLevels
 from reduction.lines.published_source import published_sources
@@ -120,6 +121,26 @@ def test_a_search_in_a_campaign(command, two_tests):
     assert none.returncode == 2
     assert "no line matches; found material 'nylon'; needed material Natsyn rubber" in none.stderr
     assert "condition new or used" in none.stderr
+
+
+def test_a_tether_has_its_stiffness_at_the_level_of_each_test(command, two_tests):
+    done = command("lookup", two_tests, "--line", "T-1 new", "--quantity", "K_ap", "--json")
+    assert done.returncode == 0, done.stderr
+    answer = json.loads(done.stdout)
+    with reading(two_tests / "T-1.nc") as archive:
+        place = archive["specimen"].to_numpy().astype(str).tolist().index("new")
+        cycles = archive["apparent_spring_constant"].to_numpy()[place]
+        mean = archive["mean_tension"].to_numpy()[place].mean()
+    assert answer["value"] == pytest.approx(np.nanmean(cycles), rel=1e-3)
+    # the used tether and the other test are lines of their own, and nothing lies between
+    other = command("lookup", two_tests, "--line", "T-1 new", "--quantity", "K_ap",
+                    "--mean-tension", f"{1.2 * mean:.1f} N")  # fmt: skip
+    assert other.returncode == 4 and "the nearest is T-1 (frequency" in other.stderr
+    several = command("lookup", two_tests, "--quantity", "K_ap")
+    assert several.returncode == 2
+    assert {"T-1 new", "T-1 used", "T-2 new", "T-2 used"} <= set(
+        re.findall(r"T-\d (?:new|used)", several.stderr)
+    )
 
 
 def test_old_line_stands_against_new(command):
