@@ -190,6 +190,7 @@ _OF_STRAIN = frozenset(
         "splice_method",
         "splice_law",
         "splice_friction",
+        "splice_slip",
         "machine_compliance",
     }
 )

@@ -394,19 +394,23 @@ def instruments_of(
         campaign.uncertainty,
         machine_compliance=campaign.uncertainty.machine_compliance * len(models),
     )
-    return tuple(
-        _with_readings(
-            _with_friction(stated, model).of_channel(
-                model.specimen,
-                channel=number,
-                test=plan.log,
-                load_cell=plan.attributes.get("load_cell", ""),
-                machine=plan.attributes.get("machine", ""),
-                strain_model=_name_of(model, plan.log),
-            ),
-            campaign.specimens[model.specimen],
+    of_channels = (
+        _with_friction(stated, model).of_channel(
+            model.specimen,
+            channel=number,
+            test=plan.log,
+            load_cell=plan.attributes.get("load_cell", ""),
+            machine=plan.attributes.get("machine", ""),
+            strain_model=_name_of(model, plan.log),
         )
         for number, model in enumerate(models, start=1)
+    )
+    return tuple(
+        _with_readings(
+            replace(errors, splice_slip=(model.by_marks or model).splice_slip),
+            campaign.specimens[model.specimen],
+        )
+        for errors, model in zip(of_channels, models, strict=True)
     )
 
 

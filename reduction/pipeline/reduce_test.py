@@ -88,6 +88,7 @@ from reduction.uncertainty.shared_contributions import (
     shared_uncertainty_of_cycles,
     with_shared_ratios,
     with_shared_steps,
+    with_splice_slips,
 )
 
 _GREATEST_STRAIN = 10.0  # no rubber is stretched to eleven times its length
@@ -963,6 +964,7 @@ def reduce_test(
         **of_line,
         **parts_of_stress(stated.record, specimens),
     )  # fmt: skip
+    instruments = with_splice_slips(reduced, instruments)
     shared = _with_shared_errors(
         reduced,
         instruments,

@@ -70,6 +70,10 @@ class InstrumentErrors:
         their extension. [1]
     is_splice_friction_known : bool
         It is stated, or found from a mark on the way down.
+    splice_slip : float
+        Of what the splices of the test slipped by after their marks were read. [m]
+    splices_let_out : float
+        Of what they have let out by the end of the test, as steps of the tension say. [m]
     test : str
         Which test.
     tension_reading, position_reading : float
@@ -97,6 +101,8 @@ class InstrumentErrors:
     machine_compliance: float = 0.0
     splice_friction: float = 0.0
     is_splice_friction_known: bool = False
+    splice_slip: float = 0.0
+    splices_let_out: float = 0.0
     tension_reading: float = 0.0
     position_reading: float = 0.0
     test: str = ""

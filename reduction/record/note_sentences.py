@@ -700,7 +700,8 @@ _OF_MODULI: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             f"the splices slipped at {cycles}, by {_length_let_out(length)} in all"
             + ("" if excess != excess else
                f": from there on, and in later tests without marks of their own, strain is at least"
-               f" {100 * excess:.1f} percentage points too large ({effect:.1%} of the mean strain)")
+               f" {100 * excess:.1f} percentage points too large ({effect:.1%} of the mean strain),"
+               " and the intervals include three times that")
             + ". Read the marks after the test, or use the cycles before the slip"
         ),
     ),
@@ -711,7 +712,7 @@ _OF_MODULI: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             " marks were read in it"
             + ("" if excess != excess else
                f": strain is at least {100 * excess:.1f} percentage points too large"
-               f" ({effect:.1%} of the mean strain)")
+               f" ({effect:.1%} of the mean strain), and the intervals include three times that")
             + ". Read marks in this test"
         ),
     ),

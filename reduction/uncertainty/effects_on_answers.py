@@ -148,12 +148,17 @@ def splice_slip_notes(test: ReducedTest) -> Iterator[Note]:
 
 
 def _of_slip(test: ReducedTest, index: int, code: str, let_out: float, **numbers: Any) -> Note:
-    """What a length that the splices let out does to the strain of a test."""
+    """What a length that the splices let out does to the strain of a test.
+
+    It is held against what else the interval of the strain has.
+    """
     specimen, model, summary = test.specimens[index], test.strain_models[index], test.amplitude
     if summary is not None:
         excess = let_out / _length_of_strain(test, summary, index)
         mean = float(summary.mean_strain[index])
-        half = _EXPANDED * _standard_uncertainty(test, summary, "mean_strain", index)
+        half = _EXPANDED * _standard_uncertainty(
+            test, summary, "mean_strain", index, left_out="splice_slip"
+        )
     else:
         hold = max(
             (one for one in test.holds if one.specimen == specimen.name),
@@ -210,14 +215,15 @@ def with_weighed_notes(test: ReducedTest) -> ReducedTest:
 
 
 def _standard_uncertainty(
-    test: ReducedTest, summary: AmplitudeSummary, name: str, index: int
+    test: ReducedTest, summary: AmplitudeSummary, name: str, index: int, *, left_out: str = ""
 ) -> float:
-    """Both parts of that of an answer of the test. [its unit]."""
+    """Both parts of that of an answer of the test, but for one source. [its unit]."""
     random = float(summary.uncertainty[name][index])
     found = test.contributions
     if found is None or f"test_{name}" not in found.values:
         return random
-    return float(np.hypot(random, np.linalg.norm(found.values[f"test_{name}"][:, index])))
+    kept = [one.source != left_out for one in found.component]
+    return float(np.hypot(random, np.linalg.norm(found.values[f"test_{name}"][kept, index])))
 
 
 def _length_of_strain(test: ReducedTest, summary: AmplitudeSummary, index: int) -> float:

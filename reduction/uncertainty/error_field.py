@@ -273,16 +273,23 @@ _REACH = 1e-4  # of the strain 1, for the slopes
 def _position_parts(
     errors: InstrumentErrors, model: StrainModel, at: Floats, load: Floats
 ) -> list[FieldPart]:
-    """Gain and zero of the crosshead's scale; none for an extensometer.
+    """Gain and zero of the crosshead's scale, and slip of the splices; none for an extensometer.
 
     Where zero strain is a position of the log itself, a wrong zero is in both and leaves strain as
-    it is, and a wrong scale is one of what lies between.
+    it is, and a wrong scale is one of what lies between.  What splices let out is taken for strain
+    of the free length.  Tests share what steps of the tension say of it: the same length, too
+    small by the same ratio.
     """
     gain, offset = errors.position_gain, errors.position_offset
     begin = 0.0
     if model.is_zero_logged:
         begin, offset = model.coefficients["reference_position"], 0.0
-    if model.method == "extensometer" or not (gain or offset):
+    lengths = {
+        Component("position_offset", errors.position_instrument): offset,
+        Component("splice_slip", errors.specimen): errors.splices_let_out,
+        Component("splice_slip", f"{errors.specimen}, marks of {errors.test}"): errors.splice_slip,
+    }
+    if model.method == "extensometer" or not (gain or any(lengths.values())):
         return []
     step = _steps_of(load)
     # all points at once: what a model costs is its call
@@ -301,10 +308,10 @@ def _position_parts(
             strain_slope_over_tension=gain * slope * (longer - shorter) / (2 * step),
         )
         found.append((Component("position_gain", errors.position_instrument), rows))
-    if offset:
-        rows = _field_rows(load, strain=offset * slope)
-        found.append((Component("position_offset", errors.position_instrument), rows))
-    return found
+    by_length = (
+        (one, _field_rows(load, strain=size * slope)) for one, size in lengths.items() if size
+    )
+    return [*found, *by_length]
 
 
 def coefficient_errors(model: StrainModel, covariance: Floats | None = None) -> Floats:

@@ -51,7 +51,7 @@ from reduction.record.contributions import (
     renamed,
     stacked,
 )
-from reduction.record.measurement import Floats, LoadTrain, Record, areas_of
+from reduction.record.measurement import Floats, Integers, LoadTrain, Record, areas_of
 from reduction.record.notes import Note, note
 from reduction.record.samples import empty_like, full_like, release_pages, take_samples
 from reduction.record.settings import CycleSettings
@@ -245,6 +245,71 @@ def _inertia_of(
 
 def _train_of(record: Record | None) -> LoadTrain:
     return LoadTrain() if record is None else record.load_train
+
+
+# a cycle is steeper than what a relaxed specimen gives way by, of rubber by up to the double: what
+# the splices let out lies between the length found by the slope of a cycle and its double.  Root
+# mean square: sqrt(7/3).  Slip that makes no step is found by nothing
+_LET_OUT = (7 / 3) ** 0.5
+
+
+def with_splice_slips(
+    test: ReducedTest, errors: Sequence[InstrumentErrors]
+) -> tuple[InstrumentErrors, ...]:
+    """Errors with what the splices have let out by the end of a test, as steps of tension say.
+
+    It has one sign and is not corrected: its standard uncertainty is the root of its mean square
+    about zero (JCGM 100:2008, F.2.4.5).
+    """
+    return tuple(
+        replace(one, splices_let_out=_LET_OUT * float(_let_out(test, index)[-1]))
+        for index, one in enumerate(errors)
+    )
+
+
+def _let_out(test: ReducedTest, index: int) -> Floats:
+    """What splices have let out at each cycle since their marks were read, at least. [m].
+
+    A step may be at any of the cycles that it is dated to.  One value where there are no cycles.
+    """
+    n_cycles = 1 if test.cycles is None else test.cycles.n_cycles
+    before = 0.0 if test.history is None else float(test.history.splices_let_out[index])
+    found = np.full(n_cycles, before)
+    slips, number = test.slips, np.arange(1, n_cycles + 1)
+    if slips is None:
+        return found
+    for place, name in enumerate(slips.specimen):
+        length = float(slips.slip_length[place])
+        if name == test.specimens[index].name and length > 0:
+            low, high = int(slips.slip_cycle_low[place]), int(slips.slip_cycle_high[place])
+            found += length * np.clip((number - low + 1) / (high - low + 1), 0.0, 1.0)
+    return found
+
+
+def _slipped(
+    test: ReducedTest, index: int, errors: InstrumentErrors, cycles: slice | Integers
+) -> InstrumentErrors:
+    """Errors of a mean over some of the cycles, of which some lie before a slip."""
+    if not errors.splices_let_out:
+        return errors
+    let_out = _let_out(test, index)
+    share = float(let_out[cycles].mean() / let_out[-1])
+    return replace(errors, splices_let_out=errors.splices_let_out * share)
+
+
+def _slipped_by_cycle(
+    found: Contributions, test: ReducedTest, index: int, block: slice
+) -> Contributions:
+    """Contributions to each cycle, by what the splices had let out until then."""
+    by_steps = Component("splice_slip", test.specimens[index].name)
+    if by_steps not in found.component:
+        return found
+    let_out = _let_out(test, index)
+    place, share = found.component.index(by_steps), let_out[block] / let_out[-1]
+    values = {name: rows.copy() for name, rows in found.values.items()}
+    for rows in values.values():
+        rows[place] = (rows[place].T * share).T
+    return Contributions(found.component, values)
 
 
 def _of_loops(
@@ -860,7 +925,10 @@ def _of_each(
         part = _cycles_of_test(test, block)
         if part.loops is None or part.cycles is None:
             continue
-        of_block = _of_loops(part.loops, index, errors, model, part.cycles, settings, test.record)
+        of_block = _slipped_by_cycle(
+            _of_loops(part.loops, index, errors, model, part.cycles, settings, test.record),
+            test, index, block,
+        )  # fmt: skip
         component = of_block.component
         for name in names:
             if name not in rows:
@@ -1018,7 +1086,14 @@ def _of_holds(test: ReducedTest, errors: Sequence[InstrumentErrors]) -> list[Con
     creep = () if test.rope_step is None else test.rope_step.creep
     own = []
     for number, (hold, place) in enumerate(zip(test.holds, places, strict=True)):
-        found = _of_hold(_padded(hold, terms), errors[place], test.strain_models[place])
+        # a hold lies before the first cycle or after the last, or among them
+        begun = (
+            0
+            if test.cycles is None or test.record is None
+            else int(np.searchsorted(test.record.time[test.cycles.first], hold.hold_start_time))
+        )
+        one = _slipped(test, place, errors[place], slice(max(begun - 1, 0), max(begun, 1)))
+        found = _of_hold(_padded(hold, terms), one, test.strain_models[place])
         parts = [found]
         if len(creep) == len(test.holds):
             parts.append(_of_creep(found, creep[number], hold, errors[place]))
@@ -1356,7 +1431,10 @@ def shared_uncertainty_of_cycles(
         for index, one in enumerate(errors):
             pull = None if pulls is None else pulls[index]
             origin = pull_origins[index] if pull_origins else None
-            found = _contributions_to_cycles(test, part, index, one, cycles, pull, origin)
+            found = _slipped_by_cycle(
+                _contributions_to_cycles(test, part, index, one, cycles, pull, origin),
+                test, index, block,
+            )  # fmt: skip
             for name in found.values if found.component else ():
                 spread = found.shared_standard_uncertainty(name)
                 if name not in shared:
@@ -1382,7 +1460,9 @@ def _of_specimen(
     model = test.strain_models[index]
     area = float(areas_of(test.specimens)[index])
     summary = test.amplitude
-    yield from _of_material(test, index, errors, model, area)
+    # a first rise comes before the cycles
+    at_first = _slipped(test, index, errors, slice(0, 1))
+    yield from _of_material(test, index, at_first, model, area)
     yield from trend_and_step_contributions(test, index, errors, model, cycles, area)
     own = test.pulls[index] if test.pulls else None
     if own is not None:
@@ -1399,16 +1479,18 @@ def _of_specimen(
             if summary is None or cycles.waveform == "triangular"
             else _inertia_of(_train_of(test.record), summary, index, errors)
         )
-        yield _of_curves(test.curves, "", index, errors, model, area, rate, inertia)
+        at_curves = _slipped(test, index, errors, test.curves.selected_cycle - 1)
+        yield _of_curves(test.curves, "", index, at_curves, model, area, rate, inertia)
         if test.segments is not None:
             yield _of_segments(
-                test.curves, test.segments, index, errors, model, area, rate, inertia
+                test.curves, test.segments, index, at_curves, model, area, rate, inertia
             )
     # without an area the curve is one of tension, of which the slope is not kept
     if test.first_loading is not None and np.isfinite(area):
         rate = _rise_rates(test, index) if errors.lag else np.zeros((2, 2, 1))
-        yield _of_curves(test.first_loading, "_first_loading", index, errors, model, area, rate)
+        yield _of_curves(test.first_loading, "_first_loading", index, at_first, model, area, rate)
     if summary is not None and test.cycles is not None:
+        errors = _slipped(test, index, errors, slice(cycles.break_in_cycles, None))
         of_loop = _of_loops(summary, index, errors, model, test.cycles, cycles, test.record)
         yield _named(of_loop, "test_", left_out=_OF_CYCLES_ALONE)
         if np.isfinite(area):

@@ -10,6 +10,7 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 from rulesofcf import held_against_cf
 
@@ -196,3 +197,17 @@ def test_static_test_is_reduced_and_its_odd_rows_are_flagged(static):
     with open_archive(static.processed / "static.nc") as archive:
         # WHOI-2005-10 prints a free length of 18 in; length and elongation give 6.125 in
         assert float(archive["relaxed_gauge_length"]) / 0.0254 == pytest.approx(6.125, abs=0.005)
+
+
+def test_strain_after_a_slip_has_it_in_its_interval_and_strain_before_it_has_not(synthetic):
+    """By the end 0.8 ft are let out; the free length takes 92 % of the stroke by its marks."""
+    slip = pd.read_csv(TRUTH / "T-4_extended_cycle_peaks.csv")["slip_ft_new"].to_numpy()
+    excess = slip * 0.924 / 8.38
+    hold = archive_of(synthetic.processed / "overnight-hold.nc")
+    place = hold["hold_specimen"].to_numpy().tolist().index("new")
+    assert 1.96 * float(hold["hold_strain_standard_uncertainty"][place]) > excess[-1]
+    extended = archive_of(synthetic.processed / "T-4-extended.nc")
+    spread = extended["mean_strain_standard_uncertainty"].to_numpy()[0]
+    # slips at cycles 601 and 1501, the latter over some twenty
+    assert (1.96 * spread[1520:] > (excess - excess[0])[1521:3001]).all()
+    assert spread[:590].max() < spread[1520:].min() / 3

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from reduction.record.contributions import Component, Contributions
 from reduction.stages.strain.strain_model import StrainModel
 from reduction.uncertainty.effects_on_answers import splice_slip_notes
 
@@ -49,6 +50,18 @@ def test_a_slip_is_a_warning_where_the_strain_moves_beyond_its_interval(spread, 
     assert ("4.0 percentage points too large (2.5% of the mean strain)" in words) == (
         method is None
     )
+
+
+@pytest.mark.parametrize(
+    ("source", "severity"), [("splice_slip", "warning"), ("position_offset", "note")]
+)
+def test_what_the_slip_itself_adds_to_the_interval_does_not_silence_it(source, severity):
+    test = reduced(spread=0.004)
+    test.contributions = Contributions(
+        (Component(source, "new"),), {"test_mean_strain": np.array([[0.04]])}
+    )
+    (found,) = splice_slip_notes(test)
+    assert found.severity == severity
 
 
 def test_no_slip_has_no_note():

@@ -941,7 +941,7 @@ def _fit_mixed(readings: PooledMarks, average: SpliceAverage | None) -> _MixedFi
     free, splice = (float(one) for one in relaxed.values * (1 + average.values[-2:]))
     tests = list(dict.fromkeys(marks.test))
     own = [tests.index(test) for test in dict.fromkeys(np.array(marks.test)[readings.is_own])]
-    offset, of_slip = _own_offset(average, own[0] if own else None)
+    offset, of_marks, of_slip = _own_offset(average, own[0] if own else None)
     names = (
         "relaxed_free_length", "relaxed_splice_length", "splice_offset", "splice_strain_ratio",
         "splice_strain_curvature", "splice_strain_cubic", "splice_compliance", "splice_exponent",
@@ -955,7 +955,7 @@ def _fit_mixed(readings: PooledMarks, average: SpliceAverage | None) -> _MixedFi
     to_si[2:, :-2] = to_law
     covariance = to_si @ average.covariance @ to_si.T
     between = to_si @ average.between @ to_si.T
-    covariance[2, 2] += of_slip
+    covariance[2, 2] += of_marks
     between += _of_creep(np.array(values), _mean_splice_strain(given, own))
     rows = given.row if average.set_aside is None else np.delete(given.row, average.set_aside)
     model = StrainModel(
@@ -965,6 +965,7 @@ def _fit_mixed(readings: PooledMarks, average: SpliceAverage | None) -> _MixedFi
         covariance,
         law_covariance=between if between.any() else np.empty((0, 0)),
         notes=_scatter_notes(marks, relaxed, _NO_FIT),
+        splice_slip=of_slip * splice,
     )
     return _MixedFit(average, model, rows)
 
@@ -1007,23 +1008,28 @@ def _law_in_si(values: Floats, reference: float) -> tuple[Floats, Floats]:
     return law, change
 
 
-def _own_offset(average: SpliceAverage, place: int | None) -> tuple[float, float]:
-    """By how much the splices of one test are longer than the law says, and its variance.
+def _own_offset(average: SpliceAverage, place: int | None) -> tuple[float, float, float]:
+    """By how much the splices of one test are longer than the law says, and what is open of it.
 
-    Marks are read before the cycles: what the next test begins with slipped in this one, at a
-    time that nothing says.
+    The variance that its own marks leave, and the standard uncertainty of what slipped after they
+    were read.  Marks are read before the cycles: what the next test begins with slipped between
+    both, and any moment is as likely.  After the last test no mark says how much it was: what
+    slips is taken to be as uncertain as it is large, so that of a share U of S the variance is
+    E(U^2) E(S^2) - (S / 2)^2 = 5/12 S^2.
     """
     if not average.slip:
-        return 0.0, 0.0
+        return 0.0, 0.0, 0.0
     if place is None:
-        return 0.0, average.slip**2
+        return 0.0, 0.0, average.slip
     steps = np.diff(average.test_offset)
     if place < steps.size:
         step = float(steps[place])
+        spread = abs(step) / _ANY
     else:
         step = float(np.sqrt(np.mean(steps**2))) * float(np.sign(steps.sum()))
-    variance = float(average.test_variance[place]) + (step / 2) ** 2
-    return float(average.test_offset[place]) + step / 2, variance
+        spread = abs(step) * sqrt(5.0) / _ANY
+    variance = float(average.test_variance[place])
+    return float(average.test_offset[place]) + step / 2, variance, spread
 
 
 def _tape_error(marks: SpliceMarks) -> float:

@@ -103,6 +103,9 @@ class StrainModel:
     splice_friction : float
         Root mean square of the share by which splices are longer on the way down, by marks that
         were read there; NaN without them. [1]
+    splice_slip : float
+        Standard uncertainty of what the splices slipped by from the marks of the test to its
+        cycles; zero where the marks show no slip. [m]
     """
 
     specimen: str
@@ -129,6 +132,7 @@ class StrainModel:
     law_covariance: Floats = field(default_factory=lambda: np.empty((0, 0)))
     reference_tension: float = 0.0
     splice_friction: float = float("nan")
+    splice_slip: float = 0.0
 
     @property
     def relaxed_length(self) -> float:
