@@ -257,7 +257,7 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         lambda growth, effect: (
             f"the slack length grows by {1e3 * growth:.0f} mm ({100 * effect:.1f} %) from the first"
             " test to the last (permanent set, or a splice that slipped); strain refers to the"
-            " mean slack length"
+            " mean slack length, and the intervals include that a test had another"
         ),
     ),
     "marks-of-failed-tests": (

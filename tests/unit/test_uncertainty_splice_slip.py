@@ -91,14 +91,15 @@ def test_a_mean_over_cycles_has_the_share_of_those_after_the_slip():
 FREE, SPLICES = 2.5, 1.2  # m
 
 
-def slipping_marks(slip):
-    """Tape readings of three tests whose splices are longer by ``slip`` [m], else 20 % at 100 %."""
+def slipping_marks(slip, *, is_slack_alone=False):
+    """Tape readings of tests whose splices are longer by ``slip`` [m], else by 20 % at 100 %."""
     strain = np.array([0.0, 0.75, 1.0, 1.25])
     rows = [
         (f"T-{order}", hold, 0.6 * (1 + 0.2 * one) + more / 2,
          FREE * (1 + one), SPLICES * (1 + 0.2 * one) + more, 450 * one)
         for order, more in enumerate(slip, start=1)
         for hold, one in zip(("slack", "min", "centre", "max"), strain, strict=True)
+        for more in [more * (hold == "slack" or not is_slack_alone)]
     ]  # fmt: skip
     tests, holds, near, free, both, tension = zip(*rows, strict=True)
     near, free, both = np.array(near), np.array(free), np.array(both)
@@ -107,8 +108,8 @@ def slipping_marks(slip):
     return marks, np.array(tension)
 
 
-def model_of(test, slip):
-    marks, tension = slipping_marks(slip)
+def model_of(test, slip, **options):
+    marks, tension = slipping_marks(slip, **options)
     average = average_over_laws(PooledMarks(marks, tension, np.zeros(tension.size, dtype=bool)))
     return fit_strain_model(
         Specimen("new"), test_id=test, marks=marks, mark_tension=tension, average=average
@@ -127,6 +128,13 @@ def test_what_slips_between_the_marks_of_two_tests_may_have_slipped_at_any_momen
     # after T-3 no mark was read: as large as before on average, and as uncertain
     usual = ((0.02**2 + 0.01**2) / 2) ** 0.5
     assert last.splice_slip == pytest.approx(usual * (5 / 12) ** 0.5, rel=0.03)
+
+
+def test_a_slack_length_that_grows_is_any_length_from_first_to_last():
+    """4 mm from the first slack row to all others, which the laws of stretched splices pass."""
+    model = model_of("T-2", (0.0, 0.004, 0.004, 0.004), is_slack_alone=True)
+    assert any(one.code == "slack-length-grows" for one in model.notes)
+    assert model.splice_slip == pytest.approx(0.004 / 12**0.5)
 
 
 def test_marks_without_a_slip_add_nothing():

@@ -956,6 +956,8 @@ def _fit_mixed(readings: PooledMarks, average: SpliceAverage | None) -> _MixedFi
     covariance = to_si @ average.covariance @ to_si.T
     between = to_si @ average.between @ to_si.T
     covariance[2, 2] += of_marks
+    if not average.slip:  # strain refers to the mean slack length, a test lies anywhere about it
+        of_slip = _growth_of_slack(marks) / (_ANY * splice)
     between += _of_creep(np.array(values), _mean_splice_strain(given, own))
     rows = given.row if average.set_aside is None else np.delete(given.row, average.set_aside)
     model = StrainModel(
@@ -1334,29 +1336,33 @@ def _on_scatter(model: StrainModel, is_stretched: Bools, expected: float) -> tup
     return tuple(notes)
 
 
-def _on_slack(marks: SpliceMarks) -> tuple[Note, ...]:
-    """Growth of the slack length from test to test: permanent set, or a splice let out.
+def _growth_of_slack(marks: SpliceMarks) -> float:
+    """Growth of the slack length over the tests: permanent set, or a splice let out. [m].
 
-    A trend over the rows, since single readings scatter by more than their last digit; or a step
-    after the first row, far beyond the stated error of the tape.
+    Zero where there is none.  A trend over the rows, since single readings scatter by more than
+    their last digit; or a step after the first row, far beyond the stated error of the tape.
     """
     length = marks.far_thimble[marks.is_slack]
     if marks.is_reading_stated and length.size > 1:
         step = float(length[1:].mean() - length[0])
         if step > _OUTLIER_NOTICE * marks.reading_uncertainty * sqrt(1 + 1 / (length.size - 1)):
-            effect = step / float(length[0])
-            return (note("slack-length-grows", marks.specimen, growth=step, effect=effect),)
+            return step
     if length.size < _TREND_ROWS or np.ptp(length) == 0:
-        return ()
+        return 0.0
     row = np.arange(length.size)
     slope, correlation = _line_slope(row, length), float(np.corrcoef(row, length)[0, 1])
     # of a correlation this far from zero among rows without a trend (Student's t, both sides)
     chance = scipy.special.betainc(length.size / 2 - 1, 0.5, max(0.0, 1 - correlation**2))
-    if slope <= 0 or chance > _TREND_CHANCE:
+    return 0.0 if slope <= 0 or chance > _TREND_CHANCE else float(slope * (length.size - 1))
+
+
+def _on_slack(marks: SpliceMarks) -> tuple[Note, ...]:
+    """Say where the slack length grows: strain refers to its mean."""
+    growth = _growth_of_slack(marks)
+    if not growth:
         return ()
-    growth = slope * (length.size - 1)
-    effect = float(growth / length[0])
-    return (note("slack-length-grows", marks.specimen, growth=float(growth), effect=effect),)
+    effect = growth / float(marks.far_thimble[marks.is_slack][0])
+    return (note("slack-length-grows", marks.specimen, growth=growth, effect=effect),)
 
 
 def _on_reading_time(
