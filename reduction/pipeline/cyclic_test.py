@@ -16,7 +16,7 @@ from reduction.record.measurement import Bools, Floats, Specimen, areas_of
 from reduction.record.notes import Note, note
 from reduction.record.samples import first_sample
 from reduction.record.settings import ReductionSettings
-from reduction.stages.cycles.cycle_product import Cycles, Loops
+from reduction.stages.cycles.cycle_product import Cycles, Loops, turns_alike
 from reduction.stages.cycles.cycle_search import control_channel
 from reduction.stages.cycles.loop_sense import contradicts_sine, without_backward_loops
 from reduction.stages.cycles.loops import close_loops
@@ -46,6 +46,7 @@ from reduction.stages.moduli.secant_modulus import (
 from reduction.stages.moduli.segments import find_segments
 from reduction.stages.moduli.tangent_modulus import tangent_curves
 from reduction.stages.reduced_test import History
+from reduction.stages.standstills import median_step
 
 _SAME_STRAIN = 0.05  # share by which equal greatest strains may differ: one crosshead, two splices
 
@@ -211,7 +212,12 @@ def parts_of_cycles(
     if settings.cycles.waveform == "sinusoidal" and contradicts_sine(loops).any():
         loops = close(waveform="other")
     loops = without_backward_loops(loops)
-    amplitude = summarise_amplitude(loops, area=area, break_in_cycles=break_in)
+    # both channels have the corner of a ramp, as far apart as the lag that is stated
+    alike = np.zeros(len(specimens))
+    if settings.cycles.waveform == "triangular" and np.any(lag):
+        late = np.array(lag)
+        alike = np.where(late > 0, turns_alike(late, median_step(record.time)), 0.0)
+    amplitude = summarise_amplitude(loops, area=area, break_in_cycles=break_in, turns_alike=alike)
     loops.release_pages()
     if np.isnan(area).any():
         # a rope without a diameter has spring constants alone

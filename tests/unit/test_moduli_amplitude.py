@@ -1,10 +1,12 @@
 """Amplitude summary: means over the cycles after break-in, with type A uncertainty."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from reduction.record.errors import DataError
-from reduction.stages.cycles.cycle_product import Loops
+from reduction.stages.cycles.cycle_product import Loops, turns_alike
 from reduction.stages.moduli.secant_modulus import summarise_amplitude
 
 AREA = np.array([5e-4, 4e-4])
@@ -47,6 +49,39 @@ def test_specimen_without_cycles_is_nan():
     summary = summarise_amplitude(loops_of(values), area=AREA)
     assert summary.frequency[0] == pytest.approx(2 / (1 / 1.0 + 1 / 2.0))  # cycles over their time
     assert np.isnan(summary.frequency[1])
+
+
+@pytest.mark.parametrize("lag", [0.1, 0.2, 0.4])
+def test_a_corner_that_both_channels_miss_is_not_in_the_spring_constant(lag):
+    """Corners anywhere between two readings, tension logged late by a lag drawn for each test."""
+    rng = np.random.default_rng(22)
+    place = rng.random(200_000)
+    width = 0.02  # a corner half way between two readings, over the amplitude
+
+    def missed(at):
+        return 2 * width * np.abs((at + 0.5) % 1 - 0.5)
+
+    error = missed(place + rng.normal(0, lag, place.size)) - missed(place)
+    values = np.full((1, 2), 100.0)
+    turns = dict.fromkeys(("tension_turn_missed", "strain_turn_missed"), width * values)
+    loops = replace(loops_of(values), **turns)
+    summary = summarise_amplitude(loops, area=[1e-4], turns_alike=turns_alike(np.array([lag]), 1.0))
+    assert summary.uncertainty["apparent_spring_constant"] == pytest.approx(
+        [100 * error.std()], rel=0.01
+    )
+    # of a lag that is not stated nothing is alike, and the amplitudes have it whatever the lag is
+    apart = summarise_amplitude(loops, area=[1e-4])
+    assert apart.uncertainty["apparent_spring_constant"] == pytest.approx([100 * width / 2])
+    for name in ("tension_amplitude", "strain_amplitude"):
+        assert summary.uncertainty[name] == apart.uncertainty[name]
+
+
+def test_only_as_much_is_alike_as_both_channels_miss():
+    values = np.full((1, 2), 100.0)
+    loops = replace(loops_of(values), tension_turn_missed=3 * values, strain_turn_missed=values)
+    summary = summarise_amplitude(loops, area=[1e-4], turns_alike=np.array([1.0]))
+    # 3 and 1 of the amplitude: 9 + 1 - 2
+    assert summary.uncertainty["apparent_spring_constant"] == pytest.approx([100.0])
 
 
 def test_areas_that_do_not_pair_up_are_refused():

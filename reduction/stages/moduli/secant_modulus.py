@@ -340,7 +340,11 @@ _IMPRECISE = 1.3  # times the usual uncertainty of a cycle's frequency
 
 
 def summarise_amplitude(
-    loops: Loops, *, area: ArrayLike, break_in_cycles: int = 0
+    loops: Loops,
+    *,
+    area: ArrayLike,
+    break_in_cycles: int = 0,
+    turns_alike: Floats | float = 0.0,
 ) -> AmplitudeSummary:
     r"""Mean over the cycles of what depends on mean strain and amplitude.
 
@@ -354,6 +358,8 @@ def summarise_amplitude(
         Cross-sectional area at zero tension; NaN for a rope that has none stated. [m2]
     break_in_cycles : int
         First cycles that are left out. [1]
+    turns_alike : ndarray, shape (n_specimens,), optional
+        Correlation of what tension and strain miss of a turn between two samples. [1]
 
     Returns
     -------
@@ -423,7 +429,8 @@ def summarise_amplitude(
             None if own is None else own[:, break_in_cycles:],
         )
     means["frequency"], uncertainty["frequency"] = _mean_frequency(loops, break_in_cycles)
-    for name, shared in loops.shared_by_cycles(slice(break_in_cycles, None)).items():
+    alike = loops.shared_by_cycles(slice(break_in_cycles, None), turns_alike=turns_alike)
+    for name, shared in alike.items():
         uncertainty[name] = np.hypot(uncertainty[name], shared)
     # of a loss angle that noise turns negative there is no ellipse to read slopes from
     tangent = np.where(means["loss_factor"] >= 0, means["loss_factor"], np.nan)
