@@ -100,6 +100,9 @@ _TRIANGULAR_SHARE = 0.6  # of samples at a constant rate; a sine has a half
 
 _MOST_DRIFT = 0.2  # of the range of a cycle: a rope that creeps drifts by a hundredth
 
+# of what counts as slack without a reading at slack: what a line at speed may read beyond that
+_BEYOND_REST = 0.25
+
 _FEWEST_SAMPLES = 10  # of a branch: below, its two ends are a good part of it
 
 
@@ -107,7 +110,7 @@ def _plausibility_notes(
     strain: Floats,
     *,
     specimens: tuple[Specimen, ...],
-    slack_tension: float,
+    slack_tensions: Sequence[float],
     waveform: Literal["triangular", "sinusoidal", "other"],
     cycles: Cycles | None,
     loops: Loops | None,
@@ -132,7 +135,9 @@ def _plausibility_notes(
         if waveform != "sinusoidal":
             notes += _drift(name, loops, index, half_strain)
         notes += _sign(name, loops, index, slopes) or (
-            [] if specimen.can_push else slack(name, loops.valley_tension[index], slack_tension)
+            []
+            if specimen.can_push
+            else slack(name, loops.valley_tension[index], slack_tensions[index])
         )
     return (*notes, *_waveform(cycles, waveform))
 
@@ -174,6 +179,22 @@ def _sign(name: str, loops: Loops, index: int, slopes: Floats | None) -> list[No
     if level < 0 or not slope <= 0 or is_backward:
         return []
     return [note("sign-of-tension", name, slope=slope)]
+
+
+def _slack_in_cycles(located: Located, settings: ReductionSettings) -> list[float]:
+    """Tension at or below which each specimen is slack in its cycles. [N].
+
+    Two hundredths of the peak, unless the log says what the cell reads at slack: a hose or a soft
+    rope that stiffens pulls well below that.
+    """
+    level = located.standstills.slack_tension
+    if settings.phases.slack_tension is not None:
+        return [level] * len(located.record.specimens)
+    rests = located.load_at_slack or (None,) * len(located.record.specimens)
+    return [
+        level if one is None else min(level, max(one.earlier, one.later) + _BEYOND_REST * level)
+        for one in rests
+    ]
 
 
 def _slack(name: str, valley_tension: Floats, slack_tension: float) -> list[Note]:
@@ -752,7 +773,7 @@ def _notes_of_test(
     if kind in HELD and not holds:
         notes.append(_no_hold(standstills, settings))
     notes += _plausibility_notes(
-        strain, specimens=specimens, slack_tension=standstills.slack_tension,
+        strain, specimens=specimens, slack_tensions=_slack_in_cycles(located, settings),
         waveform=settings.cycles.waveform, control=settings.cycles.control, cycles=located.cycles,
         loops=parts.get("loops"), curves=parts.get("curves"), is_snap=kind == "snap",
     )  # fmt: skip

@@ -134,7 +134,9 @@ def load_at_slack(
     Notes
     -----
     Noise averages out over the samples of a rest, the step q of a converter does not where the
-    noise is less than one.
+    noise is less than one.  Where the crosshead stands further out than in another rest, and the
+    load is greater by no more than that stretch explains, the specimen pulls: such a standstill
+    tells nothing of the zero.
 
     Examples
     --------
@@ -148,41 +150,72 @@ def load_at_slack(
     >>> print(round(found.load, 1), found.is_beyond_noise)
     -14.4 True
     """
-    sums: list[tuple[float, int]] = []
-    ends: list[_End] = []
-    for first, last, place in zip(
-        standstills.first[is_slack], standstills.last[is_slack],
-        standstills.mean_position[is_slack].tolist(), strict=True,
-    ):  # fmt: skip
-        loads = tension[first : last + 1]
-        loads = loads[np.isfinite(loads)]
-        if loads.size:
-            sums.append((float(loads.mean()), int(loads.size)))
-            quarter = max(loads.size // 4, 1)
-            ends.append(_End(place, float(loads[-quarter:].mean()), quarter))
-    if not sums or np.count_nonzero(np.isfinite(tension[: 2 * _MOST])) < 8:
-        return None
-    means, counts = np.array([one for one, _ in sums]), np.array([n for _, n in sums])
     noise, quantum = estimate_noise(tension)
-    own = noise / np.sqrt(counts.sum())
+    rests = [
+        _End.of(tension[first : last + 1], place, _BEYOND * noise + quantum)
+        for first, last, place in zip(
+            standstills.first[is_slack], standstills.last[is_slack],
+            standstills.mean_position[is_slack].tolist(), strict=True,
+        )
+    ]  # fmt: skip
+    ends = [one for one in rests if one is not None]
+    if not ends or np.count_nonzero(np.isfinite(tension[: 2 * _MOST])) < 8:
+        return None
     # noise of a step or more blurs the steps, and the mean is finer than one of them
     step = quantum / 12**0.5 if noise < quantum else 0.0
+    stiffness = _STIFFER * finite_extremes(tension)[1] / stroke if stroke > 0 else np.inf
+    if np.isfinite(stiffness):
+        ends = [one for one in ends if not any(_pulls(one, by, stiffness, noise) for by in ends)]
+    counts = np.array([one.n_samples for one in ends])
+    own = noise / np.sqrt(counts.sum())
     readings = [one.load for one in ends]
     earlier, later = sorted((int(np.argmin(readings)), int(np.argmax(readings))))
-    stiffness = finite_extremes(tension)[1] / stroke if stroke > 0 else np.inf
     return LoadAtSlack(
-        float(np.average(means, weights=counts)), float(np.hypot(own, step)), len(sums),
-        ends[earlier].load, ends[later].load,
-        drift=_moved(ends[earlier], ends[later], _STIFFER * stiffness, noise, step),
+        float(np.average([one.mean for one in ends], weights=counts)), float(np.hypot(own, step)),
+        len(ends), ends[earlier].load, ends[later].load,
+        drift=_moved(ends[earlier], ends[later], stiffness, noise, step),
     )  # fmt: skip
 
 
 class _End(NamedTuple):
-    """The end of a slack rest: its place [m], the mean load there [N], and of how many samples."""
+    """A slack rest: its place [m], the mean load over its end and all of it [N], its samples."""
 
     place: float
     load: float
+    mean: float
     n_samples: int
+
+    @classmethod
+    def of(cls, loads: Floats, place: float, spread: float) -> _End | None:
+        """Of the loads of a standstill, None where none is known.
+
+        Where a crosshead that is read in coarse steps begins to pull, its place shows it late: a
+        last part that rises out of the spread is of the pull.
+        """
+        loads = loads[np.isfinite(loads)]
+        if not loads.size:
+            return None
+        still = np.flatnonzero(loads <= np.median(loads) + spread)[-1] + 1
+        if loads.size - still <= _quarter(loads.size):
+            loads = loads[:still]
+        last = loads[-_quarter(loads.size) :]
+        return cls(place, float(last.mean()), float(loads.mean()), int(loads.size))
+
+    @property
+    def n_read(self) -> int:
+        """Samples of which ``load`` is the mean."""
+        return _quarter(self.n_samples)
+
+
+def _quarter(n_samples: int) -> int:
+    return max(n_samples // 4, 1)
+
+
+def _pulls(rest: _End, shorter: _End, stiffness: float, noise: float) -> bool:
+    """Whether a rest reads more than a shorter one, by no more than its stretch explains."""
+    more = rest.load - shorter.load
+    own = noise * np.sqrt(1 / rest.n_read + 1 / shorter.n_read)
+    return bool(_BEYOND * own < more <= stiffness * (rest.place - shorter.place))
 
 
 def _moved(earlier: _End, later: _End, stiffness: float, noise: float, step: float) -> float:
@@ -200,7 +233,7 @@ def _moved(earlier: _End, later: _End, stiffness: float, noise: float, step: flo
         moved = later.load - earlier.load
     else:
         moved = 0.0
-    own = np.sqrt(noise**2 * (1 / earlier.n_samples + 1 / later.n_samples) + 2 * step**2)
+    own = np.sqrt(noise**2 * (1 / earlier.n_read + 1 / later.n_read) + 2 * step**2)
     return moved if abs(moved) > _BEYOND * own else 0.0
 
 

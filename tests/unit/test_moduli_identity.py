@@ -248,3 +248,17 @@ def test_cycles_without_a_residual_are_left_out_of_the_mean(triangle):
     assert found.mean_identity_residual[0] == pytest.approx(np.nanmean(found.identity_residual[0]))
     assert np.isnan(found.mean_identity_residual[1])
     assert tuple(map(str, found.notes)) == ()
+
+
+@pytest.mark.parametrize("late", [0, 4])
+def test_a_curve_that_bends_within_a_piece_is_no_imbalance_and_a_late_one_is(triangle, late):
+    """A closed loop that stiffens tenfold; friction grows with stretch and turns in a few percent."""
+    strain, cycles = triangle(n_cycles=12, per_cycle=400, low=0.0, high=1.0)
+    up = cycles.branch == 1
+    since_turn = np.where(up, strain, 1 - strain)
+    friction = np.where(up, 1, -1) * (1 - 2 * np.exp(-since_turn / 0.06) / (1 + np.exp(-1 / 0.06)))
+    softplus = 0.05 * np.logaddexp(0, (strain - 0.7) / 0.05)
+    tension = np.roll(500 * strain + 5000 * softplus + 100 * friction * (1 + strain), late)
+    tension += np.random.default_rng(3).normal(0, 1, strain.size)
+    found = check_identity(strain[None], tension[None], area=[AREA], cycles=cycles)
+    assert len(found.notes) == (late > 0)

@@ -1,12 +1,14 @@
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from reduction.pipeline.reduce_test import _plausibility_notes
+from reduction.pipeline.reduce_test import _plausibility_notes, _slack_in_cycles
 from reduction.record.measurement import Specimen
-from reduction.record.settings import ModulusSettings
+from reduction.record.settings import ModulusSettings, PhaseSettings, ReductionSettings
 from reduction.stages.cycles.loops import close_loops
+from reduction.stages.load_at_slack import LoadAtSlack
 from reduction.stages.moduli.tangent_modulus import tangent_curves
 
 AREA = np.array([3e-4])
@@ -29,7 +31,8 @@ def notes_of(triangle):
             stretch, load, area=AREA, cycles=one, settings=ModulusSettings(), break_in_cycles=0
         )
         return tuple(map(str, _plausibility_notes(
-            stretch, specimens=(Specimen("new"),), slack_tension=20.0, waveform=waveform, cycles=one,
+            stretch, specimens=(Specimen("new"),), slack_tensions=[20.0], waveform=waveform,
+            cycles=one,
             loops=close_loops(
                 0.1 * np.arange(strain.size), load, stretch, one, waveform=waveform
             ), curves=curves,
@@ -83,6 +86,19 @@ def test_cycles_that_go_slack_are_counted(notes_of):
     )
 
 
+def test_what_the_cell_reads_at_slack_says_what_is_slack_in_the_cycles():
+    """430 N is a fiftieth of the peak; a hose that reads 12 N at rest pulls 300 N at its valleys."""
+    rest = LoadAtSlack(8.0, 1.0, 2, 4.0, 12.0)
+    located = SimpleNamespace(
+        record=SimpleNamespace(specimens=("new", "no rest", "wrong zero")),
+        standstills=SimpleNamespace(slack_tension=430.0),
+        load_at_slack=(rest, None, replace(rest, later=700.0)),
+    )
+    assert _slack_in_cycles(located, ReductionSettings()) == [119.5, 430.0, 430.0]
+    stated = replace(ReductionSettings(), phases=PhaseSettings(slack_tension=430.0))
+    assert _slack_in_cycles(located, stated) == [430.0] * 3
+
+
 @pytest.mark.parametrize(("share", "n_notes"), [(0.5, 1), (0.7, 0)])
 def test_little_at_a_constant_rate_asks_for_the_waveform(notes_of, share, n_notes):
     notes = tuple(map(str, notes_of(share=share)))
@@ -94,6 +110,6 @@ def test_little_at_a_constant_rate_asks_for_the_waveform(notes_of, share, n_note
 def test_a_test_without_cycles_is_judged_by_its_strain_alone():
     notes = tuple(map(str, _plausibility_notes(
         np.array([[0.0, np.nan, 12.0], [0.0, 1.0, 2.0]]), specimens=(Specimen("new"), Specimen("used")),
-        slack_tension=20.0, waveform="triangular", cycles=None, loops=None, curves=None,
+        slack_tensions=[20.0], waveform="triangular", cycles=None, loops=None, curves=None,
     )))  # fmt: skip
     assert [note.split(":")[0] for note in notes] == ["new"]
