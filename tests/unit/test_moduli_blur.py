@@ -76,3 +76,36 @@ def test_a_jump_that_the_finest_window_is_too_noisy_to_show_is_carried_by_the_ne
     away = np.abs(slopes[0] + change - true)[0, 27:35]
     assert away.max() > 0.4 * jump
     assert (away < 1.96 * np.hypot(noise, missed)[0, 27:35]).all()
+
+
+def test_the_bend_of_a_stiffening_curve_is_no_noise():
+    """A modulus that grows fourfold, as of a hose, read by windows of 9, 5 and 3 bins."""
+    place = np.linspace(0, 1, 25)
+    curve = 1 + 6 * 0.1 * np.logaddexp(0, (place - 0.5) / 0.1)
+    rng = np.random.default_rng(2)
+    halves = [4, 2, 1]
+    # white noise of the readings: the deviation of a slope goes with the width to the power -3/2
+    deviations = [0.001 * (9 / (2 * half + 1)) ** 1.5 for half in halves]
+    slopes = [(curve + rng.normal(0, u, 25))[None] for u in deviations]
+    _, noise, _ = adapt_window(
+        slopes, [np.full((1, 25), u) for u in deviations], [np.zeros((1, 25))] * 3,
+        half_windows=halves,
+    )  # fmt: skip
+    assert np.all(noise < 4 * deviations[-1])
+
+
+@pytest.mark.parametrize("shape", ["bend", "step"])
+def test_what_one_width_may_miss_is_more_at_a_step_than_in_a_bend(shape):
+    half, place = 4, np.arange(60.0)
+    kernel = np.arange(-half, half + 1.0)
+    kernel = (half + 0.5) ** 2 - kernel**2
+    curve = np.where(place < 30, 3.0, 1.0) if shape == "step" else 1 + (place / 30) ** 2
+    slope = np.full((1, 60), np.nan)
+    slope[0, half:-half] = np.convolve(curve, kernel / kernel.sum(), "valid")
+    blur, _ = window_blur(slope, half_window=half)
+    _, _, missed = adapt_window([slope - blur], [0 * slope], [blur], half_windows=[half])
+    error = np.abs(slope - blur - curve)[0]
+    inside = slice(2 * half, -2 * half)
+    assert np.all(error[inside] <= 2 * missed[0, inside] + 1e-12)
+    if shape == "bend":
+        assert np.all(missed[0, inside] <= 1.01 * np.abs(blur).max())

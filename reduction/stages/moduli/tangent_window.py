@@ -399,7 +399,10 @@ def _halved(grid: StrainGrid, spacing: float) -> list[int]:
 
 
 def _roughness(slope: Floats, half_window: int) -> Floats:
-    """Standard deviation of window slopes by their differences, the least of three orders."""
+    """Standard deviation of window slopes by their differences, the least of three orders.
+
+    Infinite where no order has enough differences.
+    """
     found = np.full(slope.shape[:-1], np.inf)
     step = half_window + 1
     for order in (2, 3, 4):
@@ -420,7 +423,7 @@ def _roughness(slope: Floats, half_window: int) -> Floats:
         middle = np.maximum(np.isfinite(known).sum(axis=-1, keepdims=True) - 1, 0) // 2
         size = np.take_along_axis(known, middle, axis=-1)[..., 0]
         found = np.minimum(found, _TO_DEVIATION * size / sqrt(signs @ common @ signs))
-    return np.where(np.isfinite(found), found, 0.0)[..., None]
+    return found[..., None]
 
 
 def _near(values: Floats, half_window: int, *, is_highest: bool) -> Floats:
@@ -500,7 +503,10 @@ def adapt_window(
     >>> print((wide + change)[0, 9].round(2), missed[0, 5:11].round(2))
     2.8 [0.   0.04 0.21 0.66 0.66 0.66]
     """
-    roughness = [_roughness(values, half) for values, half in zip(slope, half_windows, strict=True)]
+    rough_alone = [_roughness(*one) for one in zip(slope, half_windows, strict=True)]
+    # a wide window averages more than a narrow one: what its differences show beyond is the curve
+    least = np.minimum.accumulate(rough_alone[::-1])[::-1]
+    roughness = np.where(np.isfinite(least), least, 0.0)
     noises = [np.fmax(*both) for both in zip(deviation, roughness, strict=True)]
     # of the widest window the scatter of the cycles says what the residuals of all together do not
     rough = [0 * slope[0] + roughness[0], *noises[1:]]
@@ -513,7 +519,7 @@ def adapt_window(
             away = np.abs(slope[wide] - slope[narrow])
             is_sound &= ~(away > _CONTRADICTED * noises[narrow])
         chosen = np.where(is_sound, wide, chosen)
-    missed = (_UNSEEN_OF_BLUR * _near(np.abs(blur[0]), half_windows[0], is_highest=True)) ** 2
+    missed = _unseen_by_one(blur[0], half_windows[0]) ** 2
     # of a curve shorter than two windows no blur is known: its modulus may change within one
     is_blind = [(one == 0).all(axis=-1, keepdims=True) for one in blur]
     missed += np.where(is_blind[0], _range(slope[0]) ** 2 / 3, 0.0)
@@ -545,6 +551,18 @@ def adapt_window(
         np.choose(chosen, rough),
         np.sqrt(np.maximum(missed, 0.0) + _missed_at_ends(adapted, half_windows[0]) ** 2),
     )
+
+
+def _unseen_by_one(blur: Floats, half_window: int) -> Floats:
+    """What one width may miss: as much as it shows to change of a smooth bend, or all of the bend.
+
+    A jump makes the second difference, and with it the blur, change its sign within a window; of a
+    smooth bend it changes little.
+    """
+    size = 4 * half_window + 1
+    high = scipy.ndimage.maximum_filter1d(blur, size, axis=-1, mode="nearest")
+    low = scipy.ndimage.minimum_filter1d(blur, size, axis=-1, mode="nearest")
+    return np.asarray(np.maximum(_UNSEEN_OF_BLUR * (high - low) / 2, np.abs(blur)))
 
 
 def _range(slope: Floats) -> Floats:
