@@ -659,6 +659,28 @@ def test_rounding_of_both_extremes_is_in_the_interval_of_the_amplitude():
     assert np.mean(np.abs(errors) < 1.96 * np.array(spreads)) >= 0.9
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_a_creeping_rope_in_steps_of_half_a_ramp_reading_keeps_its_amplitude(seed):
+    """Strain of 0.02 in 50 steps, 200 readings a cycle, and a creep of a tenth of it over the log.
+
+    Without noise a ramp of half a step a reading has third differences of two steps.
+    """
+    time, wave, cycles = triangles(200, 15, 0.3)
+    rng = np.random.default_rng(seed)
+    tension = 2e4 + 2e4 * wave + rng.normal(0, 25, wave.size)
+    strain = 0.05 + 0.02 * wave + 0.001 * np.log1p(time / 5) / np.log(31) + rng.uniform(0, 4e-4)
+    step = 0.02 / 50
+    read = step * np.round((strain + rng.normal(0, step / 80, wave.size)) / step)
+    loops = close_loops(
+        time, tension[None], read[None], cycles, waveform="triangular", control="load"
+    )
+    found = summarise_amplitude(loops, area=[1e-3])
+    error = found.strain_amplitude[0] / 0.01 - 1
+    # readings miss both corners by 0.3 of the ramp between two of them; the rest is rounding
+    assert error == pytest.approx(-0.3 * 2 / 100, abs=0.006)
+    assert abs(error) < 2 * found.uncertainty["strain_amplitude"][0] / 0.01
+
+
 @pytest.mark.parametrize("decay", [0.15, 0.2])
 def test_what_decays_at_the_corner_of_a_rest_is_in_the_interval_of_the_amplitude(decay):
     """Ramps of 3 s and rests of 2 s, read ten times a second in noise that hides the decay.

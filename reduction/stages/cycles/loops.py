@@ -75,6 +75,7 @@ from itertools import pairwise
 from typing import Literal
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
 
 from reduction.record.arrays import as_same_shape, run_blocks
@@ -1603,8 +1604,9 @@ def _noise_and_step(values: Floats, noise: float) -> tuple[float, float]:
     .. math:: \sigma^2 = s^2 - q^2 / 12
 
     The median of third differences is itself a number of steps where these are coarse: there it is
-    their mean square that says what the noise is.  The step is zero where noise of more than a step
-    leaves nothing of it.
+    their mean square that says what the noise is, unless the steps back contradict it: a slow ramp
+    in coarse steps has third differences without any noise.  The step is zero where noise of more
+    than a step leaves nothing of it.
 
     Examples
     --------
@@ -1616,12 +1618,60 @@ def _noise_and_step(values: Floats, noise: float) -> tuple[float, float]:
     step = step_of_codes(values)
     if not step or noise > _COARSE * step:
         return noise, 0.0
-    third = np.abs(np.diff(values[:_NOISE_SAMPLES], n=3))
-    third = third[np.isfinite(third) & (third < _FAR * step)]
+    codes = values[:_NOISE_SAMPLES] / step
+    third = np.abs(np.diff(codes, n=3))
+    third = third[np.isfinite(third) & (third < _FAR)]
     # the corners of a wave are no noise: without the greatest fifth, as of a normal distribution
     inner = np.sort(third)[: int(0.8 * third.size)]
     square = float(np.mean(inner**2)) / (20 * _OF_INNER) if inner.size else 0.0
-    return float(np.sqrt(max(square - step**2 / 12, 0.0))), step
+    by_differences = float(np.sqrt(max(square - 1 / 12, 0.0)))
+    return step * _noise_of_codes(codes, by_differences), step
+
+
+def _noise_of_codes(codes: Floats, most: float) -> float:
+    r"""Noise of a wave in codes of a converter, where its steps back contradict a greater one. [1].
+
+    .. math:: b = \langle s\,\varphi(r / s) - r\,\Phi(-r / s) \rangle, \qquad s = \sqrt 2 \sigma
+
+    with b the mean number of steps against the way of the wave from one reading to the next, and r
+    what the wave goes in that time.  A distance holds as many edges of codes in the mean as it is
+    steps long, so b is the mean of the way back; a ramp without noise goes back nowhere.  ``most``
+    is the noise where as many are seen as it makes, within three standard deviations.
+
+    Examples
+    --------
+    >>> ramp, noise = 0.12 * np.abs(np.arange(4000) % 400 - 200), np.random.default_rng(1)
+    >>> print([round(_noise_of_codes(np.round(ramp + noise.normal(0, one, 4000)), 0.5), 1)
+    ...     for one in (0.0, 0.2, 0.5)])
+    [0.0, 0.2, 0.5]
+    """
+    steps, reach = np.diff(codes), 1
+    # what the wave goes, by readings so far apart that their noise is little of it
+    while True:
+        rate = (codes[2 * reach :] - codes[: -2 * reach]) / (2 * reach)
+        fastest = float(np.nanquantile(np.abs(rate), _FAST)) if np.isfinite(rate).any() else 0.0
+        if 2 * reach * fastest >= _STEPS_APART or 8 * reach > codes.size:
+            break
+        reach *= 2
+    own = steps[reach - 1 : reach - 1 + rate.size]
+    used = (np.abs(rate) > fastest / 4) & (np.abs(own) < _FAR)
+    way = np.abs(rate[used])
+    back = float(np.maximum(-own[used] * np.sign(rate[used]), 0).sum())
+
+    def expected(noise: float) -> float:
+        above = way / (noise * 2**0.5)
+        density = np.exp(-(above**2) / 2) / np.sqrt(2 * np.pi)
+        return noise * 2**0.5 * float((density - above * scipy.special.ndtr(-above)).sum())
+
+    least = 1e-3
+    if most <= least or expected(most) - back <= _CLEAR * expected(most) ** 0.5:
+        return most
+    if expected(least) >= back:
+        return 0.0
+    return float(scipy.optimize.brentq(lambda noise: expected(noise) - back, least, most))
+
+
+_FAST, _STEPS_APART = 0.9, 4.0  # share of readings at less than that rate; steps between two
 
 
 def _codes_of_branches(values: Floats, cycles: Cycles, step: float) -> list[Floats]:
