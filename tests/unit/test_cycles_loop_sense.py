@@ -81,6 +81,33 @@ def test_less_than_a_sample_is_how_channels_are_read():
     assert note.numbers["cause"] == "sampling"
 
 
+@pytest.mark.parametrize(("at_peak", "severity"), [(False, "note"), (True, "warning")])
+def test_cycles_that_drift_unequally_say_whether_their_drift_is_even(at_peak, severity):
+    """Strain of a driven load gives way ever more slowly, evenly or while the load is highest."""
+    turn = np.arange(20 * PER + 1) / PER
+    wave = 2 * np.pi * turn
+    rate = np.exp(-turn / 6) * (np.clip(-np.cos(wave), 0.9, None) - 0.9 if at_peak else 1)
+    gives = 0.12 * np.append(0, np.cumsum(rate[1:])) / rate.sum()
+    strain = 0.5 - 0.2 * np.cos(wave) + gives
+    tension = 1000 - 180 * np.cos(wave + 0.1)
+    first = PER * np.arange(20)
+    rise = np.column_stack([first, first + PER // 2])
+    cycles = Cycles(
+        first, first + PER, rise, rise + PER // 2, np.ones((20, 2)),
+        np.zeros(turn.size, np.int32), np.zeros(turn.size, np.int8), np.zeros(turn.size, bool), 0.1,
+    )  # fmt: skip
+    loops = close_loops(
+        turn / FREQUENCY, tension[None], strain[None], cycles, waveform="sinusoidal", control="load"
+    )
+    (found,) = notes(loops)
+    assert (found.code, found.severity) == ("drift-in-energy", severity)
+    true, inner = np.pi * 0.2 * 180 * np.sin(0.1), slice(2, None)
+    error = loops.hysteresis_energy[0, inner].mean() / true - 1
+    interval = 2 * loops.shared_by_cycles(inner)["hysteresis_energy"][0] / true
+    assert abs(error) < 1.3 * interval
+    assert (interval < 0.01) is not at_peak
+
+
 def test_the_work_of_a_drift_is_told():
     (note,) = notes(loops_of(0.1, drift=-5.0))
     # the closing line lies at the least strain, 0.2 below the mean: 0.2 times 5 N

@@ -89,7 +89,12 @@ from reduction.record.samples import (
     step_that_fills,
     take_samples,
 )
-from reduction.stages.cycles.cycle_product import PLACE_OF_DRIFT, WITHIN_STEP, Cycles, Loops
+from reduction.stages.cycles.cycle_product import (
+    WITHIN_STEP,
+    Cycles,
+    Loops,
+    drift_not_placed,
+)
 from reduction.stages.cycles.periods import (
     own_periods,
     spread_of_turns,
@@ -1078,7 +1083,9 @@ def _quantities_of_cycles(
             )
         factor = loss / storage
         # where in its cycle the drift takes place is not known
-        placed = np.abs(row["energy"] - energy) / PLACE_OF_DRIFT
+        placed = np.abs(row["energy"] - energy) * drift_not_placed(
+            energy, row["energy"], amplitude * strain_amplitude
+        )
         per_energy = 1 / (np.pi * strain_amplitude**2)
         u_loss = np.hypot(u_loss, placed * per_energy)
         u_over_time_lost = np.hypot(u_over_time, placed * per_energy)
