@@ -277,12 +277,19 @@ def _of_statements(campaign: Campaign, survey: Survey, models: Models) -> Iterat
         if step > _COARSE * greatest:
             yield note("load-in-steps", name, step=step, share=step / greatest)
         yield from _of_mean(name, levels.like_means[index])
-        first, last = levels.mean_ramps[index]
+        first, last, grows = levels.mean_ramps[index]
         if abs(last - first) > _RAMP * abs(first):
-            yield note("mean-tension-ramps", name, first=first, last=last,
-                       is_of_load=plan.control == "load")  # fmt: skip
+            yield note(
+                "mean-tension-ramps", name, first=first, last=last,
+                is_of_load=plan.control == "load",
+                grows=grows if abs(grows) > _OF_GROWTH * abs(last - first) else 0.0,
+            )  # fmt: skip
         if levels.is_copy[index]:
             yield note("channels-alike", name, others=", ".join(plan.specimens[:index]))
+
+
+# of the change of mean: cycles that grow from one valley have their half range grow by all of it
+_OF_GROWTH = 0.5
 
 
 def _of_mean(name: str, means: Floats) -> Iterator[Note]:

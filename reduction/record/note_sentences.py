@@ -1353,16 +1353,24 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "mean-tension-ramps": (
         "warning",
-        lambda first, last, is_of_load: (
+        lambda first, last, is_of_load, grows: (
             f"the mean tension {'falls' if last < first else 'rises'} steadily from {first:.4g} to"
             f" {last:.4g} N over the cycles, "
             + (
-                "though the machine drives the load"
+                f"and the amplitude of tension {'grows' if grows > 0 else 'falls'} by"
+                f" {abs(grows):.4g} N with it: the cycles are not of one level."
+                if grows
+                else "though the machine drives the load"
                 if is_of_load
                 else "and the middle of the stroke with it"
             )
-            + ": the machine did not hold the level (a leaking accumulator, a drifting set point)."
-            " Every number of this test is a mean over these levels"
+            + (
+                ""
+                if grows
+                else ": the machine did not hold the level (a leaking accumulator, a drifting set"
+                " point)."
+            )
+            + " Every number of this test is a mean over these levels"
         ),
     ),
     "zero-or-relaxation": (

@@ -61,10 +61,11 @@ class TestLevels:
     like_means : ndarray, shape (n_specimens, 3)
         Mean tension of the first, middle and last of the cycles between equal positions; NaN where
         they are few, or where a slack rest after them shows the zero of the load. [N]
-    mean_ramps : ndarray, shape (n_specimens, 2)
+    mean_ramps : ndarray, shape (n_specimens, 3)
         Mean tension of the first and the last cycle by the straight line through all, where the
         machine lets it go: the means follow the line, and the machine drives the load, or the
-        middle of its stroke goes the same way. NaN elsewhere. [N]
+        middle of its stroke goes the same way. With it, by how much half the range of tension
+        grows over the same cycles. NaN elsewhere. [N]
     """
 
     __test__ = False  # a test of a tether, not of this software
@@ -146,7 +147,7 @@ def levels_of_test(
     mean, amplitude, lead = nothing.copy(), nothing.copy(), nothing.copy()
     frequency = speed = np.nan
     waveform = ""
-    like_means, mean_ramps = np.full((n_specimens, 3), np.nan), np.full((n_specimens, 2), np.nan)
+    like_means, mean_ramps = np.full((2, n_specimens, 3), np.nan)
     if cycles is not None and cycles.n_cycles:
         some = np.unique(
             np.linspace(0, cycles.n_cycles - 1, min(cycles.n_cycles, _MOST_CYCLES)).astype(int)
@@ -240,17 +241,23 @@ _ON_LINE = 0.98  # of the variance of the means: steps between levels leave more
 
 def _mean_ramp(
     load: Floats, cycles: Cycles, some: Integers, middles: Floats | None
-) -> tuple[float, float]:
-    """Mean tension of the first and last cycle, where it ramps as no specimen makes it."""
-    means = np.array([_middle(load[cycles.first[one] : cycles.last[one] + 1]) for one in some])
+) -> tuple[float, float, float]:
+    """Mean tension of the first and last cycle, where it ramps as no specimen makes it.
+
+    With it, how much half the range of the cycles grows between them.
+    """
+    loads = [load[cycles.first[one] : cycles.last[one] + 1] for one in some]
+    means = np.array([_middle(one) for one in loads])
     rows = np.stack([means] if middles is None else [means, middles])
     if means.size < _FEWEST_LIKE or not np.isfinite(rows).all() or not np.ptp(rows, axis=1).all():
-        return np.nan, np.nan
+        return (np.nan,) * 3
     along = np.corrcoef(some, rows)[0, 1:]
     if (along**2 < _ON_LINE).any() or np.ptp(np.sign(along)):
-        return np.nan, np.nan
+        return (np.nan,) * 3
     slope, start = np.polyfit(some, means, 1)
-    return float(start + slope * some[0]), float(start + slope * some[-1])
+    halves = [np.subtract(*finite_extremes(one)[::-1]) / 2 for one in loads]
+    grows = np.polyfit(some, halves, 1)[0] * (some[-1] - some[0])
+    return float(start + slope * some[0]), float(start + slope * some[-1]), float(grows)
 
 
 def _middle(values: Floats) -> float:

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from reduction.batch.plausibility import _of_mean
+from reduction.record.notes import note
 from reduction.record.settings import CycleSettings, PhaseSettings
 from reduction.stages.cycles.cycle_search import find_cycles
 from reduction.stages.standstills import find_standstills
@@ -134,3 +135,34 @@ def test_two_unequal_ramps_are_triangular(share):
     position = 2 + np.interp(phase, [0, share, 1], [-1, 1, -1])
     position += np.random.default_rng(5).normal(0, 0.005, phase.size)
     assert levels(position, 100 * position, waveform="triangular").waveform == "triangular"
+
+
+@pytest.mark.parametrize(("grows", "words"), [
+    (True, "the amplitude of tension grows by 74.2 N with it: the cycles are not of one level"),
+    (False, "though the machine drives the load: the machine did not hold the level"),
+])  # fmt: skip
+def test_a_mean_that_rises_with_the_amplitude_is_of_growing_cycles_and_no_lost_level(grows, words):
+    """Thirty sines of a driven load from one valley, or of one amplitude; 80 N more at their end.
+
+    From the first of 30 cycles to the last are 29 of them, and a cycle grows by itself; by a
+    straight line through them that is 77 N, less what the median of a growing cycle lies off.
+    """
+    time = 0.05 * np.arange(3001)
+    more = 80 * time / time[-1]
+    wave = -np.cos(0.4 * np.pi * time)
+    tension = 300 + more + (100 + more * grows) * wave
+    position = 2 + tension / 1000
+    stands = find_standstills(time, position, tension[None], settings=PhaseSettings())
+    cycles = find_cycles(
+        time, position, tension[None], stands,
+        settings=CycleSettings(waveform="sinusoidal", control="load"),
+    )  # fmt: skip
+    found = levels_of_test(time, position, tension[None], None, stands, cycles, control="load")
+    first, last, growth = found.mean_ramps[0]
+    assert last - first == pytest.approx(77, abs=4)
+    assert growth == pytest.approx(77 if grows else 0, abs=4)
+    told = note(
+        "mean-tension-ramps", "rope", first=first, last=last, is_of_load=True,
+        grows=74.2 if grows else 0.0,
+    )  # fmt: skip
+    assert words in str(told)
