@@ -659,6 +659,20 @@ def test_rounding_of_both_extremes_is_in_the_interval_of_the_amplitude():
     assert np.mean(np.abs(errors) < 1.96 * np.array(spreads)) >= 0.9
 
 
+@pytest.mark.parametrize("noise", [0.0, 1.5])
+def test_a_machine_that_goes_too_far_at_the_end_changes_no_valley_before(noise):
+    """Ten cycles of 100 N to 300 N, and 10 N further down after the last peak."""
+    time, wave, cycles = triangles(100, 10, 0.3)
+    tension = 100 + 200 * wave
+    after = np.arange(wave.size) > cycles.branch_last[-1, 0]
+    tension[after] = 300 - 1.05 * (300 - tension[after])
+    read = tension + np.random.default_rng(8).normal(0, noise, wave.size)
+    loops = close_loops(time, read[None], 0.001 * tension[None], cycles, control="load")
+    assert loops.valley_tension[0, -2] == pytest.approx(100, abs=4)
+    assert loops.tension_amplitude[0, -2] == pytest.approx(100, abs=2)
+    assert loops.valley_tension[0, -1] < 95
+
+
 @pytest.mark.parametrize("seed", range(3))
 def test_a_creeping_rope_in_steps_of_half_a_ramp_reading_keeps_its_amplitude(seed):
     """Strain of 0.02 in 50 steps, 200 readings a cycle, and a creep of a tenth of it over the log.

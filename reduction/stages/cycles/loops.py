@@ -1298,7 +1298,8 @@ def _readings_at_turns(
         low = np.maximum(low, np.append(begin[:1], end[:-1]))
         high = np.minimum(high, np.append(begin[1:], end[-1:]))
         stop = int(end[-1])
-        pairs = np.column_stack([low, high]).ravel()[:-1]
+        # the last window goes to the end of the series, unless another one begins at its end
+        pairs = np.column_stack([low, high]).ravel()[: None if high[-1] < stop else -1]
         found = of.reduceat(values[:stop], np.minimum(pairs, stop - 1))[::2]
         return np.asarray(of(found, values[high]))
 
