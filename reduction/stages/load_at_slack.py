@@ -196,7 +196,7 @@ class _End(NamedTuple):
         if not loads.size:
             return None
         still = np.flatnonzero(loads <= np.median(loads) + spread)[-1] + 1
-        if loads.size - still <= _quarter(loads.size):
+        if loads.size - still <= loads.size // 3:
             loads = loads[:still]
         last = loads[-_quarter(loads.size) :]
         return cls(place, float(last.mean()), float(loads.mean()), int(loads.size))

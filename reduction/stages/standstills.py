@@ -624,6 +624,29 @@ def _stays_slow(
     return bool(is_slow[int(np.argmax(is_slow)) :].all()) and bool(is_slow.any())
 
 
+_WINDOW, _WIDER = 64, 3.0  # samples, of whose range normal noise spans no more in a record
+
+
+def _dither_range(values: Floats) -> float:
+    """What the noise of a channel that a controller drives may span, by what it does span.
+
+    A servo valve that dithers faster than the log is read has the differences of great noise and a
+    narrow range.  Of normal noise this is more than its range, and of what moves far more.
+
+    Examples
+    --------
+    >>> dither = 240 * np.sin(4.08 * np.arange(2000))
+    >>> print(round(noise_range(dither)), round(_dither_range(dither)))
+    3182 1440
+    """
+    windows = values[: values.size // _WINDOW * _WINDOW].reshape(-1, _WINDOW)
+    windows = windows[np.isfinite(windows).all(axis=1)]
+    if not windows.size:
+        return np.inf
+    _, quantum = estimate_noise(values)
+    return max(_WIDER * float(np.median(np.ptp(windows, axis=1))), _QUANTA * quantum)
+
+
 def _tolerances(values: Floats, stated: float | None) -> tuple[float, float]:
     """Range that is allowed inside a standstill, and what noise alone spans."""
     noise = noise_range(values)
@@ -917,9 +940,9 @@ def find_tension_stands(
     -----
     *Holds* are intervals above the slack tension in which the tension stands still
     (`_still_intervals`), that of the machine: the mean over the specimens, which pull at one
-    crosshead.  Tolerance, where not stated: `noise_range` of it.  *Rests* are those of
-    `find_standstills`, since a slack specimen has the same tension wherever the crosshead
-    goes.  Where both meet the rest is shortened.
+    crosshead.  Tolerance, where not stated: `noise_range` of it, or `_dither_range` if less.
+    *Rests* are those of `find_standstills`, since a slack specimen has the same tension wherever
+    the crosshead goes.  Where both meet the rest is shortened.
 
     Examples
     --------
@@ -937,6 +960,8 @@ def find_tension_stands(
     crosshead = find_standstills(seconds, place, loads, settings=settings)
     mean = mean_of_rows(loads)
     tolerance, noise = _tolerances(mean, settings.tension_tolerance)
+    if settings.tension_tolerance is None:
+        tolerance = noise = min(noise, _dither_range(mean))
     first, last = _stands(
         seconds, mean, tolerance=tolerance, noise=noise, settings=settings, is_held=is_held
     )

@@ -77,3 +77,26 @@ def test_a_rest_that_meets_a_hold_ends_before_it():
     found = find(time, np.ones(time.size), load, slack_tension=5.0)
     assert found.is_rest.tolist() == [True, False]
     assert found.last[0] == found.first[1] - 1
+
+
+def test_holds_of_a_valve_that_dithers_faster_than_the_log_are_all_found():
+    """Six steps of 120 N of 480 N, held for 600 s; a dither of 2.4 N is read near every half turn.
+
+    Its differences are those of noise of 32 N from end to end in twelve deviations, a quarter of a
+    step, though it spans 4.8 N.
+    """
+    levels = [120, 240, 360, 240, 360, 480, 0]
+    knots, now = [(0.0, 0.0), (10.0, 0.0)], 10.0
+    for level in levels:
+        knots += [(now + 20, level), (now + 620, level)]
+        now += 620
+    time = np.arange(0, now, 0.5)
+    tension = np.interp(time, *np.array(knots).T)
+    position = 3 + tension / 300 + 0.002 * np.log1p(time)
+    tension += (tension > 0) * 2.4 * np.sin(2.2 * time / 0.5)
+    tension += np.random.default_rng(6).normal(0, 0.25, time.size)
+    found = find(time, position, tension)
+    held = ~found.is_rest
+    assert found.mean_tension[0, held] == pytest.approx(levels[:-1], abs=1)
+    assert found.start_time[held] == pytest.approx(30 + 620 * np.arange(6), abs=3)
+    assert found.tension_tolerance < 20
