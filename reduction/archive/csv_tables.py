@@ -38,6 +38,7 @@ from reduction.archive.csv_definitions import (
     PROPERTY_TABLES,
     TABLES,
 )
+from reduction.archive.dataset_builder import variable_of
 from reduction.archive.open import Opener, place_of, reading
 from reduction.archive.shared_errors import components_of, shared_contributions
 from reduction.archive.variables import stored
@@ -181,9 +182,8 @@ def _by_response(archive: xr.Dataset) -> xr.Dataset:
     units = [QUANTITIES[f"{name}_sigma"].unit for name in names]
     own_units = [QUANTITIES[f"{name}_point_value"].unit for name in names]
     stacked: dict[str, xr.Variable] = {
-        "response": xr.Variable("response", np.array(names, dtype=np.str_)),
-        "unit": xr.Variable("response", np.array(units, dtype=np.str_)),
-        "response_unit": xr.Variable("response", np.array(own_units, dtype=np.str_)),
+        name: variable_of(name, ("response",), np.array(texts, dtype=np.str_), attributes={})
+        for name, texts in (("response", names), ("unit", units), ("response_unit", own_units))
     }
     for pattern in RESPONSE_PATTERNS:
         what = pattern.name.removeprefix("<response>")
@@ -199,14 +199,15 @@ def _by_response(archive: xr.Dataset) -> xr.Dataset:
             for row in of_term
         ]
         stacked["coefficient_engineering_unit"] = xr.Variable(
-            ("experiment", "response", "term"), np.array(full, dtype=np.str_)
+            ("experiment", "response", "term"), np.array(full, dtype=np.str_), fastpath=True
         )
     stacked["run_is_there"] = xr.Variable(
-        ("experiment", "run"), _marked(archive.variables["run_name"].values != "")
+        ("experiment", "run"), _marked(archive.variables["run_name"].values != ""), fastpath=True
     )
     stacked["run_plan"] = xr.Variable(
         ("experiment", "run", "factor"),
         archive.variables["run_plan"].values[:, :, : archive.sizes["factor"]],
+        fastpath=True,
     )
     if "response_effect" in stacked:
         is_column = archive.variables["plan_column_name"].values[:, None, :] != ""
@@ -215,7 +216,7 @@ def _by_response(archive: xr.Dataset) -> xr.Dataset:
             is_refused = stacked["response_effect_refusal"].values != ""
             known |= is_refused[:, :, None] & is_column
         stacked["effect_is_there"] = xr.Variable(
-            ("experiment", "response", "plan_column"), _marked(known)
+            ("experiment", "response", "plan_column"), _marked(known), fastpath=True
         )
     # at once: xarray aligns hundreds of variables whenever one is added
     return archive.assign(stacked)
@@ -233,7 +234,7 @@ def _stacked(archive: xr.Dataset, names: Sequence[str], what: str) -> xr.Variabl
     missing: NDArray[Any] = np.full(first.shape, fill, dtype=first.dtype)
     rows = [given[name].values if name in given else missing for name in names]
     experiment, *rest = first.dims
-    return xr.Variable((experiment, "response", *rest), np.stack(rows, axis=1))
+    return xr.Variable((experiment, "response", *rest), np.stack(rows, axis=1), fastpath=True)
 
 
 def _marked(present: NDArray[Any]) -> NDArray[Any]:

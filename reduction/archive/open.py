@@ -26,6 +26,7 @@ from reduction.archive.dataset_builder import (
     SCHEMA_VERSION,
     as_read,
     build_dataset,
+    variable_of,
 )
 from reduction.archive.scratch_file import ScratchFile
 from reduction.quantities.names import (
@@ -448,7 +449,12 @@ def refuse_no_file(path: Path) -> None:
 def _opened(path: Path, chunks: Chunks | None = None) -> xr.Dataset:
     """All groups of a file as one dataset, variables in the order of its schema."""
     groups = xr.open_groups(
-        path, engine="netcdf4", decode_times=False, decode_timedelta=False, chunks=chunks
+        path,
+        engine="netcdf4",
+        decode_times=False,
+        decode_timedelta=False,
+        chunks=chunks,
+        create_default_indexes=False,
     )
     root = groups["/"]
     variables = {
@@ -459,7 +465,7 @@ def _opened(path: Path, chunks: Chunks | None = None) -> xr.Dataset:
     coordinates = {name for one in groups.values() for name in one.coords}
     merged = xr.Dataset(
         {name: variables[name] for name in ordered if name not in coordinates},
-        {name: variables[name] for name in ordered if name in coordinates},
+        {name: _label_of(name, variables[name]) for name in ordered if name in coordinates},
         root.attrs,
     )
     merged.encoding = root.encoding
@@ -470,6 +476,18 @@ def _opened(path: Path, chunks: Chunks | None = None) -> xr.Dataset:
 
     merged.set_close(close)
     return merged
+
+
+def _label_of(name: Hashable, variable: xr.Variable) -> xr.Variable:
+    if variable.dims != (name,):
+        return variable
+    return variable_of(
+        str(name),
+        variable.dims,
+        variable.values,
+        attributes=variable.attrs,
+        encoding=variable.encoding,
+    )
 
 
 def _refuse(path: Path, fault: str | None) -> None:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 from typing import Any, cast
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
-from reduction.record.measurement import Floats
+from reduction.record.measurement import Floats, Integers
 from reduction.record.note_sentences import Severity
 from reduction.record.notes import Note
 
@@ -51,6 +51,20 @@ def stored(dataset: xr.Dataset, name: str) -> xr.Variable | None:
     True
     """
     return dataset.variables[name] if name in dataset else None
+
+
+def at_places(variable: xr.Variable, dim: Hashable, places: Integers) -> xr.Variable:
+    """Give entries of a variable in memory along a dimension, or all of one that lacks it.
+
+    As `xarray.Variable.isel`, which imports Dask to ask whether the places are an array of it.
+    """
+    if dim not in variable.dims:
+        return variable
+    if isinstance(variable, xr.IndexVariable):
+        labels = variable.to_index()[places]
+        return xr.IndexVariable(variable.dims, labels, variable.attrs)  # type: ignore[no-untyped-call]
+    taken = np.take(variable.values, places, axis=variable.dims.index(dim))
+    return xr.Variable(variable.dims, taken, variable.attrs, fastpath=True)
 
 
 _NOTE_TEXTS = ("note", "note_stage", "note_code", "note_severity")

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from reduction.archive.campaign_products import outcomes_of_dataset
 from reduction.archive.open import in_memory
 from reduction.archive.surfaces_dataset import surface_names, surfaces_of
-from reduction.archive.variables import read_notes, stored
+from reduction.archive.variables import at_places, read_notes, stored
 from reduction.experiments.fit_results import ResponseSurfaces
 from reduction.experiments.outcome_groups import Group
 from reduction.experiments.outcomes import Outcome
@@ -24,7 +24,7 @@ from reduction.prediction.hose_geometry import NEUTRAL_ANGLE
 from reduction.quantities.names import QUANTITIES, RESPONSES, SCALES
 from reduction.quantities.row import COMPONENT
 from reduction.quantities.units import UnitSystem, combined_unit, display_unit
-from reduction.record.measurement import Floats
+from reduction.record.measurement import Floats, Integers
 from reduction.record.notes import Note
 from reduction.report.test_view import Expanded, RowView, TestView, expand
 from reduction.report.text_style import DEGREES, Shown, in_order, shown
@@ -717,9 +717,14 @@ def view_ropes(
         RopeView(
             f"rope-{index}",
             name,
-            data.isel(property=np.flatnonzero(owners == name)),
+            _rows(data, np.flatnonzero(owners == name)),
             tuple(tests[test] for test in used.get(name, ()) if test in tests),
             units,
         )
         for index, name in enumerate(dict.fromkeys(owners.tolist()))
     ]
+
+
+def _rows(data: xr.Dataset, places: Integers) -> xr.Dataset:
+    variables = {name: at_places(one, "property", places) for name, one in data.variables.items()}
+    return xr.Dataset(variables, attrs=data.attrs)

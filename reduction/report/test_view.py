@@ -19,10 +19,10 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from reduction.archive.open import in_memory
-from reduction.archive.shared_errors import stated_errors_of
+from reduction.archive.shared_errors import FREEDOM, stated_errors_of
 from reduction.archive.test_dataset import stored_cycles
 from reduction.archive.uncertainty_budget import effective_freedom
-from reduction.archive.variables import read_notes
+from reduction.archive.variables import at_places, read_notes
 from reduction.quantities.flags import LINE_METHODS
 from reduction.quantities.units import UnitSystem
 from reduction.record.contributions import (
@@ -249,11 +249,14 @@ class TestView:
         own = [name for name in self.data.variables if any(one in str(name) for one in left_out)]
         return replace(self, data=self.data.drop_vars(own))
 
-    def at_cycles(self, places: Integers) -> TestView:
-        """Return the same test with some of its cycles, counted from 0 and in order."""
-        if len(places) == self.data.sizes["cycle"]:
-            return self
-        return replace(self, data=self.data.isel(cycle=places))
+    def at_cycles(self, name: str, places: Integers) -> TestView:
+        """Return one number of some cycles, counted from 0, with what its uncertainty rests on."""
+        own = {
+            key: at_places(variable, "cycle", places)
+            for key, variable in self.data.variables.items()
+            if str(key).startswith(name) or key == FREEDOM
+        }
+        return replace(self, data=xr.Dataset(own))
 
 
 def all_specimens(tests: Sequence[TestView]) -> list[str]:

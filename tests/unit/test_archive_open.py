@@ -2,6 +2,7 @@
 
 import errno
 import os
+import subprocess
 import sys
 from contextlib import contextmanager
 
@@ -326,3 +327,21 @@ def test_what_is_kept_of_an_archive_that_was_just_written_is_what_a_reader_finds
         assert list(kept.variables) == list(on_disk.variables)
         for name, variable in kept.variables.items():
             assert variable.dtype == on_disk.variables[name].dtype
+
+
+def test_to_open_an_archive_and_take_entries_of_it_loads_neither_dask_nor_pint(rich_test, write):
+    code = f"""
+import sys
+from pathlib import Path
+import numpy as np
+import xarray as xr
+from reduction.archive.open import open_archive
+from reduction.archive.variables import at_places
+with open_archive(Path({str(write(rich_test))!r})) as found:
+    both = {{name: found.variables[name] for name in ("specimen", "diameter")}}
+    cut = xr.Dataset({{name: at_places(one, "specimen", np.array([1])) for name, one in both.items()}})
+    print(sorted({{"dask.base", "pint"}} & set(sys.modules)))
+    xr.testing.assert_equal(cut, found[["specimen", "diameter"]].isel(specimen=[1]))
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "[]\n"

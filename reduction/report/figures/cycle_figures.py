@@ -160,7 +160,7 @@ def draw_trends(view: TestView) -> list[Figure]:
             for index, specimen in enumerate(view.specimens):
                 kept = keep_extremes(place, values[index], limit=POINTS)
                 x, y = cycle[kept], values[index, kept] * unit.factor
-                spread = expanded_of(view.at_cycles(kept), name, values[:, kept]).half
+                spread = expanded_of(view.at_cycles(name, kept), name, values[:, kept]).half
                 half = spread[index] * unit.factor
                 label = specimen if dash == "solid" else f"{specimen}, {name.split('_')[0]}"
                 data.append(
