@@ -468,6 +468,19 @@ class _OpenCord(NamedTuple):
             size[:, names.index(name), place + 1] = own
         return size
 
+    def between(self, at: Floats, size: Floats) -> Floats:
+        """What curves of these sizes are above the own at strains, (n_trial or 1, n_strain)."""
+        # all of them pass through the points, so that the intervals join
+        apart = np.reshape([one for _, one in self.apart], (-1, self.strain.size))
+        interval = np.minimum(np.arange(self.strain.size) // _BETWEEN + 1, self.point.size - 1)
+        curve = np.einsum("tcs,cs->ts", size[:, :, interval], apart)
+        place = np.searchsorted(self.strain[1:-1], at)
+        # nothing beyond the first point and the last
+        share = np.clip((at - self.strain[place]) / np.diff(self.strain)[place], 0.0, 1.0)
+        rise = np.diff(curve, axis=1)
+        trial = np.arange(len(size))[:, None]
+        return np.asarray(curve[trial, place] + share * rise[trial, place])
+
 
 def _open_cord_of(points: CordCurve) -> _OpenCord:
     if points.strain.size < _LEAST_POINTS:
@@ -497,12 +510,7 @@ def _load_between_points(
     stretch = 1 + strain / numbers.free_share
     cord_stretch = cord_stretch_ratio(stretch, np.reshape(trials.wrap_angle, (-1, 1)))
     of_cord = (cord_stretch - 1) / numbers.strain_scale
-    interval = np.searchsorted(cord.point, of_cord)
-    trial = np.arange(len(size))[:, None]
-    above = np.zeros((len(size), strain.size))
-    for place, (_, apart) in enumerate(cord.apart):
-        weight = size[trial, place, interval]
-        above += weight * np.interp(of_cord, cord.strain, apart, left=0.0, right=0.0)
+    above = cord.between(of_cord, size)
     cords = loads_at(numbers, stretch, cord_stretch, numbers.load_scale * above)
     return cords.cord_axial_load if load == "tension" else cords.fill_pressure
 
