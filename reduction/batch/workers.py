@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import gc
 import multiprocessing
 import os
@@ -36,6 +37,10 @@ _AT_WORK = threading.Lock()
 
 # whether this worker is to end once what it sends is sent
 _TO_END = threading.Event()
+
+_OF_MALLOC = {-3: 1 << 25, -1: 1 << 26, -2: 1 << 24}
+"""Bytes from which memory is the system's again, M_MMAP_THRESHOLD and M_TRIM_THRESHOLD of the GNU C
+library, and M_TOP_PAD, by which more is asked for."""
 
 _SENT = 1.0  # s, after which what a worker sends is sent
 
@@ -217,6 +222,18 @@ def _start(pool: ProcessPoolExecutor, number: int) -> None:
         ) from error
 
 
+def keep_freed_memory() -> None:
+    """Have the C library keep what arrays up to 32 MB leave free, and ask for 16 MB at a time.
+
+    It comes to the first by itself, after arrays of that size; a test is made of thousands of
+    smaller ones, which the system fills with zeros each time.
+    """
+    own = getattr(ctypes.CDLL(None), "mallopt", None) if os.name == "posix" else None
+    if own is not None:
+        for parameter, size in _OF_MALLOC.items():
+            own(parameter, size)
+
+
 def _begin(threads: int, threshold: tuple[int, int, int]) -> None:
     """Share the processors of the machine, before any library looks for them.
 
@@ -224,6 +241,7 @@ def _begin(threads: int, threshold: tuple[int, int, int]) -> None:
     """
     os.environ |= {"OMP_NUM_THREADS": str(threads), "OPENBLAS_NUM_THREADS": "1"}
     gc.set_threshold(*threshold)
+    keep_freed_memory()
     signal.signal(signal.SIGTERM, _end)
     threading.Thread(target=_end_with_parent, daemon=True).start()
 

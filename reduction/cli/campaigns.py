@@ -35,7 +35,7 @@ from reduction.batch.campaign_status import (
 )
 from reduction.batch.finished_run import finished_run, keep_finished
 from reduction.batch.run_lock import run_lock
-from reduction.batch.workers import Workers, local_workers
+from reduction.batch.workers import Workers, keep_freed_memory, local_workers
 from reduction.cli.output import CommandOutput
 from reduction.cli.progress import campaign_progress
 from reduction.record.errors import ArchiveError, SettingsError
@@ -436,6 +436,7 @@ def run_campaign(
     from reduction.archive.open import ReadOnce
     from reduction.batch.run_campaign import run_campaign as run_tests
 
+    keep_freed_memory()
     opener = ReadOnce()
     with (
         _chosen_workers(jobs, scheduler) as workers,

@@ -2,6 +2,7 @@
 
 import os
 import pickle
+import platform
 import subprocess
 import sys
 import time
@@ -319,3 +320,26 @@ def test_an_error_goes_to_another_process_whole(error, way):
     again = way.loads(way.dumps(error))
     assert type(again) is type(error) and str(again) == str(error)
     assert again.args == error.args and again.facts == error.facts
+
+
+_FAULTS = """
+import resource, sys
+import numpy as np
+from reduction.batch.workers import keep_freed_memory
+if sys.argv[1] == "kept":
+    keep_freed_memory()
+for _ in range(3):
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
+    np.ones(500_000) + np.ones(500_000)
+print(resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before)
+"""
+
+
+@pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="others have no such choice")
+def test_memory_that_was_freed_is_taken_again_without_the_system():
+    given, kept = (
+        int(subprocess.check_output([sys.executable, "-c", _FAULTS, how]))
+        for how in ("given back", "kept")
+    )
+    pages = 500_000 * 8 // 4096
+    assert kept < pages / 2 < given
