@@ -525,12 +525,16 @@ def _line_of_loop(
         default=0,
     ).astype(np.int8)
     values = _solve(stored, lost, inputs, reason)
-    table = sensitivities(stored, lost, np.where(reason == 0, rest, np.nan))
+    # E' and E'' feel no K_0; of the rest nothing is known where nothing is stated, as of draws
+    felt = np.full((len(OUTPUTS), len(relative), *[1] * rest.ndim), np.nan)
+    felt[:2, -1] = 0.0
     # an input that a parameter does not feel need not have its uncertainty stated;
     # K_0 is the last input of either table
     random, shared, both = {}, {}, {}
     with np.errstate(invalid="ignore", over="ignore"):
-        felt = np.where(table == 0, 0.0, table * relative)
+        if not np.isnan(relative).all():
+            table = sensitivities(stored, lost, np.where(reason == 0, rest, np.nan))
+            felt = np.where(table == 0, 0.0, table * relative)
         crossed = 2 * np.asarray(correlation) * felt[:, 0] * felt[:, 2]
         # differences of nearly equal terms may fall a rounding error below zero
         random_part = np.sqrt(np.maximum((felt[:, :-1] ** 2).sum(axis=1) + crossed, 0))
