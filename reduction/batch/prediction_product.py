@@ -33,7 +33,9 @@ from reduction.record.measurement import Integers, Origin, Source, Step
 from reduction.record.notes import Note, note
 
 
-def write_predictions(campaign: Campaign, folder: Path, *, command: str) -> list[PartStatus]:
+def write_predictions(
+    campaign: Campaign, folder: Path, *, command: str, opener: Opener
+) -> list[PartStatus]:
     """Predict the hoses of a campaign, and write them as one archive."""
     hoses, statuses = [], []
     for plan in campaign.hoses.values():
@@ -55,6 +57,7 @@ def write_predictions(campaign: Campaign, folder: Path, *, command: str) -> list
             attributes=campaign.attributes,
             source=hash_source(campaign.path, campaign.path.name),
             command=command,
+            opener=opener,
         )
     return statuses
 
@@ -67,12 +70,13 @@ def write_hoses(
     attributes: Mapping[str, str],
     source: Source,
     command: str,
+    opener: Opener = reading,
 ) -> None:
     """Write predicted hoses as one archive."""
     dataset = hoses_dataset(
         hoses, campaign_id=campaign_id, attributes=attributes, source=source, command=command
     )
-    write_archive(dataset, path)
+    keep_written(opener, path, as_kept(write_archive(dataset, path)))
 
 
 def hoses_dataset(

@@ -245,7 +245,9 @@ def results_found(campaign: Campaign) -> dict[str, Any] | None:
     }
 
 
-def _write_outcomes(campaign: Campaign, folder: Path, *, command: str) -> Path | None:
+def _write_outcomes(
+    campaign: Campaign, folder: Path, *, command: str, opener: Opener
+) -> Path | None:
     """Write the outcomes of a campaign."""
     if campaign.results is None:
         return None
@@ -265,7 +267,7 @@ def _write_outcomes(campaign: Campaign, folder: Path, *, command: str) -> Path |
             command=command,
         ),
     )
-    write_archive(dataset, path)
+    keep_written(opener, path, as_kept(write_archive(dataset, path)))
     return path
 
 
@@ -542,12 +544,12 @@ def _write_parts(
         command=command,
         opener=opener,
     )
-    _write_outcomes(campaign, folder, command=command)
+    _write_outcomes(campaign, folder, command=command, opener=opener)
     lengths = _write_change_in_length(
         campaign, folder, surveys, models=lambda survey: basis(survey).models,
         failed=failed, waiting=waiting, command=command, opener=opener,
     )  # fmt: skip
-    parts["hoses"] = write_predictions(campaign, folder, command=command)
+    parts["hoses"] = write_predictions(campaign, folder, command=command, opener=opener)
     parts["comparisons"] = write_comparisons(
         campaign, folder, failed=failed, waiting=waiting, command=command, opener=opener
     )

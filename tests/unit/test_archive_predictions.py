@@ -18,15 +18,18 @@ from predicted_hoses import (
 )
 from rulesofcf import held_against_cf
 
+from reduction.archive import open as opening
 from reduction.archive.campaign_products import EVENTS
-from reduction.archive.open import open_archive
+from reduction.archive.open import ReadOnce, open_archive
 from reduction.archive.write import write_archive
+from reduction.batch.prediction_product import write_hoses
 from reduction.prediction.cord_curve import CordCurve
 from reduction.prediction.hose_prediction import _LayerResponse
 from reduction.prediction.hose_product import HosePrediction
 from reduction.quantities.flags import HOSE_STATES
 from reduction.quantities.names import PREDICTION_SCHEMA
 from reduction.record.errors import ArchiveError
+from reduction.record.measurement import Source
 
 SHORT_CORD = CordCurve(np.array([0.0, 0.2]), np.array([0.0, 130.0]))
 
@@ -49,6 +52,19 @@ def path(hoses, tmp_path_factory):
 def archive(path):
     with open_archive(path) as data:
         yield data.load()
+
+
+def test_what_was_just_written_is_given_without_the_file_being_read(hoses, tmp_path, monkeypatch):
+    path, opener = tmp_path / "predictions.nc", ReadOnce()
+    source = Source("campaign.toml", "0" * 64, 1)
+    write_hoses(
+        hoses, path, campaign_id="a", attributes={}, source=source, command="run", opener=opener
+    )
+    with open_archive(path) as on_disk:
+        monkeypatch.delattr(opening, "reading")
+        with opener(path) as kept:
+            assert kept.identical(on_disk)
+            assert list(kept.variables) == list(on_disk.variables)
 
 
 def test_every_response_comes_back_at_every_strain(archive, hoses):
