@@ -31,8 +31,6 @@ PLANTED = (
      "the minimum tension of run R05 falls below zero"),
     ("nylon-synthetic", "experiment nylon", "the same, in the surfaces",
      "R05: the line goes slack in every cycle"),
-    ("nylon-synthetic", "R11", "mean strain that creeps by 0.2 %, beside the smallest loop",
-     "due to drift of the cycles"),
     ("hose-synthetic", "comparison H64-dynamic", "cords that carry 1.4 times their slow load",
      "the prediction is below the test"),
     ("hose-synthetic", "comparison H68-dynamic", "cords that carry 1.4 times their slow load",
