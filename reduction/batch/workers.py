@@ -38,7 +38,7 @@ _AT_WORK = threading.Lock()
 # whether this worker is to end once what it sends is sent
 _TO_END = threading.Event()
 
-_OF_MALLOC = {-3: 1 << 25, -1: 1 << 26, -2: 1 << 24}
+_OF_MALLOC = {-3: 1 << 25, -1: 1 << 25, -2: 1 << 22}
 """Bytes from which memory is the system's again, M_MMAP_THRESHOLD and M_TRIM_THRESHOLD of the GNU C
 library, and M_TOP_PAD, by which more is asked for."""
 
@@ -223,7 +223,7 @@ def _start(pool: ProcessPoolExecutor, number: int) -> None:
 
 
 def keep_freed_memory() -> None:
-    """Have the C library keep what arrays up to 32 MB leave free, and ask for 16 MB at a time.
+    """Have the C library keep what arrays up to 32 MB leave free, and ask for 4 MB at a time.
 
     It comes to the first by itself, after arrays of that size; a test is made of thousands of
     smaller ones, which the system fills with zeros each time.

@@ -436,12 +436,13 @@ def run_campaign(
     from reduction.archive.open import ReadOnce
     from reduction.batch.run_campaign import run_campaign as run_tests
 
-    keep_freed_memory()
     opener = ReadOnce()
     with (
         _chosen_workers(jobs, scheduler) as workers,
         campaign_progress(output) as progress,
     ):
+        if workers is None:  # beside workers this process holds the pages of many tests
+            keep_freed_memory()
         if scheduler is not None:
             # the workers have working folders of their own
             campaign = replace(campaign, path=campaign.path.absolute())
