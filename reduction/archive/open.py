@@ -479,6 +479,7 @@ def _opened(path: Path, chunks: Chunks | None = None) -> xr.Dataset:
 
 
 def _label_of(name: Hashable, variable: xr.Variable) -> xr.Variable:
+    """Give the labels of a dimension as an index, and any other coordinate as it is."""
     if variable.dims != (name,):
         return variable
     return variable_of(

@@ -257,7 +257,7 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         lambda growth, effect: (
             f"the slack length grows by {1e3 * growth:.0f} mm ({100 * effect:.1f} %) from the first"
             " test to the last (permanent set, or a splice that slipped); strain refers to the"
-            " mean slack length, and the intervals include that a test had another"
+            " mean slack length, and the intervals allow for another length in each test"
         ),
     ),
     "marks-of-failed-tests": (
@@ -701,7 +701,7 @@ _OF_MODULI: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             + ("" if excess != excess else
                f": from there on, and in later tests without marks of their own, strain is at least"
                f" {100 * excess:.1f} percentage points too large ({effect:.1%} of the mean strain),"
-               " and the intervals include three times that")
+               " and the intervals allow for three times that")
             + ". Read the marks after the test, or use the cycles before the slip"
         ),
     ),
@@ -712,7 +712,7 @@ _OF_MODULI: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             " marks were read in it"
             + ("" if excess != excess else
                f": strain is at least {100 * excess:.1f} percentage points too large"
-               f" ({effect:.1%} of the mean strain), and the intervals include three times that")
+               f" ({effect:.1%} of the mean strain), and the intervals allow for three times that")
             + ". Read marks in this test"
         ),
     ),
@@ -1358,7 +1358,7 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             f" {last:.4g} N over the cycles, "
             + (
                 f"and the amplitude of tension {'grows' if grows > 0 else 'falls'} by"
-                f" {abs(grows):.4g} N with it: the cycles are not of one level."
+                f" {abs(grows):.4g} N with it: the cycles are not at one level."
                 if grows
                 else "though the machine drives the load"
                 if is_of_load
