@@ -872,6 +872,13 @@ _OF_HOLDS: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             )
         ),
     ),
+    "hold-begins-with-jerk": (
+        "warning",
+        "tension dips from {before:.4g} to {lowest:.4g} N as the crosshead stops, and swings: the"
+        " crosshead stops with a jerk, and mass between the specimen and the load cell goes on."
+        " {settled:.2g} s are left out. The initial tension is that before the dip, with an"
+        " uncertainty that allows for {after:.4g} N, to which the readings after it lead back",
+    ),
     "prony-misses-ramp-end": (
         "refusal",
         "Prony series not given: it yields {modelled:.4g} N at the end of the ramp, where the log"

@@ -294,6 +294,29 @@ def test_a_load_that_is_a_little_late_is_covered_or_refused(time_constant):
         assert abs(hold.hold_initial_tension - AT_RAMP_END) < 2 * spread
 
 
+@pytest.mark.parametrize("depth", [10.0, 40.0, 150.0])
+@pytest.mark.parametrize("decay", [0.15, 0.3])
+def test_a_crosshead_that_stops_with_a_jerk_does_not_hide_the_hold(depth, decay):
+    time, position, tension = record()
+    after = np.clip(time - 25, 0, None)
+    swing = np.exp(-after / decay) * np.cos(2 * np.pi * after / 0.8)
+    (hold,) = reduce(time, position, tension - np.where(time < 25, 0.0, depth * swing))
+    assert {one.code for one in hold.refusals} <= {"no-prony-series"}  # it rings
+    assert "hold-begins-with-jerk" in [one.code for one in hold.notes]
+    spread = hold.hold_initial_tension_standard_uncertainty
+    assert (
+        abs(hold.hold_initial_tension - AT_RAMP_END)
+        < 2 * spread
+        < max(0.03 * AT_RAMP_END, depth / 4)
+    )
+    at_end = float(prony_tension([300.0], long_time_tension=325.0, ramp_duration=5.0, **TERMS)[0])
+    off = hold.relaxation_drop - (1 - at_end / AT_RAMP_END)
+    assert abs(off) < 2 * hold.relaxation_drop_standard_uncertainty
+    truth = prony_tension(hold.times, long_time_tension=325.0, ramp_duration=5.0, **TERMS)
+    known = np.isfinite(hold.tension_at_time)
+    np.testing.assert_allclose(hold.tension_at_time[known], truth[known], rtol=0.01)
+
+
 def test_tension_at_stated_times_carries_the_delay_of_a_late_load():
     (prompt,), (delayed,) = (
         reduce(*record()[:2], one) for one in (record()[2], late(record()[2], 1.0))

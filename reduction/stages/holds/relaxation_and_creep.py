@@ -611,9 +611,9 @@ class Hold:
         Range of position that was allowed inside the standstill. [m]
     slack_tension : float
         Tension at or below which the specimen is slack. [N]
-    logged_peak, earlier_peak : float
-        Greatest reading of tension beside the end of the ramp, and in its last half before
-        that; NaN where the ramp does not add tension. [N]
+    logged_peak, ramp_peak, earlier_peak : float
+        Greatest reading of tension beside the end of the ramp, of these until it ends, and in its
+        last half before these; NaN where the ramp does not add tension. [N]
     ramp_leads_to : float
         Tension to which the last readings before the end of the ramp lead, at the length where it
         ends; NaN where it is not known. [N]
@@ -634,6 +634,7 @@ class Hold:
     position_tolerance: float
     slack_tension: float = 0.0
     logged_peak: float = float("nan")
+    ramp_peak: float = float("nan")
     earlier_peak: float = float("nan")
     ramp_leads_to: float = float("nan")
     n_logged: int = 0
@@ -766,11 +767,23 @@ def _hold_ends(hold: Hold) -> _Ends:
     # of a piece that has broken the ramp says nothing
     if SIGNIFICANT * hold.tension_noise < led_to < first.value:
         u_initial = float(np.hypot(u_initial, led_to / np.sqrt(3)))
-    drop = float(_relaxation_drop(first.value, final))
-    uncertainty = float(np.hypot(u_final, (1 - drop) * u_initial) / first.value)
+    return _ends_of(first.value, u_initial, final, u_final, first.n_samples, n_final, late)
+
+
+def _ends_of(
+    initial: float,
+    u_initial: float,
+    final: float,
+    u_final: float,
+    n_initial: int,
+    n_final: int,
+    late: _LateLoad | None = None,
+) -> _Ends:
+    """Tension at both ends and what is lost between them, from the two and their uncertainties."""
+    drop = float(_relaxation_drop(initial, final))
+    uncertainty = float(np.hypot(u_final, (1 - drop) * u_initial) / initial)
     known = uncertainty if drop == drop else np.nan
-    counts = first.n_samples, n_final
-    return _Ends(first.value, final, drop, known, u_initial, u_final, *counts, late)
+    return _Ends(initial, final, drop, known, u_initial, u_final, n_initial, n_final, late)
 
 
 def _at_last(hold: Hold, n_samples: int) -> tuple[float, float]:
@@ -813,6 +826,61 @@ def _late_load(hold: Hold, initial: float) -> _LateLoad | None:
         return None
     return _LateLoad(rise, float(blocks.value[at]), float(blocks.elapsed[at]))
 
+
+def _past_jerk(hold: Hold, ends: _Ends) -> tuple[Hold, _Ends]:
+    """The hold after the swing of a crosshead that stops with a jerk, and its ends.
+
+    Mass between specimen and load cell goes on when the crosshead stops: the load dips below what
+    it was on the ramp, comes back and swings.  A load that lags was never higher before.  The
+    tension at the end of the ramp is that to which the ramp leads, known to the difference from
+    that to which the hold leads back after the swing.
+
+    Examples
+    --------
+    >>> t = np.linspace(0, 100, 2001)
+    >>> ramp = _Ramp(-10.0, 0.0, -5.0, 10.0, 0.01, 600.0)
+    >>> load = 300 * (t + 1) ** -0.05 - 50 * np.exp(-t / 0.3) * np.cos(2 * np.pi * t / 0.8)
+    >>> hold = Hold(t, 0 * t, load, 0 * t, 0.0, ramp, 0.01, logged_peak=314, ramp_peak=299)
+    >>> swinging = _ends_of(260, 2, 238, 0.1, 10, 100, _LateLoad(54, 314, 0.4))
+    >>> kept, ends = _past_jerk(hold, swinging)
+    >>> print(kept.time[0], ends.initial, abs(ends.initial - 300) < 2 * ends.initial_uncertainty)
+    1.6 299 True
+    """
+    late = ends.late
+    if late is None:
+        return hold, ends
+    above = hold.ramp_peak - ends.initial
+    begin = int(np.searchsorted(shifted(hold.time, hold.ramp_end_time), _SWINGS * late.delay))
+    if not above > SIGNIFICANT * hold.tension_noise + late.rise / 4:
+        return hold, ends
+    if not begin < hold.time.size // 2:
+        return hold, ends
+    kept = replace(
+        hold,
+        **{name: getattr(hold, name)[begin:] for name in ("time", "position", "tension", "strain")},
+        logged_peak=np.nan,
+        ramp_leads_to=np.nan,
+    )
+    after = _hold_ends(kept)
+    # readings a moment apart lead anywhere
+    is_led = 1 <= hold.ramp_leads_to / hold.ramp_peak < 1 + LARGEST_DISAGREEMENT
+    initial = hold.ramp_leads_to if is_led else hold.ramp_peak
+    unsure = np.hypot(after.initial_uncertainty, (initial - after.initial) / np.sqrt(3))
+    hold.notes.append(
+        note(
+            "hold-begins-with-jerk",
+            before=initial,
+            lowest=float(hold.tension[:begin].min()),
+            settled=_SWINGS * late.delay,
+            after=after.initial,
+        )
+    )
+    at_end = after.final, after.final_uncertainty
+    counts = after.n_initial, after.n_final
+    return kept, _ends_of(initial, float(unsure), *at_end, *counts, after.late)
+
+
+_SWINGS = 4.0  # times from the stop to the first peak after it: two swings
 
 _LATE_LEAST = 0.003  # of the tension: a ramp rounds its corner
 
@@ -1121,8 +1189,8 @@ def select_hold(
         last -= seconds.size - n_held
         seconds, place, load, stretch = (one[:n_held] for one in (seconds, place, load, stretch))
     ramp = _ramp_before(*(one[begin : first + 1] for one in (time, moved, answer)), band=band)
-    earlier, peak = (
-        (np.nan, np.nan) if ramp is None else _logged_peaks(time, tension, ramp, first, last)
+    earlier, on_ramp, peak = (
+        (np.nan,) * 3 if ramp is None else _logged_peaks(time, tension, ramp, first, last)
     )
     leads_to = np.nan
     if ramp is not None and standstills.tension_tolerance is None and place.size:
@@ -1137,6 +1205,7 @@ def select_hold(
         position_tolerance=standstills.position_tolerance,
         slack_tension=standstills.slack_tension,
         logged_peak=peak,
+        ramp_peak=on_ramp,
         earlier_peak=earlier,
         ramp_leads_to=leads_to,
         n_logged=last + 1 - first,
@@ -1212,25 +1281,31 @@ _FEWEST_ON_RAMP = 3  # readings, of which the first may not be on it
 
 def _logged_peaks(
     time: Floats, tension: Floats, ramp: _Ramp, first: int, last: int
-) -> tuple[float, float]:
-    """Greatest reading of tension before the end of a ramp, and beside it.
+) -> tuple[float, float, float]:
+    """Greatest reading of tension long before the end of a ramp, just before it, and beside it.
 
     Beside it is within a twentieth of the ramp and five samples; NaN where it adds no tension.
     """
     beside = _BESIDE * ramp.length
     clock = time[: last + 1]
-    begin, centre, low, high = np.searchsorted(
+    begin, centre, low, end, high = np.searchsorted(
         clock,
-        [ramp.start_time, ramp.centre_time, ramp.end_time - beside, ramp.end_time + beside],
-    )
+        [ramp.start_time, ramp.centre_time, ramp.end_time - beside, ramp.end_time,
+         ramp.end_time + beside],
+    )  # fmt: skip
     low = max(min(int(low), first - _SAMPLES_BESIDE), int(begin))
     high = min(max(int(high), first + _SAMPLES_BESIDE), last) + 1
-    near, before = (
-        one[np.isfinite(one)] for one in (tension[low:high], tension[int(centre) : low])
+    before, on_ramp, near = (
+        one[np.isfinite(one)]
+        for one in (tension[int(centre) : low], tension[low : int(end)], tension[low:high])
     )
     if not near.size or not near[-1] > tension[begin]:
-        return float("nan"), float("nan")
-    return float(np.max(before)) if before.size else float("nan"), float(np.max(near))
+        return (float("nan"),) * 3
+    return _greatest(before), _greatest(on_ramp), _greatest(near)
+
+
+def _greatest(values: Floats) -> float:
+    return float(np.max(values)) if values.size else float("nan")
 
 
 _BESIDE, _SAMPLES_BESIDE = 0.05, 5
@@ -1409,6 +1484,8 @@ def _result(
         hold.refusals.append(note("hold-empty", n_samples=hold.time.size))
     else:
         ends = _hold_ends(hold)
+        if kind == "relaxation":
+            hold, ends = _past_jerk(hold, ends)
         hold.made.append(
             f"initial tension is that of a line through the first {ends.n_initial} samples at the "
             f"end of the ramp, final tension that of a line over the logarithm of time through the "
