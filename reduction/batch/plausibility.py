@@ -23,6 +23,7 @@ from reduction.prediction.hose_comparison import loading_of
 from reduction.prediction.hose_product import HoseDesign
 from reduction.prediction.hose_tension import predict_hose
 from reduction.quantities.units import Dimension, scale_to_si
+from reduction.readers.layout import Layout
 from reduction.record.errors import ReductionError, SettingsError
 from reduction.record.measurement import Floats, Specimen
 from reduction.record.notes import Note, note
@@ -125,7 +126,7 @@ def implausible(
             notes += _of_specimen(campaign, survey, campaign.specimens[name], model)
         notes += _of_statements(campaign, survey, models)
         notes += _of_columns(campaign, survey)
-    for test, one in _of_pairs(read, models):
+    for test, one in _of_pairs(campaign, read, models):
         found[test].append(one)
     for plan in campaign.experiments.values():
         for test, one in _off_plan(campaign, plan, read):
@@ -411,11 +412,23 @@ def _of_columns(campaign: Campaign, survey: Survey) -> Iterator[Note]:
             yield note("column-of-another", name, column=column, other=others[0])
 
 
-def _of_pairs(surveys: Sequence[Survey], models: Models) -> Iterator[tuple[str, Note]]:
-    """Tests of one file, and tests of one specimen that pull unlike at one length."""
-    first: dict[tuple[str, ...], str] = {}
+def _load_columns(layout: Layout) -> tuple[str, ...]:
+    return tuple(
+        str(channel.column) for key, channel in layout.channels.items() if key.startswith("tension")
+    )
+
+
+def _of_pairs(
+    campaign: Campaign, surveys: Sequence[Survey], models: Models
+) -> Iterator[tuple[str, Note]]:
+    """Tests of one load, and tests of one specimen that pull unlike at one length."""
+    first: dict[tuple[tuple[str, ...], ...], str] = {}
     for survey in surveys:
-        logs = tuple(source.sha256 for source in survey.sources)
+        # several tests may stand side by side in one file
+        logs = tuple(
+            (source.sha256, *_load_columns(campaign.layouts[layout]))
+            for source, (_, layout) in zip(survey.sources, survey.plan.files, strict=False)
+        )
         known = first.setdefault(logs, survey.plan.log)
         if known != survey.plan.log:
             yield survey.plan.id, note("log-used-twice", other=known)

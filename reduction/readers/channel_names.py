@@ -54,7 +54,9 @@ _NAMES: dict[str, tuple[Dimension, tuple[str, ...], str]] = {
         "length",
         (r"crosshead|traverse|横梁|クロスヘッド", r"actuator|kolben|ram\b",
          r"^position|^pos$", _LENGTH,
-         r"stroke|ストローク|行程|행정|tool separation|einspannlänge", r"\bposition\b|\bpos\b",
+         r"stroke|ストローク|行程|행정|tool separation|einspannlänge",
+         r"grip.to.grip|\b(grip|jaw|clamp) separation", r"\btravel\b",
+         r"\bposition\b|\bpos\b",
          r"^machine$|^maschine$", _ELONGATION),
         _NOT_MEASURED,
     ),
@@ -295,6 +297,22 @@ def _are_one_signal(one: SeenColumn, other: SeenColumn) -> bool:
     return bool(np.corrcoef(a, b)[0, 1] > _SAME)
 
 
+def _side_by_side(columns: Sequence[SeenColumn]) -> int:
+    """How many tests a table has beside each other, each with a time of its own.
+
+    Examples
+    --------
+    >>> names = ["Time", "Force", "Stroke"] * 2
+    >>> _side_by_side([SeenColumn(k + 1, name) for k, name in enumerate(names)])
+    2
+    """
+    names = [_plain(column.name) for column in columns]
+    is_time = [any(re.search(word, name) for word in _NAMES["time"][1]) for name in names]
+    n_tests = names.count(names[is_time.index(True)]) if any(is_time) else 1
+    width = len(names) // n_tests
+    return n_tests if width > 1 and names == names[:width] * n_tests else 1
+
+
 def propose_channels(columns: Sequence[SeenColumn]) -> _Proposal:
     """Lines of a layout's ``channels`` table for the columns of a log."""
     lines: list[str] = []
@@ -302,6 +320,13 @@ def propose_channels(columns: Sequence[SeenColumn]) -> _Proposal:
     remarks: list[str] = []
     used: set[int] = set()
     chosen: dict[str, tuple[SeenColumn, str]] = {}
+    seen, n_tests = columns, _side_by_side(columns)
+    if n_tests > 1:
+        columns = columns[: len(columns) // n_tests]
+        remarks.append(
+            f"guess: {n_tests} tests stand side by side: this layout is that of the first, columns"
+            f" 1 to {len(columns)}; each of the others needs a layout with its own columns"
+        )
     first = columns[0] if columns and not any(column.name for column in columns) else None
     if first is not None and first.values.size > 1 and np.all(np.diff(first.values) > 0):
         unit = _unit(first, "time") or UNKNOWN
@@ -347,7 +372,7 @@ def propose_channels(columns: Sequence[SeenColumn]) -> _Proposal:
         if key == "crosshead_position" and not more:
             more, said = f', datum = "{UNKNOWN}"', ["unknown: whether the position is pin-to-pin or"
                                                    " a displacement (datum)"]  # fmt: skip
-        lines.append(_line(key, _reference(column, columns), unit, more))
+        lines.append(_line(key, _reference(column, seen), unit, more))
         keys.append(key)
         remarks += said
         if key == "crosshead_position":
@@ -364,7 +389,7 @@ def propose_channels(columns: Sequence[SeenColumn]) -> _Proposal:
             remarks.append(f"unknown: which column is {key}, if one is")
     lines += [
         f"# not used: column {column.number}{_described(column)}"
-        for column in columns
+        for column in seen
         if column.number not in used
     ]
     return _Proposal(tuple(lines), tuple(keys), tuple(remarks))

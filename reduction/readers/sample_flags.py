@@ -666,9 +666,12 @@ def flag_record(
     found = [*record.notes, *notes]
     first_lost = first_sample(no_stamp.__getitem__, 0, no_stamp.size, no_stamp)
     if first_lost is not None:
-        found.append(
-            note("rows-without-time", n_rows=count_samples(no_stamp), sample=first_lost + 1)
+        n_lost = count_samples(no_stamp)
+        hold_nothing = first_lost + n_lost == no_stamp.size and not any(
+            np.isfinite(one[first_lost:]).any() for one in (position, *record.tension)
         )
+        code = "rows-after-the-end" if hold_nothing else "rows-without-time"
+        found.append(note(code, n_rows=n_lost, sample=first_lost + 1))
     _check_usable(flagged)
     if clock_step:
         found.append(note("clock-in-steps", step=clock_step, every=timing.step))

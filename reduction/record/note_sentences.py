@@ -136,6 +136,11 @@ _OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "{n_rows} rows have no time, first at sample {sample}: their time is interpolated in even"
         " steps between the neighbouring rows, and their position is not used",
     ),
+    "rows-after-the-end": (
+        "note",
+        "the last {n_rows} rows, from sample {sample} on, have neither time, position nor load: the"
+        " log of this test ends before them",
+    ),
     "sampling-uneven": (
         "note",
         "the sampling rate is not constant: {n_uneven} of {n_steps} time steps differ by more than"

@@ -367,7 +367,8 @@ def _final_share(position: Floats, tension: Floats) -> Floats:
     """Tension of the last twentieth over the greatest, while the crosshead stays out; else NaN."""
     n_last = max(position.size // 20, 1)
     low, high = finite_extremes(position)
-    if not high > low or not np.nanmin(position[-n_last:]) > low + 0.7 * (high - low):
+    lowest = finite_extremes(position[-n_last:])[0]
+    if not low < low + 0.7 * (high - low) < lowest <= high:
         return np.full(tension.shape[0], np.nan)
     greatest = np.array([finite_extremes(one)[1] for one in tension])
     found = np.full(tension.shape[0], np.nan)

@@ -108,6 +108,19 @@ def test_missing_stamps_are_bridged_and_position_is_not_used_there():
     assert str(result.notes[0]).startswith("6 rows have no time, first at sample 1: ")
 
 
+def test_rows_that_hold_nothing_of_a_test_at_its_end_are_no_fault():
+    time, position, load = TIME.copy(), record().crosshead_position.copy(), 200 + 10 * WAVE
+    for series in (time, position, load):
+        series[900:] = np.nan
+    (first, *_) = flagged(record(time=time, position=position, load=load)).notes
+    assert (first.code, first.severity) == ("rows-after-the-end", "note")
+    assert first.numbers == {"n_rows": TIME.size - 900, "sample": 901}
+    # a load without time and position is no end
+    load[-1] = 1.0
+    (first, *_) = flagged(record(time=time, position=position, load=load)).notes
+    assert (first.code, first.severity) == ("rows-without-time", "warning")
+
+
 def test_a_gap_among_missing_stamps_is_seen():
     time = TIME.copy()
     time[500:] += 30.0

@@ -267,6 +267,26 @@ def test_an_elongation_in_millimetres_is_a_position_and_one_in_percent_a_strain(
         assert key in proposed(write(tmp_path, text))["channels"]
 
 
+def test_tests_side_by_side_are_not_the_specimens_of_one(tmp_path):
+    rows = "".join(f"{i},{2 * i},{i / 9}" + (f",{i},{3 * i},{i / 8}\n" if i < 6 else ",,,\n")
+                   for i in range(9))  # fmt: skip
+    names = "Time (s),Force (N),Stroke (mm)"
+    path = write(tmp_path, f"{names},{names}\n{rows}")
+    assert columns(proposed(path)) == {
+        "time": (1, "s"), "tension.1": (2, "N"), "crosshead_position": (3, "mm"),
+    }  # fmt: skip
+    assert any(
+        one.startswith("guess: 2 tests stand side by side") for one in sniff_layout(path).remarks
+    )
+
+
+@pytest.mark.parametrize("name", ["Grip to grip separation", "Standard travel"])
+def test_a_distance_of_grips_or_a_travel_is_the_position(tmp_path, name):
+    rows = "".join(f"{i},{50 + i},{i}\n" for i in range(9))
+    path = write(tmp_path, f"Time (s),{name} (mm),Standard force (N)\n{rows}")
+    assert columns(proposed(path))["crosshead_position"] == (f"{name} (mm)", "mm")
+
+
 def test_a_decimal_comma_that_may_part_thousands_is_a_guess(tmp_path):
     path = write(tmp_path, "a;b\n" + "".join(f"1,{i:03};2,{i:03}\n" for i in range(9)))
     assert any(
