@@ -222,7 +222,7 @@ def parts_of_cycles(
     if np.isnan(area).any():
         # a rope without a diameter has spring constants alone
         return {"loops": loops, "amplitude": amplitude}
-    trend = fit_peak_trend(loops, area=area, break_in_cycles=break_in)
+    trend = fit_peak_trend(loops, area=area, break_in_cycles=break_in, cycles=cycles)
     curves = _curves_of_cycles(
         strain, tension, cycles, loops, trend, names=record.specimens, area=area, settings=settings
     )

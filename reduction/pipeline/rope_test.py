@@ -337,8 +337,8 @@ def _lasted(
     cycles, counter = located.cycles, located.record.cycle_counter
     number = parted_in = None
     if cycles is not None:
-        if cycles.counted_by == "machine counter" and counter is not None:
-            number = counter[cycles.first]
+        if counter is not None:
+            number = cycles.count
         parted_in = _parted_in(located, tension, cycles, loops, settings.failure_share)
     return cycles_to_failure(
         loops,

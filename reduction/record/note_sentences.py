@@ -472,6 +472,17 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "counter-constant": (
         "note", "the machine's cycle counter never changes: reversals are counted instead",
     ),
+    "counter-changes-elsewhere": (
+        "note",
+        "the machine's counter does not change at the valleys: the cycles are those between the"
+        " reversals, with the machine's numbers",
+    ),
+    "cycles-in-gaps": (
+        "note",
+        "gaps of the log have room for {n_hidden} cycles beside the {n_cycles} that it holds:"
+        " slopes per decade of cycles count them, with an uncertainty that includes the slopes"
+        " without them. A cycle_counter in the layout settles it",
+    ),
     "counted-without-stroke": (
         "note", "{n_cycles} machine-counted cycles have no stroke, first machine cycle {first}",
     ),

@@ -843,8 +843,9 @@ def trend_and_step_contributions(
         of_each = _of_each(test, index, errors, model, cycles)
         if test.trend is not None:
             yield _of_trend(
-                test.loops, test.trend, index, of_each, errors, cycles.break_in_cycles, area
-            )
+                test.loops, test.trend, test.cycles.number, index, of_each, errors,
+                cycles.break_in_cycles, area,
+            )  # fmt: skip
         if step is not None and step.dynamic is not None and step.dynamic.n_cycles[index, 0] > 0:
             yield _of_dynamic(test.loops, step.dynamic, index, of_each, errors)
         if step is not None and step.bedding_in is not None:
@@ -947,6 +948,7 @@ def _of_series(loops: Loops, index: int, of_each: Contributions, name: str) -> F
 def _of_trend(
     loops: Loops,
     trend: PeakTrend,
+    number: Integers,
     index: int,
     of_each: Contributions,
     errors: InstrumentErrors,
@@ -963,12 +965,12 @@ def _of_trend(
     found = Contributions(
         of_each.component,
         {
-            "peak_tension_per_decade": slope_per_decade(peak[:, start:], first_cycle=start + 1)[0],
+            "peak_tension_per_decade": slope_per_decade(peak[:, start:], number=number[start:])[0],
             "dynamic_modulus_per_decade": slope_per_decade(
-                modulus[:, start:], first_cycle=start + 1
+                modulus[:, start:], number=number[start:]
             )[0],
             "mean_strain_per_decade": slope_per_decade(
-                strain[:, settled:], first_cycle=settled + 1
+                strain[:, settled:], number=number[settled:]
             )[0],
             "mean_strain_drift": strain[:, -n_ends:].mean(axis=1) - strain[:, :n_ends].mean(axis=1),
             "peak_tension_change": _of_change(loops.peak_tension[index], peak),

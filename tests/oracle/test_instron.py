@@ -56,7 +56,10 @@ def test_every_row_of_the_trends_is_a_cycle_with_the_machines_extremes(name):
     numbers = tracking["Total Cycles"].to_numpy()[cycles.first]
     assert numbers.tolist() == trends["Total Cycles"].tolist()
     printed = trends[["Position:Maximum (mm)", "Position:Minimum (mm)"]].to_numpy()
-    assert np.abs(extremes(tracking, cycles.first, cycles.last) - printed).max() <= HALF_DIGIT
+    # the sample that a cycle shares with the next is of the next count
+    shared = np.append(cycles.last[:-1] == cycles.first[1:], False)
+    found = extremes(tracking, cycles.first, cycles.last - shared)
+    assert np.abs(found - printed).max() <= HALF_DIGIT
 
 
 @pytest.mark.parametrize("name", TESTS)

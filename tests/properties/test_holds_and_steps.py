@@ -95,7 +95,7 @@ def test_a_mirrored_series_has_mirrored_steps(seed):
 @given(st.floats(-100, 100), st.floats(-1e3, 1e3), st.integers(1, 50))
 def test_a_line_in_the_logarithm_gives_its_slope(slope, level, first):
     number = np.arange(first, first + 60)
-    found, uncertainty = slope_per_decade([level + slope * np.log10(number)], first_cycle=first)
+    found, uncertainty = slope_per_decade([level + slope * np.log10(number)], number=number)
     assert found[0] == pytest.approx(slope, abs=1e-6)
     assert uncertainty[0] < 1e-6
 

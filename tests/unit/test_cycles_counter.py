@@ -1,10 +1,18 @@
 """Cycles by the machine's counter, whatever is missing in them."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 
 from reduction.record.errors import DataError
-from reduction.stages.cycles.cycle_search import _counted_cycles
+from reduction.record.settings import CycleSettings, PhaseSettings
+from reduction.stages.cycles import cycle_search
+from reduction.stages.standstills import find_standstills
+
+
+def _counted_cycles(counter, values):
+    return cycle_search._counted_cycles(np.arange(float(values.size)), values, counter)
 
 
 def test_branches_lie_between_the_extremes_of_the_counted_samples():
@@ -12,9 +20,59 @@ def test_branches_lie_between_the_extremes_of_the_counted_samples():
     position = np.array([2.0, 1, 0, 1, 2, 3, 2, 1, 0.5, 1, 2, 3, 2, 1])
     counter = np.array([1, 1, 1, 1, 1, 1, 1, 2, 2, 2, 2, 2, 2, 2])
     first, last, begin, end, number = _counted_cycles(counter, position)
-    assert (first.tolist(), last.tolist(), number.tolist()) == ([0, 7], [6, 13], [1, 2])
+    assert (first.tolist(), last.tolist(), number.tolist()) == ([0, 7], [7, 13], [1, 2])
     assert begin.tolist() == [[2, 5], [8, 11]]
-    assert end.tolist() == [[5, 6], [11, 13]]
+    assert end.tolist() == [[5, 7], [11, 13]]
+
+
+def test_a_cycle_ends_with_its_count_where_the_log_has_a_gap():
+    time = np.array([0.0, 1, 2, 3, 50, 51, 52, 53])
+    counter = np.array([1, 1, 1, 1, 20, 20, 20, 20])
+    first, last, *_ = cycle_search._counted_cycles(time, np.tile([0.0, 2, 1, 0.1], 2), counter)
+    assert (first.tolist(), last.tolist()) == ([0, 4], [3, 7])
+
+
+@pytest.mark.parametrize("late", [-3, 0, 3, 25, 50, 75])
+def test_a_cycle_is_a_period_wherever_in_it_the_machine_counts(late):
+    """Twelve cycles of 100 readings from valley to valley, after a ramp from slack."""
+    step = np.arange(1200)
+    approach = np.concatenate([np.zeros(300), np.linspace(0, 1, 100)])
+    position = np.concatenate([approach, 2 - np.cos(2 * np.pi * step / 100)])
+    position += 1e-4 * np.random.default_rng(0).standard_normal(position.size)
+    counter = np.concatenate([np.zeros(400, dtype=int), (step - late) // 100 + 4])
+    time = 0.1 * np.arange(position.size)
+    tension = [100 * position]
+    cycles = cycle_search.find_cycles(
+        time, position, tension,
+        find_standstills(time, position, tension, settings=PhaseSettings()),
+        settings=CycleSettings(waveform="sinusoidal"), cycle_counter=counter,
+    )  # fmt: skip
+    assert 11 <= cycles.n_cycles <= 12
+    span = cycles.last - cycles.first
+    assert np.abs(span[:-1] - 100).max() <= 3
+    assert np.abs(span[1:-1].mean() - 100) < 0.5
+    # the valley of each is at a multiple of 100 readings; a count that is late begins in it
+    nearest = np.round((cycles.first - 400) / 100).astype(int)
+    assert (cycles.number - nearest).tolist() == [4 - (late >= 50)] * cycles.n_cycles
+    assert "counter-differs" not in [one.code for one in cycles.notes]
+
+
+def test_numbers_go_on_over_gaps_of_the_log_that_hold_cycles():
+    """Five cycles each from the 1st, 100th and 1000th on, at 1 Hz, none counted by the machine."""
+    begin = np.array([1, 100, 1000])
+    time = (begin[:, None] - 1 + np.arange(0, 5, 0.02)).ravel()
+    position = 2 - np.cos(2 * np.pi * time)
+    standing = find_standstills(time, position, [100 * position], settings=PhaseSettings())
+    find = partial(
+        cycle_search.find_cycles, time, position, [100 * position], standing,
+        settings=CycleSettings(waveform="sinusoidal"),
+    )  # fmt: skip
+    cycles = find()
+    assert cycles.number[0] == 1 and not cycles.is_count_sure
+    assert np.abs(cycles.number - (np.round(time[cycles.first]) + 1)).max() <= 1
+    counted = find(cycle_counter=(time + 1).astype(int))
+    assert counted.is_count_sure
+    assert counted.number.tolist() == (np.round(time[counted.first]) + 1).tolist()
 
 
 def test_samples_before_the_first_count_are_outside():

@@ -435,7 +435,8 @@ def test_the_counter_of_the_machine_says_where_cycles_begin(twenty):
     assert cycles.counted_by == "machine counter"
     assert cycles.n_cycles == 20
     assert cycles.first.tolist() == (500 + 100 * np.arange(20)).tolist()
-    assert cycles.last.tolist() == (599 + 100 * np.arange(20)).tolist()
+    # of 10 s, at ten readings a second
+    assert cycles.last.tolist() == (600 + 100 * np.arange(20)).tolist()
     assert not any("machine" in note for note in map(str, cycles.notes))
 
 
@@ -470,8 +471,8 @@ def test_a_counter_that_never_changes_is_not_used(twenty):
 def test_branches_without_a_constant_rate_are_noted(twenty):
     time, position = twenty
     counter = np.where((time >= 50) & (time < 250), ((time - 50 + 1e-6) // 10 + 1), 0).astype(int)
-    position[(time >= 265) & (time < 269)] = np.nan
-    counter[(time >= 265) & (time < 269)] = 21
+    position[(time >= 265) & (time < 275)] = np.nan
+    counter[(time >= 265) & (time < 275)] = 21
     notes = tuple(map(str, find(time, position, counter=counter).notes))
     assert any(
         note.startswith("2 of 42 branches have no part at a constant rate") for note in notes

@@ -107,4 +107,4 @@ def test_areas_that_do_not_fit_are_refused():
 
 def test_cycles_count_from_one():
     with pytest.raises(DataError, match="cycles count from 1; found 0"):
-        slope_per_decade([[1.0, 2.0, 3.0]], first_cycle=0)
+        slope_per_decade([[1.0, 2.0, 3.0]], number=[0, 1, 2])

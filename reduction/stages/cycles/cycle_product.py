@@ -39,6 +39,10 @@ class Cycles:
         Smallest range of the control channel that makes a reversal. [m] or [N]
     counted_by : str
         ``reversals`` or ``machine counter``.
+    count : ndarray of int, shape (n_cycles,), or None
+        Number of each cycle, those included that the log lacks; None: 1, 2, 3, ...
+    is_count_sure : bool
+        False where gaps of the log may hold cycles, or none.
     notes : tuple of Note
         A count that differs from the plan, gaps of the record, ...
     made : tuple of str
@@ -55,6 +59,8 @@ class Cycles:
     is_in_trimmed_branch: Bools
     band: float
     counted_by: str = "reversals"
+    count: Integers | None = None
+    is_count_sure: bool = True
     notes: tuple[Note, ...] = ()
     made: tuple[str, ...] = ()
 
@@ -62,6 +68,11 @@ class Cycles:
     def n_cycles(self) -> int:
         """Number of whole cycles."""
         return int(self.first.shape[0])
+
+    @property
+    def number(self) -> Integers:
+        """Number of each cycle, those included that the log lacks; shape (n_cycles,)."""
+        return np.arange(1, self.n_cycles + 1) if self.count is None else self.count
 
     @property
     def longest(self) -> int:

@@ -360,7 +360,7 @@ def _changes_of_count(cycle_counter: Integers) -> Indices:
 
 
 def _counted_cycles(
-    cycle_counter: Integers, values: Floats
+    time: Floats, values: Floats, cycle_counter: Integers
 ) -> tuple[Indices, Indices, Indices, Indices, Integers]:
     """First and last sample, the turns, and the machine's number of every counted cycle.
 
@@ -369,22 +369,41 @@ def _counted_cycles(
     A machine changes its count at a phase of its own command, which the crosshead follows
     late, so that a count may begin a little before the valley; the cycle is as counted,
     and its extremes are those the machine prints, while its branches run between the
-    extremes.  Missing samples are passed over.
+    extremes.  It lasts until the first sample of the next count, unless the log has a gap between
+    them.  A count that changes after the valley begins at it, and one that an end of the log cuts
+    off is left out.  Missing samples are passed over.
 
     Examples
     --------
-    >>> counter = np.array([0, 1, 1, 1, 1, 2, 2, 2])
+    >>> counter = np.array([0, 1, 1, 1, 1, 2, 2, 2, 2])
     >>> first, last, begin, end, number = _counted_cycles(
-    ...     counter, np.array([9.0, 0, 1, 2, 1, 0, 3, 0]))
+    ...     np.arange(9.0), np.array([9.0, 0, 1, 2, 1, 0, 3, 2, 0]), counter)
     >>> print(first, last, begin.tolist(), end.tolist(), number)
-    [1 5] [4 7] [[1, 3], [5, 6]] [[3, 4], [6, 7]] [1 2]
+    [1 5] [5 8] [[1, 3], [5, 6]] [[3, 5], [6, 8]] [1 2]
     """
     change = _changes_of_count(cycle_counter)
-    first = np.concatenate([[0], change + 1])
-    last = np.concatenate([change, [cycle_counter.size - 1]])
-    counts = take_samples(cycle_counter, first)
+    step = take_samples(time, change + 1) - take_samples(time, change)
+    goes_on = step < _GOES_ON * median_step(time)
+    counts = take_samples(cycle_counter, np.concatenate([[0], change + 1]))
+    begin = change + 1
+    length = np.diff(begin, prepend=0, append=time.size)
+    reach = (np.minimum(length[:-1], length[1:]) * _LATE_COUNT).astype(np.intp)
+    # a count may change some samples after the valley
+    for row in np.flatnonzero(goes_on & (counts[:-1] > 0)):
+        before = values[begin[row] - reach[row] : begin[row] + 1]
+        if np.isfinite(before).any():
+            begin[row] -= before.size - 1 - int(np.nanargmin(before))
+    first = np.concatenate([[0], begin])
+    last = np.concatenate([np.where(goes_on, begin, begin - 1), [time.size - 1]])
     _check_rises(counts)
+    length = last - first
+    is_cut = np.zeros(first.size, dtype=np.bool_)
     counted = counts > 0
+    is_cut[1:] |= ~goes_on | ~counted[:-1]
+    is_cut[:-1] |= ~goes_on | ~counted[1:]
+    is_cut[[0, -1]] = True
+    usual = np.median(length[counted]) if counted.any() else 0
+    counted &= ~(is_cut & (length < _WHOLE_COUNT * usual))
     first, last = first[counted], last[counted]
     branch_first = np.stack([first, first], axis=1)
     branch_last = np.stack([last, last], axis=1)
@@ -401,6 +420,82 @@ def _counted_cycles(
         if i % _CYCLES_READ == 0:
             release_pages(values)
     return first, last, branch_first, branch_last, counts[counted]
+
+
+_GOES_ON = 3.0  # steps of the log
+
+_LATE_COUNT = 0.1  # of a cycle
+
+_WHOLE_COUNT = 0.8  # of the usual length: what is cut off by an end of the log is shorter
+
+
+_NEAR_VALLEY = 0.15
+"""Share of a stroke above the valley by which a count may change: a crosshead late by .8 rad."""
+
+
+def _change_at_valleys(
+    values: Floats, first: Indices, last: Indices, branch_first: Indices, branch_last: Indices
+) -> bool:
+    """Whether the machine counts where cycles begin: most of them, of those with a stroke."""
+    begin, peak, end = (take_samples(values, at) for at in (first, branch_first[:, 1], last))
+    valley = np.fmin(
+        take_samples(values, branch_first[:, 0]), take_samples(values, branch_last[:, 1])
+    )
+    with np.errstate(divide="ignore", invalid="ignore"):
+        above = (np.stack([begin, end]) - valley) / (peak - valley)
+    above = above[:, np.isfinite(above).all(axis=0)]
+    return bool(above.size) and float(np.median(above, axis=1).max()) < _NEAR_VALLEY
+
+
+def _number_of_cycles(cycle_counter: Integers, first: Indices, last: Indices) -> Integers:
+    """The machine's number of cycles from valley to valley, wherever in them its count changes.
+
+    It is read half a cycle from there.
+
+    Examples
+    --------
+    >>> counter = np.array([1, 2, 2, 2, 2, 3, 3, 3, 3])
+    >>> _number_of_cycles(counter, np.array([0, 4]), np.array([4, 8])).tolist()
+    [2, 3]
+    """
+    change = _changes_of_count(cycle_counter) + 1
+    cycle = np.searchsorted(first, change, side="right") - 1
+    inside = (cycle >= 0) & (change <= last[cycle])
+    share = (change - first[cycle])[inside] / (last - first)[cycle[inside]]
+    turn = np.exp(2j * np.pi * share).sum()
+    away = (np.angle(turn) / (2 * np.pi) + 0.5) % 1 if inside.any() else 0.5
+    return take_samples(cycle_counter, first + (away * (last - first)).astype(np.intp))
+
+
+def _count_over_gaps(
+    time: Floats, first: Indices, last: Indices, standstills: Standstills
+) -> Integers | None:
+    """Number of each cycle with those that would fit into gaps of the log; None without any.
+
+    A logger that stores a few cycles in a hundred leaves gaps while the machine goes on; one
+    that is off while it rests leaves them in a standstill, where no cycle fits.
+
+    Examples
+    --------
+    >>> none = np.empty(0, dtype=np.intp)
+    >>> rest = Standstills(*[none] * 4, *[np.empty(0)] * 1, np.empty((1, 0)), none, 0.01, 0.0)
+    >>> time = np.array([0.0, 1, 2, 3, 4, 50, 51, 52])
+    >>> _count_over_gaps(time, np.array([0, 2, 5]), np.array([2, 4, 7]), rest)
+    array([ 1,  2, 26])
+    """
+    period = float(np.median(take_samples(time, last) - take_samples(time, first)))
+    between = take_samples(time, first[1:]) - take_samples(time, last[:-1])
+    hidden = np.zeros(first.size, dtype=np.int64)
+    for row in np.flatnonzero(between > period / 2):
+        span = slice(int(last[row]), int(first[row + 1]) + 1)
+        steps = np.diff(time[span])
+        gap = span.start + int(np.argmax(steps))
+        rests = (standstills.first <= gap + 1) & (gap <= standstills.last)
+        if steps[gap - span.start] > period / 2 and not rests.any():
+            hidden[row + 1] = round(float(between[row]) / period)
+    if not hidden.any():
+        return None
+    return np.arange(1, first.size + 1) + np.cumsum(hidden)
 
 
 def _check_rises(counts: Integers) -> None:
@@ -973,12 +1068,13 @@ def find_cycles(
     time, position, _ = as_same_shape(time=time, position=position, tension=tension[0])
     values = control_channel(position, tension, settings)
     made: tuple[str, ...] = ()
-    counter = cycle_counter
+    counter, counted = cycle_counter, None
     if counter is not None and not _changes_of_count(counter).size:
         counter = None
-    found, notes = _paired_cycles(
-        time, values, standstills, settings, is_counted=counter is not None
-    )
+    if counter is not None:
+        counted = _counted_cycles(time, values, counter)
+    as_counted = counted is not None and _change_at_valleys(values, *counted[:4])
+    found, notes = _paired_cycles(time, values, standstills, settings, is_counted=as_counted)
     reversals, band, jumps = found.reversals, found.band, found.jumps
     branch_first, branch_last, left_out = found.branch_first, found.branch_last, found.left_out
     if jumps.size:
@@ -990,11 +1086,12 @@ def find_cycles(
     n_unsteady = branch_first.shape[0] - (steady.stop - steady.start)
     first, last = branch_first[:, 0], branch_last[:, 1]
     counted_by = "reversals"
-    if counter is not None:
-        n_reversals = first.size
-        first, last, branch_first, branch_last, number = _counted_cycles(counter, values)
+    count = None
+    if counted is not None:
+        notes += _counter_notes(values, *counted[2:], first.size, band)
+    if counted is not None and as_counted:
+        first, last, branch_first, branch_last, count = counted
         counted_by = "machine counter"
-        notes += _counter_notes(number, values, first, branch_first, branch_last, n_reversals, band)
     else:
         made = found.made
         notes += found.notes
@@ -1008,7 +1105,10 @@ def find_cycles(
         if left_out.size:
             begins = float(time[left_out[0]])
             notes.append(note("cycles-of-two-amplitudes", n_cycles=left_out.size, time=begins))
-        if cycle_counter is not None:
+        if counter is not None:
+            notes.append(note("counter-changes-elsewhere"))
+            count = _number_of_cycles(counter, first, last)
+        elif cycle_counter is not None:
             notes.append(note("counter-constant"))
     if first.size == 0:
         raise DataError(
@@ -1019,6 +1119,12 @@ def find_cycles(
             hint=_hint(time, values),
         )
     notes += _refuse_coarse(time, first, branch_first[:, 1], last)
+    is_sure = count is not None and bool(np.all(np.diff(count) > 0))  # it may begin again with 1
+    if not is_sure:
+        count = _count_over_gaps(time, first, last, standstills)
+        if count is not None:
+            n_hidden = int(count[-1]) - count.size
+            notes.append(note("cycles-in-gaps", n_cycles=first.size, n_hidden=n_hidden))
     if first.size == 1:
         notes.append(note("one-cycle"))
     n_made = first.size + (n_unsteady if counted_by == "reversals" else 0)
@@ -1035,6 +1141,7 @@ def find_cycles(
     # branches in turn: a shared peak is the end of the ascending one, a valley the begin of it
     begin = branch_first.copy()
     begin[:, 1] += branch_first[:, 1] == branch_last[:, 0]
+    begin = np.minimum(begin, branch_last)  # of a count that ends with its peak
     return Cycles(
         first=first,
         last=last,
@@ -1048,6 +1155,8 @@ def find_cycles(
         ),
         band=float(band),
         counted_by=counted_by,
+        count=count,
+        is_count_sure=is_sure or count is None,
         notes=tuple(notes),
         made=made,
     )
@@ -1092,11 +1201,10 @@ def _refuse_coarse(time: Floats, first: Indices, leaves_peak: Indices, last: Ind
 
 
 def _counter_notes(
-    number: Integers,
     values: Floats,
-    first: Indices,
     branch_first: Indices,
     branch_last: Indices,
+    number: Integers,
     n_reversals: int,
     band: float,
 ) -> list[Note]:
@@ -1121,6 +1229,8 @@ def _counter_notes(
             )
         )
     moving = int((~still).sum())
-    if moving != n_reversals:
+    # a count is cut off where the log or a part of it begins and ends
+    n_cut = 2 * (1 + int((np.diff(number) != 1).sum()))
+    if not moving - n_cut <= n_reversals <= moving:
         notes.append(note("counter-differs", n_counted=moving, n_reversals=n_reversals))
     return notes

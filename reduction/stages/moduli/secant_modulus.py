@@ -28,6 +28,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -652,7 +653,20 @@ def compare_cycles(
 FEWEST_CYCLES = 3
 
 
-def slope_per_decade(values: ArrayLike, *, first_cycle: int = 1) -> tuple[Floats, Floats]:
+def _trend_of(values: Floats, start: int, *, cycles: Cycles | None) -> tuple[Floats, Floats]:
+    """Slope per decade from a cycle on, with what the cycles in gaps of the log may make of it."""
+    logged = np.arange(start + 1, values.shape[1] + 1)
+    number = logged if cycles is None else cycles.number[start:]
+    slope, uncertainty = slope_per_decade(values[:, start:], number=number)
+    if cycles is not None and not cycles.is_count_sure:
+        without, _ = slope_per_decade(values[:, start:], number=logged)
+        uncertainty = np.hypot(uncertainty, (without - slope) / np.sqrt(3))
+    return slope, uncertainty
+
+
+def slope_per_decade(
+    values: ArrayLike, *, number: ArrayLike | None = None
+) -> tuple[Floats, Floats]:
     """Slope of per-cycle values against log10 of the cycle number.
 
     Notes
@@ -667,10 +681,10 @@ def slope_per_decade(values: ArrayLike, *, first_cycle: int = 1) -> tuple[Floats
     >>> print(slope.round(6))
     [-20.]
     """
-    if first_cycle < 1:
-        raise DataError("cycles count from 1", found=str(first_cycle))
     series = np.atleast_2d(np.asarray(values, dtype=np.float64))
-    number = np.arange(first_cycle, first_cycle + series.shape[1], dtype=np.float64)
+    number = np.arange(1, series.shape[1] + 1) if number is None else np.asarray(number)
+    if number.size and not number.min() >= 1:
+        raise DataError("cycles count from 1", found=str(number.min()))
     slope, uncertainty = np.full((2, series.shape[0]), np.nan)
     for row, one in enumerate(series):
         known = np.isfinite(one)
@@ -764,7 +778,9 @@ def _change_of_ends(values: ArrayLike) -> tuple[Floats, Floats]:
         return last / first - 1, scatter / np.abs(first) * np.hypot(1.0, last / first)
 
 
-def fit_peak_trend(loops: Loops, *, area: ArrayLike, break_in_cycles: int = 0) -> PeakTrend:
+def fit_peak_trend(
+    loops: Loops, *, area: ArrayLike, break_in_cycles: int = 0, cycles: Cycles | None = None
+) -> PeakTrend:
     """Decay of the peak and change of the dynamic modulus over the cycles of a test.
 
     Parameters
@@ -775,6 +791,8 @@ def fit_peak_trend(loops: Loops, *, area: ArrayLike, break_in_cycles: int = 0) -
         Cross-section at zero tension; NaN where no diameter is known. [m2]
     break_in_cycles : int, optional
         Cycles left out of the slopes at the start. [1]
+    cycles : Cycles, optional
+        With their numbers, where the log lacks some; left out: 1, 2, 3, ...
 
     Returns
     -------
@@ -815,16 +833,15 @@ def fit_peak_trend(loops: Loops, *, area: ArrayLike, break_in_cycles: int = 0) -
         )
     as_positive("area", areas[np.isfinite(areas)])
     start = first_of_trend(peaks.shape[1], break_in_cycles)
-    peak_slope, peak_uncertainty = slope_per_decade(peaks[:, start:], first_cycle=start + 1)
-    modulus = np.atleast_2d(loops.apparent_spring_constant) / areas[:, None]
-    modulus_slope, modulus_uncertainty = slope_per_decade(modulus[:, start:], first_cycle=start + 1)
-    strain = np.atleast_2d(loops.mean_strain)
     settled = first_of_trend(peaks.shape[1], break_in_cycles, is_creep=True)
-    strain_slope, strain_uncertainty = slope_per_decade(
-        strain[:, settled:], first_cycle=settled + 1
-    )
+    modulus = np.atleast_2d(loops.apparent_spring_constant) / areas[:, None]
+    strain = np.atleast_2d(loops.mean_strain)
+    slope_of = partial(_trend_of, cycles=cycles)
+    peak_slope, peak_uncertainty = slope_of(peaks, start)
+    modulus_slope, modulus_uncertainty = slope_of(modulus, start)
+    strain_slope, strain_uncertainty = slope_of(strain, settled)
     if strain.shape[1] >= 2 * _LATER:
-        later, _ = slope_per_decade(strain[:, _LATER:], first_cycle=_LATER + 1)
+        later, _ = slope_of(strain, _LATER)
         strain_uncertainty = np.hypot(strain_uncertainty, (later - strain_slope) / 2)
     change, change_uncertainty = _change_of_ends(peaks)
     first_strain, last_strain, strain_scatter = _means_at_ends(strain)
