@@ -93,7 +93,7 @@ def cycle_values(cycles: Cycles, *, control: str) -> Values:
         rate: cycles.plateau_rate,
         band: np.array(cycles.band),
         "cycles_counted_by": np.array(cycles.counted_by),
-    }
+    } | ({} if cycles.count is None else {"cycle_number_in_test": cycles.count})
 
 
 def _with_uncertainty(product: Loops | AmplitudeSummary, prefix: str = "") -> Values:

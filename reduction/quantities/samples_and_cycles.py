@@ -547,6 +547,11 @@ OF_RECORD: tuple[Quantity, ...] = (
         ("cycle",),
         count("cycle_first_sample", "index in the record of the first sample of the cycle, from 0"),
         count("cycle_last_sample", "index in the record of the last sample of the cycle, from 0"),
+        count(
+            "cycle_number_in_test",
+            "number of the cycle in the test, with those that the log lacks",
+            tables=("cycles",),
+        ),
         group="cycles",
     ),
     *along(

@@ -31,7 +31,7 @@ def test_the_rich_test_fills_every_variable_that_a_log_can_have(rich_test, bare_
     # another datum, control, strain method or length than that of the examples
     alternatives = {
         "tension_band", "tension_rate", "measured_strain", "fill_pressure", "free_fraction",
-        "reference_position",
+        "reference_position", "cycle_number_in_test",
         "free_length_intercept", "free_length_slope", "splice_strain_ratio", "strain_gauge_length",
         "splice_offset", "splice_strain_cubic", "splice_strain_curvature", "strain_reference_tension",
         "splice_limit", "splice_saturation",
