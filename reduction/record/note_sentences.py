@@ -472,11 +472,6 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "counter-constant": (
         "note", "the machine's cycle counter never changes: reversals are counted instead",
     ),
-    "counter-changes-elsewhere": (
-        "note",
-        "the machine's counter does not change at the valleys: the cycles are those between the"
-        " reversals, with the machine's numbers",
-    ),
     "cycles-in-gaps": (
         "note",
         "gaps of the log have room for {n_hidden} cycles beside the {n_cycles} that it holds:"

@@ -428,12 +428,12 @@ def test_movements_that_never_repeat_are_refused():
         find(*path(points))
 
 
-def test_the_counter_of_the_machine_says_where_cycles_begin(twenty):
+def test_the_counter_of_the_machine_numbers_the_cycles(twenty):
     time, position = twenty
     counter = np.where((time >= 50) & (time < 250), ((time - 50 + 1e-6) // 10 + 1), 0).astype(int)
     cycles = find(time, position, counter=counter)
-    assert cycles.counted_by == "machine counter"
-    assert cycles.n_cycles == 20
+    assert cycles.counted_by == "reversals"
+    assert cycles.number.tolist() == list(range(1, 21))
     assert cycles.first.tolist() == (500 + 100 * np.arange(20)).tolist()
     # of 10 s, at ten readings a second
     assert cycles.last.tolist() == (600 + 100 * np.arange(20)).tolist()
@@ -472,7 +472,7 @@ def test_branches_without_a_constant_rate_are_noted(twenty):
     time, position = twenty
     counter = np.where((time >= 50) & (time < 250), ((time - 50 + 1e-6) // 10 + 1), 0).astype(int)
     position[(time >= 265) & (time < 275)] = np.nan
-    counter[(time >= 265) & (time < 275)] = 21
+    counter[(time >= 265) & (time < 275)] = 30  # a cycle that the machine stored alone
     notes = tuple(map(str, find(time, position, counter=counter).notes))
     assert any(
         note.startswith("2 of 42 branches have no part at a constant rate") for note in notes

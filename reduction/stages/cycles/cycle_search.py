@@ -447,10 +447,17 @@ def _change_at_valleys(
     return bool(above.size) and float(np.median(above, axis=1).max()) < _NEAR_VALLEY
 
 
+def _are_apart(number: Integers, n_reversals: int) -> bool:
+    """Whether counted cycles stand alone in the log, so that no reversals part them."""
+    begins = np.flatnonzero(np.diff(number, prepend=number[:1] - 2) != 1)
+    lengths = np.diff(begins, append=number.size)
+    return bool((lengths == 1).any()) or n_reversals < number.size - 2 * begins.size
+
+
 def _number_of_cycles(cycle_counter: Integers, first: Indices, last: Indices) -> Integers:
     """The machine's number of cycles from valley to valley, wherever in them its count changes.
 
-    It is read half a cycle from there.
+    It is read half a cycle from where it does.
 
     Examples
     --------
@@ -1073,8 +1080,8 @@ def find_cycles(
         counter = None
     if counter is not None:
         counted = _counted_cycles(time, values, counter)
-    as_counted = counted is not None and _change_at_valleys(values, *counted[:4])
-    found, notes = _paired_cycles(time, values, standstills, settings, is_counted=as_counted)
+    at_valleys = counted is not None and _change_at_valleys(values, *counted[:4])
+    found, notes = _paired_cycles(time, values, standstills, settings, is_counted=at_valleys)
     reversals, band, jumps = found.reversals, found.band, found.jumps
     branch_first, branch_last, left_out = found.branch_first, found.branch_last, found.left_out
     if jumps.size:
@@ -1089,7 +1096,7 @@ def find_cycles(
     count = None
     if counted is not None:
         notes += _counter_notes(values, *counted[2:], first.size, band)
-    if counted is not None and as_counted:
+    if counted is not None and at_valleys and _are_apart(counted[4], first.size):
         first, last, branch_first, branch_last, count = counted
         counted_by = "machine counter"
     else:
@@ -1105,9 +1112,11 @@ def find_cycles(
         if left_out.size:
             begins = float(time[left_out[0]])
             notes.append(note("cycles-of-two-amplitudes", n_cycles=left_out.size, time=begins))
-        if counter is not None:
-            notes.append(note("counter-changes-elsewhere"))
+        if counter is not None and first.size:
             count = _number_of_cycles(counter, first, last)
+            is_counted = count > 0
+            first, last, count = first[is_counted], last[is_counted], count[is_counted]
+            branch_first, branch_last = branch_first[is_counted], branch_last[is_counted]
         elif cycle_counter is not None:
             notes.append(note("counter-constant"))
     if first.size == 0:
