@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -603,6 +604,119 @@ def _step(time: Floats) -> float:
     return float(np.median(steps)) if steps.size else 0.0
 
 
+def _updates(values: Floats) -> Integers | None:
+    """Samples at which a channel has a new reading, where each is stored several times in a row.
+
+    A converter that is slower than the log repeats its readings by the same number of rows; one
+    that is coarse repeats them for as long as the signal takes for a step, of which several in one
+    row are none.  None where readings are not repeated so.
+
+    Examples
+    --------
+    >>> signal = np.sin(0.02 * np.arange(600.0)) + 1e-4 * np.cos(7.0 * np.arange(600))
+    >>> print(_updates(np.repeat(signal[::3], 3))[:4], _updates(np.round(signal, 1)))
+    [ 3  6  9 12] None
+    """
+    (head, *_) = [*sample_blocks(values.size, values, size=_LOOKED_AT), slice(0)]
+    looked = values[head]
+    place = np.flatnonzero(looked[1:] != looked[:-1]) + 1
+    if place.size < _FEWEST_UPDATES:
+        return None
+    step = np.abs(looked[place] - looked[place - 1])
+    # some signals stand still in parts: repeats there say nothing
+    fast = step[1:] > _SEVERAL_CODES * np.quantile(step[step > 0], 0.01) if (step > 0).any() else []
+    gaps = np.diff(place)[fast]
+    if gaps.size < _FEWEST_UPDATES:
+        return None
+    usual = int(np.median(gaps))
+    if (
+        usual < 2
+        or np.mean(np.abs(gaps - usual) <= 1) < _REGULAR
+        or np.mean(gaps == 1) > 1 - _REGULAR
+    ):
+        return None
+    found = [np.empty(0, dtype=np.intp)]
+    for part in sample_blocks(values.size, values, overlap=1):
+        piece = values[part]
+        found.append(part.start + 1 + np.flatnonzero(piece[1:] != piece[:-1]))
+    return np.concatenate(found)
+
+
+_LOOKED_AT = 1 << 18  # samples
+
+_FEWEST_UPDATES = 50
+
+_SEVERAL_CODES = 3.0
+
+_REGULAR = 0.98
+
+
+def _at_updates(record: Record) -> tuple[Record, Integers | None]:
+    """The record at the rows in which its slow channel has new readings; these rows, or None.
+
+    Between them the channel is late, unless all channels have new readings in the same rows.
+    """
+    names = ["crosshead_position", *(f"tension.{i + 1}" for i in range(len(record.specimens)))]
+    series = [record.crosshead_position, *record.tension]
+    found = {
+        name: rows
+        for name, one in zip(names, series, strict=True)
+        if (rows := _updates(one)) is not None
+    }
+    if not found:
+        return record, None
+    (slow, rows), *others = found.items()
+    all_repeat = len(found) == len(names) and all(_alike(rows, one) for _, one in others)
+    rows = _without_breaks(rows, record.n_samples)
+    kept = [record.crosshead_position, *record.tension]
+    for place, name in enumerate(names):
+        own = found.get(name)
+        kept[place] = take_samples(kept[place], rows)
+        if own is not None and not _alike(own, rows):  # late in these rows, too
+            kept[place] = np.interp(
+                rows, own, take_samples(series[place], own), left=np.nan, right=np.nan
+            )
+    at_rows: dict[str, Any] = {
+        name: take_samples(one, rows)
+        for name in (
+            "time", "quality_flag", "crosshead_position_quality_flag", "measured_strain",
+            "fill_pressure", "cycle_counter",
+        )
+        if (one := getattr(record, name)) is not None
+    }  # fmt: skip
+    said = note(
+        "rows-repeated" if all_repeat else "read-less-often",
+        channel=slow,
+        every=float(np.median(np.diff(rows))),
+        interval=float(np.median(np.diff(at_rows["time"]))),
+        n_rows=record.n_samples,
+        step=_step(record.time),
+    )
+    at_rows |= {"crosshead_position": kept[0], "tension": np.stack(kept[1:])}
+    return replace(record, notes=(*record.notes, said), **at_rows), rows
+
+
+def _without_breaks(rows: Integers, n_samples: int) -> Integers:
+    """Rows of the readings, those included that are equal to the one before.
+
+    Examples
+    --------
+    >>> _without_breaks(np.array([3, 6, 12, 15]), 20).tolist()
+    [0, 3, 6, 9, 12, 15, 18]
+    """
+    every = int(np.median(np.diff(rows)))
+    ends = np.concatenate([[rows[0] % every], rows[rows > every]])
+    n_between = np.maximum(np.rint(np.diff(ends) / every).astype(np.intp), 1)
+    within = np.arange(n_between.sum()) - np.repeat(np.cumsum(n_between) - n_between, n_between)
+    share = np.repeat(np.diff(ends) / n_between, n_between)
+    found: Integers = np.repeat(ends[:-1], n_between) + (within * share).astype(np.intp)
+    return np.unique(np.concatenate([found, np.arange(rows[-1], n_samples, every)]))
+
+
+def _alike(one: Integers, other: Integers) -> bool:
+    return np.intersect1d(one, other).size > _REGULAR * max(one.size, other.size)
+
+
 _Flags = NDArray[np.uint16]
 
 _NO_READING = np.uint16(Quality.MISSING | Quality.STUCK)
@@ -624,6 +738,12 @@ def flag_record(
     notes: Sequence[Note] = (),
 ) -> Record:
     """Return the record with its flags set and what they mean in its notes."""
+    record, rows = _at_updates(record)
+    if rows is not None and verified:
+        verified = {
+            (index, int(np.searchsorted(rows, start)), int(np.searchsorted(rows, stop))): limits
+            for (index, start, stop), limits in verified.items()
+        }
     position_flag: _Flags = zeros_like(record.time, dtype=np.uint16)
     tension_flag: _Flags = zeros_like(record.tension, dtype=np.uint16)
     position = record.crosshead_position

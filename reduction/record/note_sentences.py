@@ -113,6 +113,17 @@ _OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "{channels}: resampled from {rate:.4g} Hz to the {base_rate:.4g} Hz of {base} by linear"
         " interpolation",
     ),
+    "read-less-often": (
+        "warning",
+        "{channel} has a new reading every {interval:.3g} s, which the log repeats in {every:.0f}"
+        " rows: of its {n_rows} rows only those with a new one are used. It may still be late by up"
+        " to a row, {step:.3g} s: state a lag, or log at the rate of the channel",
+    ),
+    "rows-repeated": (
+        "note",
+        "the log repeats each reading in {every:.0f} rows: of its {n_rows} rows those with new"
+        " readings are used, one every {interval:.3g} s",
+    ),
     "channels-not-used": ("note", "read and checked, but not used: {channels}"),
     "clock-coarse": (
         "note",

@@ -173,3 +173,29 @@ def test_times_that_no_even_clock_would_be_written_as_stay_as_they_are(late):
     true = np.cumsum(1 / rate * np.ones(TIME.size)) + late * (np.arange(TIME.size) > 900)
     stamps = np.round(true, 1)
     np.testing.assert_array_equal(flagged(record(time=stamps)).time, stamps)
+
+
+@pytest.mark.parametrize("every", [2, 5])
+def test_a_channel_that_is_read_less_often_than_logged_is_not_late(every):
+    rows = np.arange(TIME.size) // every * every
+    position = 4 + 0.5 * np.sin(0.7 * TIME[rows]) + RANDOM.normal(0, 1e-5, TIME.size)[rows]
+    load = 200 + 100 * np.sin(0.7 * TIME) + RANDOM.normal(0, 0.3, TIME.size)
+    found = flagged(record(position=position, load=load))
+    assert found.n_samples == TIME.size // every
+    np.testing.assert_allclose(found.time, TIME[::every])
+    # the load is a line of the position without a lag: half of five rows would be 5 N
+    off = found.tension[0] - (200 + 200 * (found.crosshead_position - 4))
+    assert np.std(off) < 0.4
+    (note,) = (one for one in found.notes if one.code == "read-less-often")
+    assert (note.severity, note.numbers["every"]) == ("warning", every)
+    # where the load repeats with it nothing is late
+    both = flagged(record(position=position, load=load[rows]))
+    assert both.n_samples == TIME.size // every
+    assert [one.code for one in both.notes if one.severity == "warning"] == []
+
+
+def test_a_coarse_converter_and_a_rest_are_no_repeated_readings():
+    slow = 4 + 0.5 * np.sin(0.7 * TIME)
+    load = 200 + 100 * np.sin(0.7 * TIME) + RANDOM.normal(0, 0.3, TIME.size)
+    for position in (np.round(slow, 2), np.round(slow, 3), np.minimum(slow, 4.2)):
+        assert flagged(record(position=position, load=load)).n_samples == TIME.size
