@@ -747,11 +747,56 @@ def _stands(
     if not is_held:
         first, last = _still_intervals(time, values, tolerance=tolerance, minimum_duration=duration)
         stays = ~_are_turns(time, values, first, last, tolerance=tolerance)
-        return first[stays], last[stays]
+        more = _slowly_logged(time, values, tolerance=tolerance, minimum_duration=duration)
+        ends = np.stack([first[stays], last[stays]])
+        apart = ((more[1][:, None] < ends[0]) | (more[0][:, None] > ends[1])).all(axis=1)
+        ends = np.concatenate([ends, more[:, apart]], axis=1)
+        first, last = ends[:, np.argsort(ends[0], kind="stable")]
+        return first, last
     first, last = _held_intervals(
         time, values, tolerance=tolerance, noise=noise, minimum_duration=duration
     )
     return _from_approaches(time, values, first, last, noise=noise)
+
+
+def _slowly_logged(
+    time: Floats, values: Floats, *, tolerance: float, minimum_duration: float
+) -> Integers:
+    """First and last samples of standstills in parts of a log that have fewer rows a second.
+
+    Shape (2, n_standstills).  No step in them is longer than the shortest standstill: the crosshead
+    may have moved in it.
+
+    Examples
+    --------
+    A rest with a row a second before a ramp with twenty.
+
+    >>> time = np.concatenate([np.arange(10.0), np.arange(10, 40, 0.05)])
+    >>> place = np.maximum(time - 10, 0)
+    >>> _slowly_logged(time, place, tolerance=0.01, minimum_duration=3.0).tolist()
+    [[0], [10]]
+    """
+    none = np.empty((2, 0), dtype=np.intp)
+    slow = [none[0]]
+    usual = median_step(time)
+    for part in sample_blocks(time.size, time, overlap=1):
+        steps = np.diff(time[part])
+        slow.append(part.start + np.flatnonzero((steps > 2 * usual) & (steps <= minimum_duration)))
+    at = np.concatenate(slow)
+    if not at.size:
+        return none
+    breaks = np.flatnonzero(np.diff(at) > 1)
+    starts, stops = at[np.r_[0, breaks + 1]], at[np.r_[breaks, at.size - 1]] + 1
+    found = [none]
+    for begin, stop in zip(starts.tolist(), stops.tolist(), strict=True):
+        if stop - begin < FEWEST_SAMPLES - 1:
+            continue
+        span = slice(begin, stop + 1)
+        firsts, lasts = _still_intervals(
+            time[span], values[span], tolerance=tolerance, minimum_duration=minimum_duration
+        )
+        found.append(begin + np.stack([firsts, lasts]))
+    return np.concatenate(found, axis=1)
 
 
 _SLACK_SHARE = 0.02

@@ -193,3 +193,16 @@ def test_rests_at_the_turns_of_a_slow_noisy_trapezoid_are_holds(share):
         time, position, [100 * position + 120], settings=PhaseSettings(minimum_duration=3.0)
     )
     assert found.n_standstills >= 39  # of 40 rests
+
+
+def test_a_rest_that_is_logged_more_slowly_than_the_cycles_is_found():
+    """A row a second at rest, twenty in the cycles; a gap between two of them is no rest."""
+    rest, cycles = np.arange(12.0), np.arange(12, 40, 0.05)
+    time = np.concatenate([rest, cycles, [41.0, 42, 43, 44, 45], cycles + 100])
+    position = 2 - np.cos(2 * np.pi * (time - 12) / 4)
+    position[time < 12], position[(time > 40) & (time < 100)] = 0.0, 1.0
+    position += 1e-5 * np.random.default_rng(0).standard_normal(time.size)
+    found = find_standstills(time, position, [100 * position], settings=PhaseSettings())
+    assert found.start_time.tolist() == [0, 41]
+    assert found.end_time.tolist() == [11, 45]
+    assert found.is_rest.tolist() == [True, False]
