@@ -366,6 +366,15 @@ def _readings_of(
     )
 
 
+def _with_late_readings(
+    record: Record, instruments: Sequence[InstrumentErrors]
+) -> tuple[InstrumentErrors, ...]:
+    """Errors with the lag of a channel whose new readings come some time within a row."""
+    steps = [one.numbers["step"] for one in record.notes if one.code == "read-less-often"]
+    own = float(np.hypot.reduce(steps)) / np.sqrt(3) if steps else 0.0
+    return tuple(replace(errors, lag=float(np.hypot(errors.lag, own))) for errors in instruments)
+
+
 def _with_drift_of_zero(
     located: Located, instruments: Sequence[InstrumentErrors]
 ) -> tuple[InstrumentErrors, ...]:
@@ -901,7 +910,7 @@ def reduce_test(
     settings = _with_waveform_of_log(settings, located)
     phase = label_phases(record.time, standstills=standstills, cycles=cycles)
     strain = strain_of_record(record, position, tension, models)
-    instruments = _with_drift_of_zero(located, instruments)
+    instruments = _with_late_readings(record, _with_drift_of_zero(located, instruments))
     readings = _readings_of(record, instruments)
     stated = replace(located, record=_with_readings(record, readings))
     cycle_parts = parts_of_cycles(

@@ -117,7 +117,7 @@ _OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "warning",
         "{channel} has a new reading every {interval:.3g} s, which the log repeats in {every:.0f}"
         " rows: of its {n_rows} rows only those with a new one are used. It may still be late by up"
-        " to a row, {step:.3g} s: state a lag, or log at the rate of the channel",
+        " to a row, {step:.3g} s, which is in the interval as a lag: log at the channel's own rate",
     ),
     "rows-repeated": (
         "note",

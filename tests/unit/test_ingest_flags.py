@@ -1,7 +1,9 @@
 import numpy as np
 import pytest
 
+from reduction.pipeline.reduce_test import _with_late_readings
 from reduction.readers.sample_flags import flag_record
+from reduction.record.contributions import InstrumentErrors
 from reduction.record.errors import DataError
 from reduction.record.measurement import Quality, Record
 from reduction.record.settings import QualitySettings
@@ -188,6 +190,9 @@ def test_a_channel_that_is_read_less_often_than_logged_is_not_late(every):
     assert np.std(off) < 0.4
     (note,) = (one for one in found.notes if one.code == "read-less-often")
     assert (note.severity, note.numbers["every"]) == ("warning", every)
+    # it may be late by anything up to a row
+    (errors,) = _with_late_readings(found, [InstrumentErrors("new", lag=0.01)])
+    assert errors.lag == pytest.approx(np.hypot(0.01, 0.1 / np.sqrt(3)))
     # where the load repeats with it nothing is late
     both = flagged(record(position=position, load=load[rows]))
     assert both.n_samples == TIME.size // every
