@@ -316,8 +316,10 @@ def _between_ticks(
         return time, ()
     tick = float(np.median(steps[ahead]))
     place = np.arange(time.size)
-    rate, begin = np.polyfit(place - place.mean(), time, 1)
-    even = begin + rate * (place - place.mean())
+    # the clock advances within the row before: known to a row, where its steps are long
+    middle = ahead.mean()
+    rate, begin = np.polyfit(ahead - middle, time[ahead + 1], 1)
+    even = begin + rate * (place - middle)
     said = {"tick": tick, "rows": time.size / (ahead.size + 1)}
     if np.ptp(time - even) < 1.5 * tick:
         return even, (note("clock-coarse", **said),)

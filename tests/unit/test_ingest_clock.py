@@ -74,6 +74,10 @@ def test_rows_of_one_second_are_spread_evenly_where_the_clock_agrees():
     assert told.code == "clock-coarse"
     # a clock that cuts off is half a second early, in all rows alike
     assert np.ptp(spread - true) < 0.01
+    # the rate is known to a row over the log, also where it ends within a second
+    dense = 0.013 + 0.02 * np.arange(3648)
+    spread, _ = _between_ticks(np.floor(dense), {"tension.1": np.sin(dense)})
+    assert np.ptp(spread - dense) < 0.005
     # a pause breaks the even rate: rows are known to the second that they stand in
     paused = true + 7.0 * (np.arange(900) > 450)
     spread, [told] = _between_ticks(np.floor(paused), load)
