@@ -1359,6 +1359,9 @@ def _readings_at_turns(
         at_peak, at_end = (np.fmax(wait[at - 1], wait[at]) for at in (peak, end))
         beside = (at_peak + at_end) / 2
         missed = (top - (first + last) / 2) * beside / (time[end] - time[begin])
+        # readings miss half of that where corners lie anywhere, nothing of a rounded turn or a rest
+        if not rests_at_turns(moved, peak):
+            top, first, last = top + missed / 4, first - missed / 4, last - missed / 4
         # noise hides the slow stroke of a saw alone: its readings are the lower end of what lies
         # within its step, which is greater where the series relaxes behind a fast stroke
         after = np.minimum(end + 1, values.size - 1)
