@@ -627,6 +627,40 @@ def test_a_channel_that_is_held_at_its_turns_is_not_at_its_greatest_reading(
     assert found.storage_spring_constant[0] == pytest.approx(900, rel=3e-3)
 
 
+@pytest.mark.parametrize("noise", [0.03, 0.05])
+def test_a_decay_in_a_dwell_that_ramps_in_the_noise_hide_is_in_the_interval(noise):
+    """Dwells of a quarter of a cycle of 100 readings; of the half range a twentieth relaxes there.
+
+    A ramp goes on by 0.04 in a reading, so that ends of ramps are among the readings of a plateau
+    within its noise, below its decay.
+    """
+    fine, shares = 10, []
+    wave = np.clip(4 * np.abs((np.arange(1000) / 1000 - 0.125) % 1 - 0.5) - 1, -0.5, 0.5) * -2
+    wave = np.tile(wave, 16)
+    relaxes = lfilter([1.0], [1, 1 / 100 - 1], np.diff(wave, prepend=wave[0]))
+    answer = 1800 + 180 * wave + 12 * relaxes
+    half = np.ptp(answer[2000:3000]) / 2
+    first = np.arange(1, 15) * 100 + 12
+    peak = first + 50
+    pair = np.stack([first, peak], axis=1)
+    cycles = Cycles(
+        first, first + 100, pair, pair + 50, np.ones((14, 2)), np.zeros(1600, np.int32),
+        np.zeros(1600, np.int8), np.zeros(1600, bool), 0.1,
+    )  # fmt: skip
+    for seed in range(20):
+        rng = np.random.default_rng(seed)
+        at = rng.integers(fine) + fine * np.arange(1599)
+        of_force, of_strain = rng.normal(0, noise, (2, at.size))
+        tension, strain = answer[at] + 180 * of_force, 1 + 0.2 * (wave[at] + of_strain)
+        loops = close_loops(np.arange(at.size) / 10, tension[None], strain[None],
+                            cycles, waveform="other")  # fmt: skip
+        found = summarise_amplitude(loops, area=[1e-3])
+        spread = found.uncertainty["tension_amplitude"][0]
+        shares.append((found.tension_amplitude[0] - half) / spread)
+    assert np.sqrt(np.mean(np.square(shares))) < 1.3
+    assert np.abs(shares).max() < 3.5
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_tension_that_relaxes_in_the_noise_of_a_dwell_is_not_at_its_mean_there(seed):
     time, _, strain, cycles = trapezoids(160, 30, rounded=4, noise=0.0, seed=0)

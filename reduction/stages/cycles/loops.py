@@ -1454,6 +1454,8 @@ _BENT = 0.45  # noise, by which the middle of a dome or the beginning of a decay
 
 _PARTS = 5  # of a plateau: tension that relaxes at once is above its mean in the first or second
 
+_LOW = 1.5  # noise below a plateau, where few of its readings lie, and those of ramps
+
 _LEVEL, _CLEARLY = 0.25, 5.0  # noise and standard errors of the mean, within which it is level
 
 
@@ -1496,13 +1498,18 @@ _EITHER_WAY = np.sqrt(
 _LEAST_OF_GREATEST = 0.2  # of the noise: half the scatter of the greatest of hundreds of readings
 
 
+def _means_of_parts(values: Floats) -> Floats:
+    ends = np.arange(_PARTS + 1) * values.size // _PARTS
+    return np.asarray(np.add.reduceat(values, ends[:-1]) / np.diff(ends))
+
+
 def _plateau(
     values: Floats, low: Integers, high: Integers, top: Floats
-) -> tuple[Floats, float] | None:
+) -> tuple[Floats, float, float] | None:
     """Mean of the readings of a plateau, of which noise makes the greatest one too great.
 
-    With it, by how much the ends of the plateau may lie above that mean: a decay that noise hides
-    has its extreme there.
+    With it, by how much the ends of the plateau lie above that mean at most and at least: a decay
+    that noise hides has its extreme there.
 
     None where a window has no plateau: its middle lies no higher than its ends, as that of a dome
     does, and its beginning no higher than its end, as of what relaxes.  The middle half is taken,
@@ -1510,7 +1517,7 @@ def _plateau(
     """
     noise = _within_scatter(reading_noise(values), top)
     level = np.full(top.shape, np.nan)
-    bent = []
+    bent, decays = [], []
     for row, (start, stop) in enumerate(
         zip(np.maximum(low, 0).tolist(), high.tolist(), strict=True)
     ):
@@ -1521,24 +1528,27 @@ def _plateau(
         if on.size < _FEWEST_ON_PLATEAU:
             continue
         quarter, half = on.size // 4, on.size // 2
-        ends = np.arange(_PARTS + 1) * on.size // _PARTS
-        parts = np.add.reduceat(on, ends[:-1]) / np.diff(ends)
         middle = np.median(on)
         halves = np.median(on[quarter : on.size - quarter]), np.median(on[:half])
-        bent.append(np.append(parts, halves) - middle)
+        bent.append(np.append(_means_of_parts(on), halves) - middle)
         level[row] = np.mean(on[quarter : on.size - quarter])
+        # readings of the ramps that lie within its noise are at its ends, and hide a decay
+        inside = np.flatnonzero(on >= middle - _LOW * noise)
+        inner = on[inside[0] : inside[-1] + 1]
+        decays.append(
+            _means_of_parts(inner) - middle if inner.size >= _PARTS else bent[-1][:_PARTS]
+        )
     if 2 * len(bent) < top.size:
         return None
     mean, spread = np.mean(bent, axis=0), np.std(bent, axis=0) / np.sqrt(len(bent))
     clearly = mean > np.maximum(_CLEARLY * spread, _LEVEL * noise)
     if mean[_PARTS:].max() > _BENT * noise or clearly.any():
         return None
-    ends = np.array(
-        [1.5 * mean[0] - 0.5 * mean[1], 1.5 * mean[_PARTS - 1] - 0.5 * mean[_PARTS - 2]]
-    )
-    above = max(float((ends + spread[[0, _PARTS - 1]]).max()), 0.0)
+    mean, spread = np.mean(decays, axis=0), np.std(decays, axis=0) / np.sqrt(len(decays))
+    ends = 1.5 * mean[[0, -1]] - 0.5 * mean[[1, -2]]
+    most, least = (max(float((ends + way * spread[[0, -1]]).max()), 0.0) for way in (1, -1))
     # of a cycle that begins or ends in its plateau little of it is left
-    return np.where(np.isfinite(level), level, top - np.nanmedian(top - level)), above
+    return np.where(np.isfinite(level), level, top - np.nanmedian(top - level)), most, least
 
 
 def _led_to_corner(
@@ -1859,14 +1869,16 @@ def _without_noise(
         upper = _plateau(way * values, begin, end, way * top)
         lower = _plateau(-way * values, peak, after, -way * last)
         if upper is not None and lower is not None:
-            top[:], last[:] = way * upper[0], -way * lower[0]
+            leads_to = [
+                0.0 if lead is None else float(np.nanmean(lead - one[0]))
+                for lead, one in zip(leads, (upper, lower), strict=True)
+            ]
+            above = sum(max(one) for one in zip((upper[1], lower[1]), leads_to, strict=True))
+            # what answers relaxes: its mean is the lower end of what noise hides
+            part = 0.0 if rests is None else 0.5
+            out = [part * max(one) for one in zip((upper[2], lower[2]), leads_to, strict=True)]
+            top[:], last[:] = way * (upper[0] + out[0]), -way * (lower[0] + out[1])
             first[1:] = last[:-1]
-            above = sum(
-                max(own, 0.0 if lead is None else float(np.nanmean(lead - level)))
-                for own, lead, level in zip(
-                    (upper[1], lower[1]), leads, (upper[0], lower[0]), strict=True
-                )
-            )
             np.hypot(missed, _EITHER_WAY * above / 2, out=missed)
             return True
     noise = _within_scatter(noise, top)
