@@ -104,8 +104,12 @@ def test_cycles_that_drift_unequally_say_whether_their_drift_is_even(at_peak, se
     true, inner = np.pi * 0.2 * 180 * np.sin(0.1), slice(2, None)
     error = loops.hysteresis_energy[0, inner].mean() / true - 1
     interval = 2 * loops.shared_by_cycles(inner)["hysteresis_energy"][0] / true
-    assert abs(error) < 1.3 * interval
+    # of the 7.4 % that the drift adds at its peaks half is taken off: losses may settle as it does
+    assert error == pytest.approx(0.037 if at_peak else 0.0, abs=2e-3)
+    assert abs(error) < 0.6 * interval
     assert (interval < 0.01) is not at_peak
+    loss = loops.loss_over_time[0, inner] * loops.strain_amplitude[0, inner] ** 2
+    assert np.pi * loss.mean() / true - 1 == pytest.approx(error, abs=5e-3)
 
 
 def test_the_work_of_a_drift_is_told():

@@ -93,6 +93,7 @@ from reduction.stages.cycles.cycle_product import (
     WITHIN_STEP,
     Cycles,
     Loops,
+    drift_at_peaks,
     drift_not_placed,
 )
 from reduction.stages.cycles.periods import (
@@ -1040,11 +1041,16 @@ def _quantities_of_cycles(
         mean_strain=row["strain_mean"],
         strain_drift=strain_drift,
     )
+    at_peaks = row["energy"] - energy
+    at_peaks *= drift_at_peaks(energy, row["energy"], amplitude * strain_amplitude)
+    energy -= at_peaks
     with np.errstate(divide="ignore", invalid="ignore"):
         # a series a cos + b sin is the real part of (a - ib) exp(i omega t)
         square = strain_cos**2 + strain_sin**2
         over_time = (force_cos * strain_cos + force_sin * strain_sin) / square
-        lost_over_time = (force_cos * strain_sin - force_sin * strain_cos) / square
+        lost_over_time = (
+            force_cos * strain_sin - force_sin * strain_cos - at_peaks / np.pi
+        ) / square
         apparent = amplitude / strain_amplitude
         share = np.pi * square * lost_over_time / energy
         both = np.hypot(noise, apparent * strain_noise)
