@@ -704,11 +704,13 @@ _OF_MODULI: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "identity-open": (
         "warning",
-        lambda effect, error, is_coarse, of_lag: (
+        lambda effect, error, is_coarse, of_lag, is_of_turns: (
             "the difference between the mean slopes of the two branches does not match the tension"
             f" lost over a cycle: residual {effect:+.1%} of the modulus (standard error"
             f" {_share(error)}). "
             + (f"The stated channel lag explains up to {of_lag:.1%} of it" if of_lag else
+               "The readings at the turns explain it, which lie between the same two readings in"
+               " all cycles" if is_of_turns else
                "Possible causes: channel lag, a dwell at the reversals, slip or slack"
                f"{', or too few samples for the curvature' if is_coarse else ''}")
         ),

@@ -262,3 +262,31 @@ def test_a_curve_that_bends_within_a_piece_is_no_imbalance_and_a_late_one_is(tri
     tension += np.random.default_rng(3).normal(0, 1, strain.size)
     found = check_identity(strain[None], tension[None], area=[AREA], cycles=cycles)
     assert len(found.notes) == (late > 0)
+
+
+@pytest.mark.parametrize(("late", "severity"), [(0.0, "note"), (1.5, "warning")])
+@pytest.mark.parametrize("place", [0.6, 0.9])
+def test_turns_between_the_same_two_readings_are_no_warning_and_a_late_load_is(
+    place, late, severity
+):
+    """Friction that turns within a reading of a corner, read 50 times in each cycle."""
+    fine, first = 100, 50 * np.arange(1, 12) + 1
+    at = (np.arange(50 * fine * 13) / fine - place) / 50  # in cycles
+    strain = 1.5 - 0.5 * np.abs((2 * at) % 2 - 1)
+    turned = 2 * np.minimum(25 * ((2 * at) % 1), 1.0) - 1
+    friction = np.where((2 * at) % 2 < 1, turned, -turned)
+    tension = 200 * strain + 60 * strain**4 + 15 * strain**2 * friction
+    rise = np.column_stack([first, first + 25])
+    number = np.clip((np.arange(650) - 1) // 50, 0, 12) % 12
+    side = np.where(number > 0, 1 + (np.arange(650) - 1) // 25 % 2, 0)
+    cycles = Cycles(
+        first, first + 50, rise, rise + 25, np.ones((11, 2)), number, side, side > 0, 0.1
+    )
+    read = fine * np.arange(650)
+    found = check_identity(
+        strain[read][None], tension[np.maximum(read - int(late * fine), 0)][None], area=[AREA],
+        cycles=cycles,
+    )  # fmt: skip
+    (note,) = found.notes
+    assert note.severity == severity
+    assert ("the same two readings in all cycles" in str(note)) is (severity == "note")

@@ -12,7 +12,15 @@ from reduction.record.notes import SEVERITIES, Note, by_severity, full_note, not
 
 REFUSED = replace(note("drop-not-told-from-zero", drop=0.0003, spread=0.0011), stage="hold 1 new")
 OPEN = replace(
-    note("identity-open", "new", effect=0.022, error=0.001, is_coarse=False, of_lag=0.0),
+    note(
+        "identity-open",
+        "new",
+        effect=0.022,
+        error=0.001,
+        is_coarse=False,
+        of_lag=0.0,
+        is_of_turns=False,
+    ),
     stage="identity",
 )
 SAID = replace(
@@ -126,7 +134,15 @@ def test_a_note_that_names_its_specimen_is_not_given_it_again():
 
 
 def test_a_late_load_comes_before_what_follows_from_it():
-    identity = note("identity-open", "cord", effect=-0.02, error=0.001, is_coarse=False, of_lag=0.0)
+    identity = note(
+        "identity-open",
+        "cord",
+        effect=-0.02,
+        error=0.001,
+        is_coarse=False,
+        of_lag=0.0,
+        is_of_turns=False,
+    )
     late = note("tension-late", "cord", lag=0.08, spread=0.002, stated=0.005)
     work = note("loops-give-work", "cord", energy=-1.0, n_cycles=9, n_known=9, delay=0.02,
                 stated=0.005, time_step=0.05, cause="driven")  # fmt: skip

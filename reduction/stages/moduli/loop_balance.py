@@ -154,6 +154,64 @@ def _mean_over_cycles(residual: Floats) -> tuple[Floats, Floats]:
     return mean, np.where(count > 1, error, np.nan)
 
 
+def _is_in_step(first: Integers) -> bool:
+    """Whether cycles are whole numbers of readings, to one reading over all of them.
+
+    Examples
+    --------
+    >>> first = 50 * np.arange(9)
+    >>> print(_is_in_step(first), _is_in_step(first + np.arange(9) // 3))
+    True False
+    """
+    n = first.size - 1
+    if n < 1:
+        return False
+    readings = int(first[-1] - first[0])
+    return abs(readings - n * round(readings / n)) <= 1
+
+
+def _opens(strain: Floats, tension: Floats, cycles: Cycles) -> float:
+    """By how much rises lie above falls at both turns, by the lines through two readings inside.
+
+    Less than nothing where tension is logged late, more where it falls at a turn.
+
+    Examples
+    --------
+    >>> strain = 5.0 - np.abs(np.arange(11) - 5)
+    >>> ends = np.array([[0, 5]])
+    >>> cycles = Cycles(ends[:, 0], ends[:, 0] + 10, ends, ends + 5, np.ones((1, 2)),
+    ...     np.zeros(11), np.zeros(11), np.zeros(11), 0.1)
+    >>> print(_opens(strain, 2 * strain - 0.5 * (np.arange(11) > 5), cycles))
+    1.0
+    """
+    begin, end = cycles.branch_first.T, cycles.branch_last.T
+
+    def led_to(at: Floats, one: Integers, two: Integers) -> Floats:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            slope = (tension[one] - tension[two]) / (strain[one] - strain[two])
+        return np.asarray(tension[one] + slope * (at - strain[one]))
+
+    apart = [
+        led_to(at, rise, rise + way) - led_to(at, fall, fall - way)
+        for at, rise, fall, way in (
+            (strain[end[0]], end[0] - 1, begin[1] + 1, -1),
+            (strain[begin[0]], begin[0] + 1, end[1] - 1, 1),
+        )
+    ]
+    return float(np.nanmedian(apart[0]) + np.nanmedian(apart[1]))
+
+
+def _inside_turns(cycles: Cycles) -> Cycles:
+    """Cycles whose branches begin and end a reading inside their turns."""
+    branch_first, branch_last = cycles.branch_first + 1, cycles.branch_last - 1
+    branch = cycles.branch.copy()
+    branch[np.concatenate([cycles.branch_first, cycles.branch_last]).ravel()] = 0
+    return replace(
+        cycles, first=branch_first[:, 0], last=branch_last[:, 1],
+        branch_first=branch_first, branch_last=branch_last, branch=branch,
+    )  # fmt: skip
+
+
 def check_identity(
     strain: ArrayLike,
     tension: ArrayLike,
@@ -225,7 +283,10 @@ def check_identity(
     inversely with the time it lasts, and cancels between strokes that last equally long: the
     bound goes with the ratio of their readings.  A curve that bends within a piece, as a hose does
     where its cords pick up and a braid after a turn, leaves more with fewer pieces: what half as
-    many change is taken off.  A lag acts at the turn alone, in any piece.  Tension logged late
+    many change is taken off.  A lag acts at the turn alone, in any piece.  So does a
+    turn between two readings, which cycles out of step with the clock have at all places and those
+    in step at one: of these the branches without the readings at their turns are judged, and a lag
+    of less than a reading cannot be told.  Tension logged late
     makes it negative on a curve that stiffens: by some 0.7 to 1.1 % for a two-hundredth of
     the period.
 
@@ -263,13 +324,13 @@ def check_identity(
         fast, slow = np.sort(np.median(steps, axis=0)).tolist()
         worth_a_note *= (_MOST_PIECES / n_pieces) ** 2 * slow / fast
 
-    def sides_of(row: int, load: Floats, pieces: int = n_pieces) -> Floats:
+    def sides_of(row: int, load: Floats, pieces: int = n_pieces, of: Cycles = cycles) -> Floats:
         """Both sides and the mean slope of the branches, shape (3, n_cycles). [Pa]."""
-        change, stroke = _tension_change(strains[row], load, cycles=cycles, n_pieces=pieces)
+        change, stroke = _tension_change(strains[row], load, cycles=of, n_pieces=pieces)
         per_stroke = 1 / (areas[row] * np.abs(stroke).mean(axis=1))
-        lost = take_samples(load, cycles.first) - take_samples(load, cycles.last)
+        lost = take_samples(load, of.first) - take_samples(load, of.last)
         # what relaxes while the machine rests at its peak is on no branch
-        peak, leaves = cycles.branch_last[:, 0], cycles.branch_first[:, 1]
+        peak, leaves = of.branch_last[:, 0], of.branch_first[:, 1]
         at_rest = take_samples(load, peak) - take_samples(load, leaves)
         lost = lost - np.where(leaves > peak + 1, at_rest, 0.0)
         rise = change * np.sign(stroke)
@@ -295,6 +356,14 @@ def check_identity(
             return 0.0
         return change_by(row, sides_of(row, tensions[row], n_pieces // 2))
 
+    def without_turns(row: int) -> float:
+        """Mean residual without the readings at the turns, where all of them lie alike. [1]."""
+        if not _is_in_step(cycles.first) or _opens(strains[row], tensions[row], cycles) < 0:
+            return np.nan
+        sides = sides_of(row, tensions[row], of=_inside_turns(cycles))
+        inside, _ = _mean_over_cycles(((sides[0] + sides[1]) / sides[2])[None])
+        return float(inside[0])
+
     modulus = np.full(shape, np.nan)
     if cycles.n_cycles:
         for row in range(areas.size):
@@ -304,15 +373,17 @@ def check_identity(
     notes = []
     for row, (name, one, spread) in enumerate(zip(names, mean, error, strict=True)):
         least = max(_SIGNIFICANT * spread, worth_a_note)
-        if abs(one) > least and abs(one) > least + of_bend(row):
+        if abs(one) > least and abs(one) > (most := least + of_bend(row)):
             explained = of_lag(row)
             # intervals hold the stated lag already, and what it leaves is not worth a warning
             is_of_lag = explained > 0 and abs(one) <= explained + least
+            is_of_turns = not is_of_lag and np.sign(one) * without_turns(row) <= most
             found = note(
-                "identity-open", name, effect=one, error=spread,
-                is_coarse=n_pieces < _MOST_PIECES, of_lag=explained if is_of_lag else 0.0,
+                "identity-open", name, effect=one, error=spread, is_coarse=n_pieces < _MOST_PIECES,
+                of_lag=explained if is_of_lag else 0.0, is_of_turns=is_of_turns,
             )  # fmt: skip
-            notes.append(replace(found, severity="note") if is_of_lag else found)
+            told = is_of_lag or is_of_turns
+            notes.append(replace(found, severity="note") if told else found)
     return CycleIdentity(
         stroke_mean_modulus_difference=difference,
         tension_loss_modulus=loss,
