@@ -136,3 +136,20 @@ def test_rows_that_stand_twice_in_a_log_are_no_wave():
         np.zeros(201, np.int8), np.zeros(201, bool), 0.1,
     )  # fmt: skip
     assert waveform_of_log(time, wave, cycles) == ""
+
+
+@pytest.mark.parametrize(("rest", "told"), [(0.0, ""), (0.3, "other")])
+def test_turns_half_way_between_readings_make_ramps_no_other_wave(rest, told):
+    """Ramps of 10 readings with each turn between two, or that rest at their turns.
+
+    The last reading before a turn is taken for the turn of one end, the first after it of the other.
+    """
+    at = (np.arange(205) - 0.5) / 10
+    wave = np.clip(np.abs((at + 1) % 2 - 1), rest / 2, 1 - rest / 2)
+    first = 20 * np.arange(9) + np.array([0, 1] * 4 + [0])
+    rise = np.column_stack([first, first + 11])
+    cycles = Cycles(
+        first[:-1], first[1:], rise[:-1], rise[:-1] + 9, np.ones((8, 2)),
+        np.zeros(205, np.int32), np.zeros(205, np.int8), np.zeros(205, bool), 0.1,
+    )  # fmt: skip
+    assert waveform_of_log(np.arange(205) * 0.1, wave, cycles) == told

@@ -168,37 +168,49 @@ def waveform_of_log(
     apart = np.array([
         _apart_from_shapes(time[first : last + 1], driven[first : last + 1])
         for first, last in zip(cycles.first[some].tolist(), cycles.last[some].tolist(), strict=True)
-    ]).reshape(-1, 3)  # fmt: skip
+    ]).reshape(-1, 4)  # fmt: skip
     apart = apart[np.isfinite(apart).all(axis=1)]
     if not apart.size:
         return ""
-    lines, sine, noise = np.median(apart, axis=0).tolist()
+    lines, inside, sine, noise = np.median(apart, axis=0).tolist()
     if lines < _LIKE_LINES and lines < sine:
         return "triangular"
     if sine < _LIKE_SINE:
         return "sinusoidal"
-    is_far = lines > _UNLIKE_LINES + _WITHIN * noise and sine > _LIKE_SINE + _WITHIN * noise
+    # a reading at a turn that lies between two readings is on the line of the other stroke
+    is_far = inside > _UNLIKE_LINES + _WITHIN * noise and sine > _LIKE_SINE + _WITHIN * noise
     return "other" if is_far else ""
 
 
-def _apart_from_shapes(time: Floats, driven: Floats) -> tuple[float, float, float]:
-    """Root mean square about two lines and about a sine, and noise, over half the range."""
+def _apart_from_shapes(time: Floats, driven: Floats) -> tuple[float, float, float, float]:
+    """Root mean square about two lines, inside their turns and about a sine, and noise.
+
+    Over half the range.
+    """
     known = np.isfinite(driven)
     t, x = time[known], driven[known]
     if t.size < _FEWEST_READINGS or not np.ptp(x) > 0 or not t[-1] > t[0]:
-        return np.nan, np.nan, np.nan
+        return np.nan, np.nan, np.nan, np.nan
     half = float(np.ptp(x)) / 2
     turn = int(np.argmax(np.abs(x - x[0])))
     lines = np.interp(t, t[[0, turn, -1]], x[[0, turn, -1]])
     phase = 2 * np.pi * (t - t[0]) / (t[-1] - t[0])
     basis = np.stack([np.ones(t.size), np.cos(phase), np.sin(phase)], axis=1)
     sine = basis @ np.linalg.lstsq(basis, x)[0]
-    return (
-        float(np.sqrt(np.mean((x - lines) ** 2))) / half,
-        float(np.sqrt(np.mean((x - sine) ** 2))) / half,
-        reading_noise(x) / half,
+    about = [x - lines, x - sine]
+    strokes = slice(1, turn), slice(turn + 1, t.size - 1)
+    if min(turn, t.size - 1 - turn) > _FEWEST_INSIDE:
+        chords = (np.interp(t[one], t[one][[0, -1]], x[one][[0, -1]]) for one in strokes)
+        inside = np.concatenate([x[one] - line for one, line in zip(strokes, chords, strict=True)])
+    else:
+        inside = about[0]
+    of_lines, of_inside, of_sine = (
+        float(np.sqrt(np.mean(one**2))) / half for one in (about[0], inside, about[1])
     )
+    return of_lines, min(of_inside, of_lines), of_sine, reading_noise(x) / half
 
+
+_FEWEST_INSIDE = 4  # readings of a stroke
 
 _SINE_TOLD = 0.05  # of the loss: no machine draws a sine to a per cent
 
