@@ -54,7 +54,7 @@ def test_sound_runs_are_not_named():
 
 
 def test_drift_is_given_as_a_share_of_the_response():
-    order = RNG.permutation(15)
+    order = np.random.default_rng(1).permutation(15)
     surfaces = fitted(stiffness(1e-5) * (1 + 0.004 * order))
     (drift,) = drifting_responses(surfaces, drift_over_order(surfaces, order))
     assert ", +0.4" in str(drift) and "% of the response (p" in str(drift)

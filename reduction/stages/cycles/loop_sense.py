@@ -199,7 +199,7 @@ def _apart_from_shapes(time: Floats, driven: Floats) -> tuple[float, float, floa
     sine = basis @ np.linalg.lstsq(basis, x)[0]
     about = [x - lines, x - sine]
     strokes = slice(1, turn), slice(turn + 1, t.size - 1)
-    if min(turn, t.size - 1 - turn) > _FEWEST_INSIDE:
+    if _FEWEST_INSIDE < min(turn, t.size - 1 - turn) < _MATTERS:
         chords = (np.interp(t[one], t[one][[0, -1]], x[one][[0, -1]]) for one in strokes)
         inside = np.concatenate([x[one] - line for one, line in zip(strokes, chords, strict=True)])
     else:
@@ -211,6 +211,8 @@ def _apart_from_shapes(time: Floats, driven: Floats) -> tuple[float, float, floa
 
 
 _FEWEST_INSIDE = 4  # readings of a stroke
+
+_MATTERS = 20  # readings of a stroke, of which one at a turn is far off: a tenth
 
 _SINE_TOLD = 0.05  # of the loss: no machine draws a sine to a per cent
 
