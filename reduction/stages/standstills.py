@@ -54,6 +54,8 @@ _QUANTA = 3.0  # range of a level between two steps, with noise below one step
 
 _FLICKER_SHARE = 0.2  # steps undone by the next step; 0.1 at 10 samples a triangle's branch
 
+_ONE_CODE = 1.5  # least steps: the next are of two codes
+
 
 def _stretches(values: Floats) -> Floats:
     """Finite samples in at most 64 rows of consecutive ones, spread over the record."""
@@ -115,7 +117,7 @@ def estimate_noise(values: ArrayLike) -> tuple[float, float]:
 
     A channel counts as quantised where more than a fifth of its steps are undone by the
     next step: the flicker of a level between two codes.  The quantum is the median such
-    step.  With noise far below the quantum the differences are mostly zero, and ``noise``
+    step.  A record that mostly moves has few of them, so that its least steps are also asked alone.  With noise far below the quantum the differences are mostly zero, and ``noise``
     may be 0 while ``quantum`` is not.
 
     Examples
@@ -142,9 +144,13 @@ def estimate_noise(values: ArrayLike) -> tuple[float, float]:
     )
     steps = np.diff(rows, axis=1).ravel()
     steps = steps[steps != 0]
-    undone = np.abs(steps[1:] + steps[:-1]) < 0.05 * np.abs(steps[1:])
-    is_quantised = steps.size > 1 and undone.mean() > _FLICKER_SHARE
-    return noise, float(np.median(np.abs(steps[1:][undone]))) if is_quantised else 0.0
+    size = np.abs(steps)
+    undone = np.abs(steps[1:] + steps[:-1]) < 0.05 * size[1:]
+    is_least = size < _ONE_CODE * size.min(initial=np.inf)
+    for compared in (np.ones_like(undone), is_least[1:] & is_least[:-1]):
+        if compared.any() and undone[compared].mean() > _FLICKER_SHARE:
+            return noise, float(np.median(size[1:][undone & compared]))
+    return noise, 0.0
 
 
 def noise_range(values: ArrayLike) -> float:

@@ -77,3 +77,12 @@ def test_noise_range_covers_a_quantised_hold():
 @pytest.mark.parametrize("level", [0.0, 1e-3, 2e5])
 def test_noise_range_of_a_constant_is_not_zero(level):
     assert 0 < noise_range(np.full(100, level)) <= max(1e-9 * level, 1e-12)
+
+
+def test_rare_flicker_of_a_hold_is_found_in_a_record_that_mostly_moves():
+    # ramps of ten codes a sample, then a level that reads one code more in 1 of 40 samples
+    step = 40 / 4096
+    ramps = 10 * np.abs((np.arange(4000) % 100) - 50)
+    level = 250 + (np.arange(400) % 40 == 7)
+    readings = np.round(step * np.concatenate([ramps, level]), 5)  # five decimals, as printed
+    assert noise_range(readings) == pytest.approx(3 * step, rel=2e-3)
