@@ -523,6 +523,11 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "cycles-not-as-planned": (
         "warning", "{n_found} complete cycles found, {n_planned} planned",
     ),
+    "planned-cycles-not-whole": (
+        "note",
+        "{n_found} complete cycles found, {n_planned} planned: cycles that are not whole at the"
+        " begin or the end of the row are not counted",
+    ),
     "no-plateau": (
         "note",
         "a {waveform} waveform has no part at constant rate: branches are trimmed by 5 % of the"

@@ -404,6 +404,11 @@ def test_a_sine_that_begins_and_ends_at_its_mean_counts_whole_cycles_only(amplit
     assert cycles.n_cycles == 9
     assert ranges == pytest.approx(2 * amplitude, rel=0.01)
     assert cycles.last - cycles.first == pytest.approx(100, abs=4)
+    # the two half cycles at the ends are the tenth that was planned; two more were not made
+    for planned, code in ((10, "planned-cycles-not-whole"), (12, "cycles-not-as-planned")):
+        settings = CycleSettings(control="load", waveform="sinusoidal", expected_cycles=planned)
+        notes = find_cycles(time, tension, tension, stand, settings=settings).notes
+        assert [one.code for one in notes if "planned" in one.code] == [code]
 
 
 @pytest.mark.parametrize("control", ["position", "load"])

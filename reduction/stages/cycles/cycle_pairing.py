@@ -552,6 +552,7 @@ class _HalfCycles:
     run: Indices
     notes: tuple[Note, ...]
     made: tuple[str, ...] = ()
+    n_ends_left_out: int = 0
 
 
 def _replaced(samples: Indices, old: Indices, new: Integers) -> Indices:
@@ -681,6 +682,7 @@ def find_half_cycles(
         rises=rises,
         run=np.repeat(np.arange(len(runs)), [run.nodes.size - 1 for run in runs]),
         made=tuple(made),
+        n_ends_left_out=len(short) + len(paced),
         notes=(note("gaps-end-runs", n_gaps=gap_before.size, time=float(time[gap_before[0]])),)
         if gap_before.size
         else (),

@@ -854,6 +854,7 @@ class _Paired:
     left_out: Indices
     notes: tuple[Note, ...] = ()
     made: tuple[str, ...] = ()
+    n_ends_left_out: int = 0
 
 
 def _paired(
@@ -875,6 +876,7 @@ def _paired(
     return _Paired(
         reversals, found[1], jumps, *whole_cycles(values, halves),
         notes=tuple(halves.notes), made=tuple(halves.made),
+        n_ends_left_out=halves.n_ends_left_out,
     )  # fmt: skip
 
 
@@ -1138,9 +1140,10 @@ def find_cycles(
         notes.append(note("one-cycle"))
     n_made = first.size + (n_unsteady if counted_by == "reversals" else 0)
     if settings.expected_cycles is not None and settings.expected_cycles != n_made:
-        notes.append(
-            note("cycles-not-as-planned", n_found=n_made, n_planned=settings.expected_cycles)
-        )
+        # each end that is left out takes a cycle with it at most
+        is_ends = 0 < settings.expected_cycles - n_made <= found.n_ends_left_out
+        code = "planned-cycles-not-whole" if is_ends else "cycles-not-as-planned"
+        notes.append(note(code, n_found=n_made, n_planned=settings.expected_cycles))
 
     start, stop, rate, trim_notes = _trimmed(
         time, values, branch_first.ravel(), branch_last.ravel(), settings
