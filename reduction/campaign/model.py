@@ -18,6 +18,7 @@ from pydantic import (
     ConfigDict,
     Field,
     StringConstraints,
+    ValidationInfo,
     field_validator,
 )
 
@@ -600,6 +601,15 @@ class SpecimenSection(_SpecSection):
     earlier_flex_cycles: int | None = Field(default=None, ge=0, le=_MOST)
     """Cycles of flexing before it; not known where left out."""
     note: Text = ""
+
+    @field_validator("reference_tension", mode="before")
+    @classmethod
+    def _share_of_own_strength(cls, value: object, info: ValidationInfo) -> object:
+        """A share of the break strength is one of that of the specimen, which stands above it."""
+        strength = info.data.get("rated_break_strength")
+        if strength is None or not isinstance(value, str) or "%" not in value:
+            return value
+        return f"{parse_quantity(value, 'force', rated_break_strength=strength)!r} N"
 
 
 class _StrainSection(_SpecSection):

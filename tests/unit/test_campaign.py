@@ -56,6 +56,15 @@ def test_defaults_fill_what_a_test_leaves_out(folder):
     assert campaign.specimens["a"].mean_diameter == pytest.approx(1.1 * 0.0254)
 
 
+def test_reference_tension_may_be_a_share_of_the_specimen_s_own_strength(folder):
+    stated = 'gauge_length = "2 m"\nreference_tension = "2 %RBS"\n'
+    strong = BASE.replace("[layouts.l]", stated + 'rated_break_strength = "30 kN"\n[layouts.l]')
+    specimen = load(folder, strong + TEST).specimens["a"]
+    assert specimen.reference_tension == pytest.approx(600.0)
+    with pytest.raises(SettingsError, match="no break strength"):
+        load(folder, BASE.replace("[layouts.l]", stated + "[layouts.l]") + TEST)
+
+
 def test_what_a_specimen_had_seen_and_how_a_test_flexes_it(folder):
     # WHOI-2004-06, sec. 3.0: 1,000,000 flex cycles at +/-30 deg, 600,000 of tension
     seen = "earlier_cycles = 115000\nearlier_flex_cycles = 0\n"
