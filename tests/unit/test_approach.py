@@ -184,3 +184,11 @@ def test_the_first_sample_of_the_next_ramp_is_no_part_of_a_hold(left, way):
     assert abs(place[100] - 1) == pytest.approx(left)
     stand = find_standstills(time, place, [100 * place], settings=PhaseSettings(), is_held=True)
     assert stand.end_time[1] == 99
+
+
+def test_a_ramp_that_stands_in_most_of_its_last_steps_ends_at_its_last_sample():
+    # readings of an encoder that moves on by one code in four samples: the usual last rate is zero
+    time = np.arange(40.0)
+    place = np.floor(np.minimum(time, 30) / 4)
+    end, width = ramp_end_time(time, place, band=0.5)
+    assert end == 39.0 and width > 0

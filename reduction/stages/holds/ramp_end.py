@@ -89,7 +89,8 @@ def ramp_end_time(time: Floats, place: Floats, *, band: float) -> tuple[float, f
     rates /= np.diff(time[-1 - rates.size - 1 : -1])
     rate = float(np.median(rates))
     last = place[-1] - place[-2]
-    is_hidden, slows = abs(rate) * step <= band, rates[-1] / rate < _SLOWS
+    is_hidden = abs(rate) * step <= band
+    slows = np.sign(rate) * (rates[-1] - _SLOWS * rate) < 0  # of a median of zero: no
     # without a corner, or where noise hides whether it has one, so long before or after
     width = max(slowing, 0.0) * (2 if is_hidden or slows else 1)
     if is_hidden:
