@@ -117,8 +117,9 @@ def estimate_noise(values: ArrayLike) -> tuple[float, float]:
 
     A channel counts as quantised where more than a fifth of its steps are undone by the
     next step: the flicker of a level between two codes.  The quantum is the median such
-    step.  A record that mostly moves has few of them, so that its least steps are also asked alone.  With noise far below the quantum the differences are mostly zero, and ``noise``
-    may be 0 while ``quantum`` is not.
+    step.  A record that mostly moves has few of them: its least steps are asked alone, too.
+    With noise far below the quantum the differences are mostly zero, and ``noise`` may be 0
+    while ``quantum`` is not.
 
     Examples
     --------
