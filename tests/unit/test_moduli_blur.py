@@ -109,3 +109,20 @@ def test_what_one_width_may_miss_is_more_at_a_step_than_in_a_bend(shape):
     assert np.all(error[inside] <= 2 * missed[0, inside] + 1e-12)
     if shape == "bend":
         assert np.all(missed[0, inside] <= 1.01 * np.abs(blur).max())
+
+
+def test_the_blur_of_a_bend_that_grows_is_not_known_as_far_as_the_ends():
+    # of E = x^3 a window of w bins reads x^3 + 3 w^2 / 20 x; nearer than step bins to an end the
+    # blur is that of the nearest bin that has one, off by 3 w^2 / 20 a bin
+    place, halves = np.arange(60.0), [5, 2]
+    slopes = [(place**3 + 3 * (2 * half + 1) ** 2 / 20 * place)[None] for half in halves]
+    blurs = [
+        window_blur(slope, half_window=half)[0] for slope, half in zip(slopes, halves, strict=True)
+    ]
+    slopes = [slope - blur for slope, blur in zip(slopes, blurs, strict=True)]
+    too_noisy = [0 * slopes[0], np.full_like(slopes[1], 1e4)]
+    change, _, missed = adapt_window(slopes, too_noisy, blurs, half_windows=halves)
+    error = np.abs(slopes[0] + change - place**3)[0]
+    step = halves[0] + 1
+    assert error[:step] == pytest.approx(3 * 11**2 / 20 * np.arange(step, 0, -1))
+    assert np.all(error <= 2 * missed[0] + 1e-6)

@@ -488,7 +488,8 @@ def adapt_window(
     one within its width, times :math:`\sqrt 2`: on top of a jump :math:`J` every window reads
     the mean of both sides, off by :math:`J / 2`, while two windows differ by :math:`0.2\,J` to
     :math:`0.35\,J` beside it.  One between, chosen because a wider one is contradicted, carries the
-    greater of the two.
+    greater of the two.  Near the ends of a curve, where the blur is that of the nearest bin that
+    has one, its straight continuation bounds what is missed, evenly distributed.
 
     Examples
     --------
@@ -549,7 +550,17 @@ def adapt_window(
     return (
         np.where(np.isfinite(change), change, 0.0),
         np.choose(chosen, rough),
-        np.sqrt(np.maximum(missed, 0.0) + _missed_at_ends(adapted, half_windows[0]) ** 2),
+        np.sqrt(
+            np.maximum(missed, 0.0)
+            + _missed_at_ends(adapted, half_windows[0]) ** 2
+            + np.choose(
+                chosen,
+                [
+                    _change_at_ends(*one) ** 2 / 3
+                    for one in zip(slope, blur, half_windows, strict=True)
+                ],
+            )
+        ),
     )
 
 
@@ -594,3 +605,18 @@ def _missed_at_ends(slope: Floats, half_window: int) -> Floats:
             at = (*curve, inwards[:half_window])
             missed[at] = np.maximum(missed[at], rise)
     return missed
+
+
+def _change_at_ends(slope: Floats, blur: Floats, half_window: int) -> Floats:
+    """How far the blur of the nearest bin that has one is from its straight continuation."""
+    change = np.zeros_like(blur)
+    step = half_window + 1
+    beside = -(-step // 2)
+    for curve in np.ndindex(slope.shape[:-1]):
+        known = np.flatnonzero(np.isfinite(slope[curve]))
+        if known.size <= 2 * step + beside:
+            continue
+        for inwards in (known, known[::-1]):
+            rate = (blur[curve][inwards[step]] - blur[curve][inwards[step + beside]]) / beside
+            change[(*curve, inwards[:step])] = abs(rate) * np.arange(step, 0, -1)
+    return change
