@@ -112,7 +112,8 @@ def look_up(
     medium, temperature : str, optional
         Only from tests in it, such as ``"wet"``, ``"5 degC"``.
     **levels : str, float, array_like or xarray.DataArray
-        ``frequency``, ``mean_tension``, ``tension_amplitude``, ``tension`` or ``strain``: a text
+        ``frequency``, ``mean_tension``, ``tension_amplitude``, ``tension``, ``strain``, or of
+        surfaces over strain ``mean_strain`` and ``strain_amplitude``: a text
         with a unit (``"20 %RBS"``), numbers in SI, or anything with ``to_base_units`` such as a
         pint quantity. Arrays are broadcast together, ``DataArray`` by the names of their
         dimensions.

@@ -22,6 +22,7 @@ from reduction.lines.line_consistency import (
     TIME,
     ConsistentValues,
     consistent_values,
+    is_of_loads,
     refitted_surfaces,
 )
 from reduction.lines.line_curve import evaluate_curve
@@ -177,6 +178,8 @@ LEVEL_DIMENSIONS: dict[str, Dimension] = {
     "tension_amplitude": "force",
     "tension": "force",
     "strain": "strain",
+    "mean_strain": "strain",
+    "strain_amplitude": "strain",
 }
 
 _ROUNDING = 1e-12
@@ -773,7 +776,7 @@ def _consistent(
     """K_1 and tau that go with K_ap and H at points of a surface; nothing of tests at levels."""
     if found.quantity not in (K_AP, ENERGY, K_1, TIME, DASHPOT) or not line.surfaces:
         return ()
-    return consistent_values(line, **points)
+    return consistent_values(line, **points) if is_of_loads(points) else ()
 
 
 def _show_consistent(
@@ -916,10 +919,9 @@ def _span(factor: float, low: float, high: float) -> str:
 
 
 def _shown(name: str, system: UnitSystem) -> tuple[str, float]:
-    units = {"frequency": "Hz", "strain": "1"}
-    if name == "strain":
+    if LEVEL_DIMENSIONS.get(name) == "strain":
         return "%", 100.0
-    return display_unit(units.get(name, "N"), system)
+    return display_unit(quantity_of(name).unit, system)
 
 
 def _document(

@@ -346,6 +346,10 @@ def lookup(
     ] = None,
     tension: Annotated[str | None, typer.Option(help="Tension on a load-strain curve.")] = None,
     strain: Annotated[str | None, typer.Option(help='Such as "100 %".')] = None,
+    mean_strain: Annotated[
+        str | None, typer.Option(help="Of surfaces over strain, of one's own experiment.")
+    ] = None,
+    strain_amplitude: Annotated[str | None, typer.Option(help="The same, half the range.")] = None,
     branch: Annotated[_BranchName | None, typer.Option(help="Branch of the cycle.")] = None,
     line: Annotated[str | None, typer.Option(help="Name of a line in SOURCE.")] = None,
     against: Annotated[
@@ -417,6 +421,8 @@ def lookup(
             "tension_amplitude": tension_amplitude,
             "tension": tension,
             "strain": strain,
+            "mean_strain": mean_strain,
+            "strain_amplitude": strain_amplitude,
         }
         wanted = LookupRequest(
             quantity=name_of_quantity(quantity),

@@ -26,7 +26,7 @@ References
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -141,6 +141,11 @@ class _RefittedSurface:
     def greatest(self) -> float:
         """How far off that one is; NaN where r2 is open."""
         return float(abs(self.z[self.worst]))
+
+
+def is_of_loads(levels: Collection[str]) -> bool:
+    """Whether levels are those at which a slow pull and the loops of a rope say the same thing."""
+    return set(levels) == {"frequency", "mean_tension", "tension_amplitude"}
 
 
 def consistent_values(
@@ -392,7 +397,7 @@ def consistency_warnings(
     warnings : tuple of str
         Points where the printed numbers are impossible, columns that are wrong by z.
     """
-    if quantity not in (K_AP, K_1, TIME, DASHPOT) or not line.slow_pulls:
+    if quantity not in (K_AP, K_1, TIME, DASHPOT) or not (line.slow_pulls and is_of_loads(levels)):
         return ()
     if not line.is_printed:
         asked = {DASHPOT: SOLVED, TIME: (TIME,)}.get(quantity, (K_1,))

@@ -617,10 +617,9 @@ def _refuse_outside(
         rounded = surface.rounding[place] if surface.rounding.size else 0.0
         if not low - rounded <= value <= high + rounded:
             unit = quantity_of(name).unit
-            told.append(
-                f"{name} {plain_number(value)} {unit}, tested {plain_number(low)} to "
-                f"{plain_number(high)} {unit}"
-            )
+            unit, factor = ("%", 100.0) if unit == "1" else (unit, 1.0)
+            numbers = (plain_number(factor * float(one)) for one in (value, low, high))
+            told.append(f"{name} {{}} {unit}, tested {{}} to {{}} {unit}".format(*numbers))
     raise DataError(
         f"outside the tested range of {surface.quantity} of {line.name}: "
         f"{int((~inside).sum())} of {inside.size} points",

@@ -408,7 +408,7 @@ _SYMBOLS = ("K_ap", "H", "K_0", "K_1", "tau", "N")
 
 _LEVELS: dict[str, Dimension] = {
     "frequency": "frequency", "mean_tension": "force", "tension_amplitude": "force",
-    "tension": "force", "strain": "strain",
+    "tension": "force", "strain": "strain", "mean_strain": "strain", "strain_amplitude": "strain",
 }  # fmt: skip
 
 _GIVEN: dict[Dimension, tuple[str, ...]] = {

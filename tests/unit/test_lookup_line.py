@@ -3,7 +3,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from reduction.cli.lookup import LEVEL_DIMENSIONS, _shown_levels
 from reduction.experiments.designs import box_behnken, model_matrix, quadratic_exponents
+from reduction.lines.line_consistency import consistency_warnings
 from reduction.lines.line_lookup import cycle_loads, look_up, sigma_from_r2
 from reduction.lines.line_surface import evaluate_surface
 from reduction.lines.lookup_product import LineCurve, LineSource, LineSurface
@@ -42,6 +44,31 @@ def test_the_centre_is_the_first_coefficient_and_a_face_adds_the_square_and_the_
     assert look_up(LINE, "apparent_spring_constant", **CENTRE).value == 1e4
     face = look_up(LINE, "apparent_spring_constant", **(CENTRE | {"frequency": 0.5}))
     assert face.value == pytest.approx(1e4 + 100 + 300)
+
+
+def test_a_surface_over_strain_is_looked_up_at_strains():
+    # of a tether in position control; a slow pull says nothing at a strain
+    low, high = np.array([0.1, 0.8, 0.1]), np.array([0.5, 1.4, 0.3])
+    surfaces = {
+        name: replace(SURFACE, quantity=name, low=low, high=high)
+        for name in ("apparent_spring_constant", "hysteresis_energy")
+    }
+    tether = replace(
+        LINE, surfaces=surfaces, factor_names=("frequency", "mean_strain", "strain_amplitude"),
+        slow_pulls={"slow pull Q": LINE.curves[0]},
+    )  # fmt: skip
+    assert set(tether.factor_names) <= LEVEL_DIMENSIONS.keys()
+    at = {"frequency": 0.3, "mean_strain": 1.1, "strain_amplitude": 0.2}
+    found = look_up(tether, "apparent_spring_constant", **at)
+    assert found.value == 1e4
+    assert consistency_warnings(tether, "apparent_spring_constant", at) == ()
+    heads, (cells,) = _shown_levels(
+        {name: np.array([one]) for name, one in at.items()}, 1.0, 1, "si"
+    )
+    assert [one.split("[")[1] for one in heads] == ["Hz]", "%]", "%]"]
+    assert cells[1:] == ["110", "20"]
+    with pytest.raises(DataError, match="mean_strain 150 %, tested 80 to 140 %"):
+        look_up(tether, "apparent_spring_constant", **(at | {"mean_strain": 1.5}))
 
 
 def test_intervals_are_those_of_student_with_a_third_of_the_variance_at_the_centre():

@@ -37,7 +37,7 @@ function halfOfDifference(parts) {
 
 // Of each slow pull what the surfaces give at a point and what would hold together there.
 function consistentValues(line, at) {
-  if (!line.surfaces[AP] || !line.surfaces[LOST]) return [];
+  if (!line.surfaces[AP] || !line.surfaces[LOST] || !("mean_tension" in at && "tension_amplitude" in at)) return [];
   const found = {}, printed = {};
   for (const name of [AP, LOST, SPRING, TIME].filter((one) => line.surfaces[one])) {
     const surface = line.surfaces[name];
