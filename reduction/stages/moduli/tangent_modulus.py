@@ -19,6 +19,7 @@ from functools import reduce
 from operator import add
 
 import numpy as np
+import scipy.ndimage
 from numpy.typing import ArrayLike
 
 from reduction.record.arrays import as_positive, as_same_shape, run_blocks
@@ -461,6 +462,8 @@ def tangent_curves(
         return np.stack(given) * per_area
 
     by_cycle = np.stack([one.selected for one in specimens]) - blur[:, None]
+    slope = np.stack([one.value() for one in trimmed]) - blur
+    level = np.stack([one.value() for one in tensions])
     by_cycle_variance = np.stack([one.selected_variance for one in specimens])
     return ModulusCurves(
         strain_bin=grid.centres,
@@ -481,9 +484,10 @@ def tangent_curves(
             gain * spread(untrimmed, (one.level.standard_uncertainty() for one in untrimmed)),
             noise * per_area,
         ),
-        branch_tension=np.stack([one.value() for one in tensions]),
-        branch_tension_standard_uncertainty=np.stack(
-            [one.given(one.level.standard_uncertainty()) for one in tensions]
+        branch_tension=level,
+        branch_tension_standard_uncertainty=_not_below(
+            np.stack([one.given(one.level.standard_uncertainty()) for one in tensions]),
+            _off_the_slopes(level, slope * grid.width, half_window=grid.half_window),
         ),
         branch_tension_count=np.stack([one.count() for one in tensions]),
         selected_cycle=groups.first[selected] + 1,
@@ -505,6 +509,26 @@ def tangent_curves(
 def _not_below(deviation: Floats, least: Floats) -> Floats:
     """Greater of both where both are known; a deviation that is not known stays so."""
     return np.where(np.isfinite(least), np.maximum(deviation, least), deviation)
+
+
+def _off_the_slopes(level: Floats, step: Floats, *, half_window: int) -> Floats:
+    """Deviation of levels from the sum of slopes a bin, within a window about each bin.
+
+    Where windows hold few samples, and the same ones in every cycle of a log in step with its
+    period, a curve that bends goes up and down beside the truth as samples enter them.
+    """
+    off = np.zeros_like(level)
+    for curve in np.ndindex(level.shape[:-1]):
+        known = np.flatnonzero(np.isfinite(level[curve]) & np.isfinite(step[curve]))
+        if known.size < 2:
+            continue
+        at, slope = level[curve][known], step[curve][known]
+        along = np.diff(known) * (slope[1:] + slope[:-1]) / 2
+        beside = np.append(0.0, np.cumsum(np.diff(at) - along))
+        beside -= scipy.ndimage.uniform_filter1d(beside, 2 * half_window + 1, mode="nearest")
+        square = scipy.ndimage.uniform_filter1d(beside**2, 2 * half_window + 1, mode="nearest")
+        off[(*curve, known)] = np.sqrt(square)
+    return off
 
 
 def _notes(break_in_cycles: int, specimens: Sequence[_SpecimenCurves]) -> list[Note]:
