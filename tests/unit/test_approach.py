@@ -149,6 +149,8 @@ def test_a_drop_is_that_of_one_length(shape):
     assert hold.relaxation_drop == pytest.approx(true, abs=0.005)
     settled = [one for one in hold.notes if one.code == "hold-settles"]
     assert bool(settled) is (shape != "sharp")
+    # less than a tenth of the loss, half of which is in the uncertainty: nothing to check
+    assert {one.severity for one in settled} <= {"note"}
     assert hold.ramp_end_tension == pytest.approx(hold.logged_peak_tension, rel=0.02)
     assert hold.prony_time == pytest.approx([30], rel=0.1)
 

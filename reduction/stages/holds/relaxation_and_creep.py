@@ -939,6 +939,8 @@ _MOTION_TOLD = 5.0  # standard uncertainties: some fifty blocks are looked at
 
 _MOTION_WORTH = 0.005  # of the tension that is lost: less changes no number
 
+_MOTION_LARGE = 0.1  # of the tension that is lost: less is a machine that settles after its ramp
+
 
 def _at_one_length(hold: Hold, ends: _Ends) -> tuple[Hold, float]:
     """The hold at the length of the end of its ramp, and what is not known of that. [N]."""
@@ -949,14 +951,10 @@ def _at_one_length(hold: Hold, ends: _Ends) -> tuple[Hold, float]:
         return hold, 0.0
     distance = np.interp(hold.time, motion.time, motion.distance)
     lost = min(max(ends.drop, 0.0), 1.0)
-    hold.notes.append(
-        note(
-            "hold-settles",
-            motion=motion.greatest,
-            worth=worth,
-            share=abs(worth) / abs(ends.initial - ends.final),
-        )
-    )
+    share = abs(worth) / abs(ends.initial - ends.final)
+    found = note("hold-settles", motion=motion.greatest, worth=worth, share=share)
+    # the intervals hold half of it
+    hold.notes.append(replace(found, severity="note") if share < _MOTION_LARGE else found)
     kept = at_length_of_ramp_end(hold.tension, distance, stiffness=stiffness, lost_share=lost)
     return replace(hold, tension=kept), float(MOTION_KNOWN_TO * abs(worth))
 
