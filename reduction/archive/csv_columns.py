@@ -224,7 +224,12 @@ def table_blocks(
     """Give the rows that an archive gives to a table; none where it lacks the subject."""
     headers = [column.header for column in table.columns]
     for place, columns in column_blocks(archive, archive.variables, table, block_rows=block_rows):
-        yield pd.DataFrame(dict(zip(headers, columns, strict=True)), index=place)
+        # what the archive lacks is missing, as where its file is read
+        known = [
+            np.full(place.size, np.nan) if isinstance(one, list) and not any(one) else one
+            for one in columns
+        ]
+        yield pd.DataFrame(dict(zip(headers, known, strict=True)), index=place)
 
 
 def column_blocks(

@@ -19,7 +19,6 @@ from functools import reduce
 from operator import add
 
 import numpy as np
-import scipy.ndimage
 from numpy.typing import ArrayLike
 
 from reduction.record.arrays import as_positive, as_same_shape, run_blocks
@@ -525,10 +524,16 @@ def _off_the_slopes(level: Floats, step: Floats, *, half_window: int) -> Floats:
         at, slope = level[curve][known], step[curve][known]
         along = np.diff(known) * (slope[1:] + slope[:-1]) / 2
         beside = np.append(0.0, np.cumsum(np.diff(at) - along))
-        beside -= scipy.ndimage.uniform_filter1d(beside, 2 * half_window + 1, mode="nearest")
-        square = scipy.ndimage.uniform_filter1d(beside**2, 2 * half_window + 1, mode="nearest")
-        off[(*curve, known)] = np.sqrt(square)
+        beside -= _mean_about(beside, half_window)
+        off[(*curve, known)] = np.sqrt(_mean_about(beside**2, half_window))
     return off
+
+
+def _mean_about(values: Floats, half_window: int) -> Floats:
+    """Running mean; beyond the ends stands the last value."""
+    n_window = 2 * half_window + 1
+    beyond = np.pad(values, half_window, mode="edge")
+    return np.convolve(beyond, np.full(n_window, 1 / n_window), mode="valid")
 
 
 def _notes(break_in_cycles: int, specimens: Sequence[_SpecimenCurves]) -> list[Note]:
