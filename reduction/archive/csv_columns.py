@@ -226,7 +226,7 @@ def table_blocks(
     for place, columns in column_blocks(archive, archive.variables, table, block_rows=block_rows):
         # what the archive lacks is missing, as where its file is read
         known = [
-            np.full(place.size, np.nan) if isinstance(one, list) and not any(one) else one
+            np.full(place.size, np.nan) if isinstance(one, list) and set(one) == {""} else one
             for one in columns
         ]
         yield pd.DataFrame(dict(zip(headers, known, strict=True)), index=place)
