@@ -214,7 +214,8 @@ NEAR_ZERO = 1e-9  # of the peak: 12 % less 12 % is zero though its last bit may 
 
 MEASURED_SLACK = 0.01  # of the peak, as in reduction.stages.three_parameter_line.line_of_loops
 
-CONFOUNDED = 0.5
+_CONFOUNDED = 0.05
+"""Probability of naming a factor of a plan whose order was drawn at random."""
 
 
 @dataclass(frozen=True)
@@ -358,7 +359,10 @@ def _order(sheet: RunSheet) -> list[Caution]:
     levels = sheet.coded - sheet.coded.mean(axis=0)
     size = np.linalg.norm(levels, axis=0) * np.linalg.norm(place)
     correlation: Floats = np.divide(place @ levels, size, out=np.zeros_like(size), where=size > 0)
-    strong = np.flatnonzero(np.abs(correlation) > CONFOUNDED)
+    # of a random order the correlation of each factor has nearly Student's distribution
+    freedom = max(sheet.n_runs - 2, 1)
+    limit = scipy.special.stdtrit(freedom, 1 - _CONFOUNDED / (2 * len(sheet.names)))
+    strong = np.flatnonzero(np.abs(correlation) > limit / np.hypot(limit, np.sqrt(freedom)))
     if not strong.size:
         return []
     listed = ", ".join(f"{sheet.names[i]} {correlation[i]:+.2f}" for i in strong)

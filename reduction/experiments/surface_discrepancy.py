@@ -4,17 +4,22 @@ Three levels of a factor carry a slope and a curvature; what the response does b
 do not say.  A power of the frequency with the exponent -0.9, quadratic in the frequency on the
 scale of its logarithm, is met at 0.1, 0.3 and 0.5 Hz and is off by 6 % at 0.2 Hz, with residuals
 of nil.  The terms of third and fourth order that the surface does without are drawn from what
-the lower ones say of their size:
+the lower ones say of their size,
 
 .. math::
 
     \delta(x) = \sum_\alpha \gamma_\alpha \left(x^\alpha - x^T (X^T X)^{-1} X^T X^\alpha\right),
-    \qquad
-    \gamma_{kkk}^2 \sim (a_k \rho_k^2 / 3)^2 + (c_k \rho_k)^2, \quad
-    \gamma_{kkkk}^2 \sim (a_k \rho_k^3 / 4)^2 + (11 c_k \rho_k^2 / 12)^2
 
-with the half range of a factor over its centre, rho, by which the terms of a logarithm or a power
-of the factor fall from order to order, and c the curvature beyond that of a line and a logarithm.
+along one factor as those of a relaxing material.  Of relaxation strengths h that lie anywhere over
+the logarithm of the time, independently, the parts of the modulus along v = ln f are
+
+.. math::
+
+    E'' = \int h(u)\,\tfrac{1}{2} \operatorname{sech}(v - u)\,du, \qquad
+    E' = \int h(u)\,\tfrac{1}{2} [1 + \tanh(v - u)]\,du, \qquad
+    k'' \propto \frac{d}{\sinh d}, \qquad k' \propto -\frac{d}{\tanh d},
+
+with k the covariance at a distance d, of E' but for a constant.
 
 References
 ----------
@@ -22,12 +27,15 @@ References
    B, vol. 63, pp. 425-464, 2001 (discrepancy).
 .. [2] G. E. P. Box and N. R. Draper, "A Basis for the Selection of a Response Surface Design,"
    J. Am. Stat. Assoc., vol. 54, pp. 622-654, 1959 (bias from terms of higher order).
+.. [3] J. D. Ferry, Viscoelastic Properties of Polymers, 3rd ed. New York: Wiley, 1980, ch. 3
+   (storage and loss of a spectrum of relaxation times).
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -35,18 +43,26 @@ from numpy.typing import ArrayLike
 from reduction.experiments.designs import model_matrix
 from reduction.experiments.fit_results import ResponseSurfaces
 from reduction.experiments.response_matrix import block_contrasts
+from reduction.experiments.response_transform import back_transform
+from reduction.quantities.names import response_of_surface
 from reduction.record.measurement import Floats, Integers, read_only_arrays
 
 _ORDERS = (3, 4)
-
-_OF_SQUARE = np.array([0.0, 0.0, 1.0, 1.0, 11 / 12])
-"""Terms of the square of a logarithm, by order: (ln(1 + x))^2 = x^2 - x^3 + 11/12 x^4 - .."""
 
 _NO_ZERO = 0.5
 """Fall of the terms from order to order of a factor that may be zero or less."""
 
 _LARGEST = 2 / 3
 """Of a factor whose range reaches near zero: no series falls more slowly within three levels."""
+
+_ALONG = np.linspace(-1.0, 1.0, 41)
+"""Coded levels at which a response along one factor is drawn."""
+
+_STORING = ("apparent_spring_constant", "dissipation_spring_constant", "storage_spring_constant")
+"""Responses that go along the frequency as a storage modulus."""
+
+_FROM_LOSS = ("relaxation_time", "dashpot_coefficient")
+"""Responses that are made from the loss."""
 
 
 @dataclass(frozen=True)
@@ -62,7 +78,7 @@ class SurfaceDiscrepancy:
         Expected products of the coefficients of the difference between response and surface; NaN
         for a response without a surface. [unit of the fitted response, squared]
     degrees_of_freedom : ndarray, shape (n_responses,)
-        Squares that the size of the terms was found from. [1]
+        Squares that the size of the terms was found from, two a factor. [1]
     """
 
     exponents: Integers
@@ -86,9 +102,9 @@ def discrepancy_of(surfaces: ResponseSurfaces) -> SurfaceDiscrepancy:
 
     .. math::
 
-        a_k^2 = \max\left[b_k^2, (2 b_{kk} / \rho_k)^2\right], \qquad
-        c_k = b_{kk} - \min(\max(b_{kk}, -\rho_k b_k / 2), 0) \; (b_k > 0), \qquad
-        \gamma_\alpha^2 = \theta \prod_k \rho_k^{2 \alpha_k} / \bar\rho^2
+        E[\gamma \gamma^T] = G M G^T + s^2 (C_{\gamma\gamma} - G C_{b\gamma}), \qquad
+        G = C_{\gamma b} C_{bb}^{-1}, \qquad M = b b^T - V_b, \qquad
+        s^2 = \tfrac{1}{2} \operatorname{tr} C_{bb}^{-1} M
 
     Parameters
     ----------
@@ -107,18 +123,19 @@ def discrepancy_of(surfaces: ResponseSurfaces) -> SurfaceDiscrepancy:
 
     Notes
     -----
-    Method: the bias of [2]_ with the sizes of its terms drawn, as the discrepancy of [1]_.  Along
-    a factor the terms fall as those of its logarithm, :math:`\rho^n / n`, with one amplitude: the
-    larger of what slope and curvature say, since a relaxation within the range bends more than the
-    logarithm of its slope, and halfway through it has a slope without curvature.  What bends more
-    than a line or a logarithm of its slope, or the other way, has an extreme near the levels or
-    rises as an exponential: it falls as the square of a logarithm, beside it.  Terms of several
-    factors have one scale, from the interactions and from
-    what the runs scatter about the surface beyond their repeats (or at all, where none is
-    repeated): the only terms of third order of which a Box-Behnken design sees anything.  From
-    every square the part that scatter alone gives is taken off.  Signs are independent.  A
-    response that turns within less than the distance of two levels (a step, a kink) is not
-    covered: no run says so.
+    Method: the bias of [2]_ with the sizes of its terms drawn, as the discrepancy of [1]_.
+    Along a factor, a normal process with the covariance C gives slope and curvature, b,
+    together with the terms beyond them; what b says of those, and how large the process is,
+    follows. Along the frequency the process is the one of [3]_ above; of storage, and of what
+    is made from the loss, it is as large as the mean of what they and what the loss say, if
+    that is more: slope and curvature of three levels may miss a relaxation that the loss shows.
+    Along other factors the process of the loss stands over the level and over its logarithm,
+    weighted by how likely they make slope and curvature, whatever its size. Terms of several
+    factors have one scale, from the interactions and from what the runs scatter about the
+    surface beyond their repeats (or at all, where none is repeated): the only terms of third
+    order of which a Box-Behnken design sees anything. From every square the part that scatter
+    alone gives is taken off. A response that turns within less than the distance of two levels
+    (a step, a kink) is not covered: no run says so.
 
     Examples
     --------
@@ -130,11 +147,11 @@ def discrepancy_of(surfaces: ResponseSurfaces) -> SurfaceDiscrepancy:
     ...     return (0.3 + 0.2 * np.asarray(x)) ** -0.9
     >>> levels = np.array([[-1.0], [0.0], [1.0], [0.0], [0.0]])
     >>> found = fit_surfaces(levels, [law(levels[:, 0]) * [1, 1, 1, 1.001, 0.999]],
-    ...     factor_names=["f"], response_names=["tau"], low=[0.1], high=[0.5], units="coded",
-    ...     transforms="log")
+    ...     factor_names=["frequency"], response_names=["tau"], low=[0.1], high=[0.5],
+    ...     units="coded", transforms="log")
     >>> between = np.array([[-0.5], [0.5]])
     >>> print(discrepancy_of(found).at(between).round(3))
-    [[0.046 0.046]]
+    [[0.05  0.026]]
     >>> fitted = found.coefficient @ model_matrix(between, found.exponents).T
     >>> print(abs(np.log(law(between[:, 0])) - fitted).round(3))
     [[0.063 0.037]]
@@ -145,6 +162,7 @@ def discrepancy_of(surfaces: ResponseSurfaces) -> SurfaceDiscrepancy:
     n_terms, n_more = len(surfaces.exponents), len(more)
     moment = np.full((len(surfaces.response_names), n_terms + n_more, n_terms + n_more), np.nan)
     freedom = np.full(len(surfaces.response_names), np.nan)
+    loss = _loss_of(surfaces, ratio)
     # of responses that miss the same runs the matrices are the same
     of_runs: dict[bytes, tuple[Floats, Floats]] = {}
     for row, pattern in enumerate(surfaces.pattern.tolist()):
@@ -155,8 +173,12 @@ def discrepancy_of(surfaces: ResponseSurfaces) -> SurfaceDiscrepancy:
         if key not in of_runs:
             of_runs[key] = _aliases(surfaces, used, more)
         change, seen = of_runs[key]
-        size, freedom[row] = _sizes(surfaces, row, more, ratio, seen)
-        moment[row] = (change * size) @ change.T
+        size = np.diag(_of_several_factors(surfaces, row, more, ratio, seen))
+        for factor in range(n_factors):
+            own = np.flatnonzero(np.delete(more, factor, axis=1).sum(axis=1) == 0)
+            size[np.ix_(own, own)] = _of_one_factor(surfaces, row, factor, ratio, loss)
+        moment[row] = change @ size @ change.T
+        freedom[row] = 2.0 * n_factors
     return SurfaceDiscrepancy(np.concatenate([surfaces.exponents, more]), moment, freedom)
 
 
@@ -195,56 +217,172 @@ def _aliases(surfaces: ResponseSurfaces, used: np.ndarray, more: Integers) -> tu
     return change, np.sum(left**2, axis=0)
 
 
-def _sizes(
+def _without_scatter(surfaces: ResponseSurfaces, row: int, terms: Integers) -> Floats:
+    """Products of some coefficients less what scatter alone gives, none of them negative."""
+    factor = surfaces.covariance_factor[surfaces.pattern[row]][np.ix_(terms, terms)]
+    own = surfaces.coefficient[row, terms]
+    scatter = np.nan_to_num(surfaces.sigma[row]) ** 2 * factor
+    value, vector = np.linalg.eigh(np.outer(own, own) - scatter)
+    return np.asarray((vector * np.maximum(value, 0.0)) @ vector.T)
+
+
+def _loss_kernel(distance: Floats) -> Floats:
+    """Covariance of the loss of independent relaxation strengths over the logarithm of the time."""
+    apart = np.maximum(np.abs(distance), 1e-9)
+    return np.asarray(apart / np.sinh(apart))
+
+
+def _storage_kernel(distance: Floats) -> Floats:
+    """The same of their storage, but for a constant."""
+    apart = np.maximum(np.abs(distance), 1e-9)
+    return np.asarray(-apart / np.tanh(apart))
+
+
+class _OneFactor(NamedTuple):
+    """What slope and curvature along a factor say of the terms of third and fourth order.
+
+    ``unlikely`` is one over the likelihood of both, of whatever size the process is.
+    """
+
+    products: Floats
+    size: float
+    gain: Floats
+    left: Floats
+    unlikely: float
+
+    def moment(self, size: float) -> Floats:
+        """Mean products of the coefficients of third and fourth order, for a process of a size."""
+        return np.asarray(self.gain @ self.products @ self.gain.T + size * self.left)
+
+
+def _drawn(
+    surfaces: ResponseSurfaces, row: int, factor: int, shift: Floats, *, is_storage: bool = False
+) -> _OneFactor:
+    """Terms of a process along a factor, by the slope and curvature of a response.
+
+    Drawn at levels, carried through the parabola of three of them, and what that misses through
+    the cubic and quartic that are nil at these three.
+    """
+    distance = shift[:, None] - shift
+    covariance = _storage_kernel(distance) if is_storage else _loss_kernel(distance)
+    powers = _ALONG[:, None] ** np.arange(5)
+    levels = np.array([0, _ALONG.size // 2, _ALONG.size - 1])
+    parabola = np.zeros((3, _ALONG.size))
+    parabola[:, levels] = np.linalg.inv(powers[levels, :3])
+    missed = np.eye(_ALONG.size) - powers[:, :3] @ parabola
+    beyond = np.linalg.pinv(powers[:, 3:] - powers[:, 1:3]) @ missed
+    every = np.vstack([parabola[1:], beyond])
+    joint = every @ covariance @ every.T
+    own = np.eye(len(surfaces.factor_names), dtype=int)[factor]
+    terms = np.array(
+        [np.flatnonzero((surfaces.exponents == n * own).all(axis=1))[0] for n in (1, 2)]
+    )
+    products = _without_scatter(surfaces, row, terms)
+    inverse = np.linalg.inv(joint[:2, :2])
+    gain = joint[2:, :2] @ inverse
+    size = float(np.trace(inverse @ products)) / 2
+    unlikely = size / np.sqrt(np.linalg.det(inverse))
+    return _OneFactor(products, size, gain, joint[2:, 2:] - gain @ joint[:2, 2:], float(unlikely))
+
+
+class _Loss(NamedTuple):
+    """Size of the process of the loss along the frequency, and what the loss stands beside."""
+
+    size: float
+    spring: float
+    share: float
+
+
+def _loss_of(surfaces: ResponseSurfaces, ratio: Floats) -> _Loss | None:
+    """Loss along the frequency, from the surfaces of H; None where they do not say.
+
+    The size is relative to the loss; the share is that of the loss in K_ap at the centre, H K_ap /
+    (pi a^2), zero where no amplitude of the tension is a factor.
+    """
+    of = [response_of_surface(name) for name in surfaces.response_names]
+    known = {
+        name: row for row, name in enumerate(of) if np.isfinite(surfaces.coefficient[row]).all()
+    }
+    if "frequency" not in surfaces.factor_names or "hysteresis_energy" not in known:
+        return None
+    row = known["hysteresis_energy"]
+    relative = _centre(surfaces, row) ** surfaces.transform_exponent[row]
+    place = surfaces.factor_names.index("frequency")
+    size = _drawn(surfaces, row, place, np.log1p(ratio[place] * _ALONG)).size / relative**2
+    share = spring = 0.0
+    if "tension_amplitude" in surfaces.factor_names and "apparent_spring_constant" in known:
+        place = surfaces.factor_names.index("tension_amplitude")
+        amplitude = (surfaces.low[place] + surfaces.high[place]) / 2
+        spring = _centre(surfaces, known["apparent_spring_constant"])
+        share = _centre(surfaces, row) * spring / (np.pi * amplitude**2)
+    # more than the whole is that of other units
+    return _Loss(size, spring, share if 0 < share <= 1 else 0.0)
+
+
+def _centre(surfaces: ResponseSurfaces, row: int) -> float:
+    """Response at the centre of the levels."""
+    own, exponent = surfaces.coefficient[row, 0], surfaces.transform_exponent[row]
+    return float(own if surfaces.transform[row] == "none" else back_transform(own, exponent))
+
+
+def _of_one_factor(
+    surfaces: ResponseSurfaces, row: int, factor: int, ratio: Floats, loss: _Loss | None
+) -> Floats:
+    """Mean products of the coefficients of third and fourth order along one factor."""
+    level = ratio[factor] * _ALONG
+    if surfaces.low[factor] <= 0:
+        drawn = _drawn(surfaces, row, factor, level)
+        return drawn.moment(drawn.size)
+    if surfaces.factor_names[factor] != "frequency":
+        one, other = (_drawn(surfaces, row, factor, shift) for shift in (level, np.log1p(level)))
+        both = one.unlikely + other.unlikely
+        share = other.unlikely / both if both > 0 else 0.5
+        return share * one.moment(one.size) + (1 - share) * other.moment(other.size)
+    name = response_of_surface(surfaces.response_names[row])
+    is_storage = name in _STORING
+    drawn = _drawn(surfaces, row, factor, np.log1p(level), is_storage=is_storage)
+    size = drawn.size
+    if loss is not None and (is_storage or name in _FROM_LOSS):
+        centre = _centre(surfaces, row)
+        share = loss.share * loss.spring / centre if is_storage else 1.0
+        scale = centre ** surfaces.transform_exponent[row]
+        # two estimates of one size, from two squares each
+        size += max(loss.size * (share * scale) ** 2 - size, 0.0) / 2
+    return drawn.moment(size)
+
+
+def _of_several_factors(
     surfaces: ResponseSurfaces, row: int, more: Integers, ratio: Floats, seen: Floats
-) -> tuple[Floats, float]:
-    """Mean square of the coefficient of each term of higher order, and of how many squares."""
-    variance = (
-        np.nan_to_num(surfaces.sigma[row]) ** 2
-        * np.diagonal(surfaces.covariance_factor[surfaces.pattern[row]])[: len(surfaces.exponents)]
-    )
-    square = np.maximum(surfaces.coefficient[row] ** 2 - variance, 0.0)
-    powers = surfaces.exponents
-    n_moved = (powers > 0).sum(axis=1)
-    # one factor by itself: slope and curvature say how large the series is
-    slope, curve = (
-        [np.flatnonzero((powers == order * own).all(axis=1))[0] for own in np.eye(ratio.size)]
-        for order in (1, 2)
-    )
-    amplitude = np.maximum(square[slope], square[curve] * (2 / ratio) ** 2)
-    # what a line, a logarithm and all between them bend less than: a parabola in the logarithm
-    coefficient = surfaces.coefficient[row]
-    ends = np.sort([np.zeros(ratio.size), -ratio / 2 * coefficient[slope]], axis=0)
-    beyond = coefficient[curve] - np.clip(coefficient[curve], *ends)
-    beyond = np.maximum(beyond**2 - variance[curve] - (ratio / 2) ** 2 * variance[slope], 0.0)
-    order = more.sum(axis=1)
+) -> Floats:
+    r"""Mean square of the coefficient of each term of several factors, nil of the others.
+
+    .. math:: \gamma_\alpha^2 = \theta \prod_k \rho_k^{2 \alpha_k} / \bar\rho^2
+    """
     size = np.zeros(len(more))
-    alone = (more > 0).sum(axis=1) == 1
-    factor = np.argmax(more[alone], axis=1)
-    power = 2.0 * (order[alone] - 2)
-    size[alone] = ratio[factor] ** power * (
-        amplitude[factor] * (ratio[factor] / order[alone]) ** 2
-        + beyond[factor] * _OF_SQUARE[order[alone]] ** 2
-    )
-    if alone.all():
-        return size, 2.0 * ratio.size
+    together = (more > 0).sum(axis=1) > 1
+    if not together.any():
+        return size
 
     def weight(of: Integers) -> Floats:
         return np.asarray(np.prod(ratio ** (2.0 * of), axis=1) / np.mean(ratio) ** 2)
 
-    together = ~alone
-    crossed = n_moved == 2
+    crossed = np.flatnonzero((surfaces.exponents > 0).sum(axis=1) == 2)
+    variance = np.nan_to_num(surfaces.sigma[row]) ** 2 * np.diagonal(
+        surfaces.covariance_factor[surfaces.pattern[row]]
+    )
+    square = np.maximum(surfaces.coefficient[row, crossed] ** 2 - variance[crossed], 0.0)
     lack = surfaces.lack_of_fit
     excess, freedom = _beyond_repeats(
         float(lack.sum_of_squares[row]), int(lack.degrees_of_freedom[row]),
         float(lack.pure_error_sum_of_squares[row]), int(lack.pure_error_degrees_of_freedom[row]),
     )  # fmt: skip
     of_residuals = float(seen[together] @ weight(more[together]))
-    total, count = float(np.sum(square[crossed] / weight(powers[crossed]))), int(crossed.sum())
+    total = float(np.sum(square / weight(surfaces.exponents[crossed])))
+    count = crossed.size
     if freedom > 0 and of_residuals > 0:
         total, count = total + freedom * excess / of_residuals, count + freedom
     size[together] = total / count * weight(more[together])
-    return size, 2.0 * ratio.size + count
+    return size
 
 
 def _beyond_repeats(

@@ -122,7 +122,7 @@ def drift_over_order(surfaces: ResponseSurfaces, order: ArrayLike) -> Drift:
 
 
 _DRIFTS = 0.05
-"""A p below this is worth a word."""
+"""Probability of naming a response of an experiment in which nothing drifts; an upper bound."""
 
 
 def _replaced(surfaces: ResponseSurfaces) -> set[str]:
@@ -195,7 +195,7 @@ def drifting_responses(surfaces: ResponseSurfaces, drift: Drift) -> tuple[Note, 
     Returns
     -------
     notes : tuple of Note
-        One a response with a p below 0.05.
+        One a response with a p below 0.05 over the number of responses.
 
     Raises
     ------
@@ -204,8 +204,9 @@ def drifting_responses(surfaces: ResponseSurfaces, drift: Drift) -> tuple[Note, 
 
     Notes
     -----
-    One response in twenty is named though nothing drifts; runs in an order by load [3]_ hide
-    a drift in the terms of the loads.
+    In one experiment of twenty, at most, a response is named though nothing drifts: Bonferroni's
+    bound over the responses, each by the surface in use.  Runs in an order by load [3]_ hide a
+    drift in the terms of the loads.
 
     Examples
     --------
@@ -230,12 +231,15 @@ def drifting_responses(surfaces: ResponseSurfaces, drift: Drift) -> tuple[Note, 
         surfaces.transform_exponent == 0, 1.0, np.nan_to_num(np.abs(surfaces.fitted)).mean(axis=1)
     )
     share = np.divide(drift.slope, size, out=np.full(size.shape, np.nan), where=size > 0)
+    replaced = _replaced(surfaces)
+    in_use = np.array([name not in replaced for name in surfaces.response_names])
+    n_judged = int(np.isfinite(drift.p_value[in_use]).sum())
     return tuple(
         note("response-drifts", response=name, slope=float(slope), share=float(part), p=float(p))
-        for name, slope, part, p in zip(
-            surfaces.response_names, drift.slope, share, drift.p_value, strict=True
+        for name, slope, part, p, judged in zip(
+            surfaces.response_names, drift.slope, share, drift.p_value, in_use, strict=True
         )
-        if p < _DRIFTS
+        if judged and n_judged * p < _DRIFTS
     )
 
 

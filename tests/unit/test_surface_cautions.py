@@ -1,5 +1,8 @@
 """Cautions: each stands where its cause is, and not where it is not."""
 
+from dataclasses import fields, replace
+
+import numpy as np
 import pytest
 
 from reduction.experiments.designs import FactorLevels, box_behnken, plackett_burman
@@ -103,6 +106,23 @@ def test_an_order_by_load_is_confounded_with_the_mean_tension():
     # the four and four levels have norm sqrt(8), the places 1 to 15 have norm sqrt(280)
     assert f"mean_tension {44 / (8 * 280) ** 0.5:+.2f}" in caution.message
     assert "frequency" not in caution.message
+
+
+def test_an_order_that_was_drawn_is_named_in_one_plan_of_twenty():
+    """Runs in an order drawn at random follow some factor by chance."""
+    rng = np.random.default_rng(7)
+    plan = sheet()
+    named = 0
+    for _ in range(600):
+        order = rng.permutation(plan.n_runs)
+        moved = {
+            one.name: getattr(plan, one.name)[order]
+            for one in fields(plan)
+            if one.name != "factors"
+        }
+        named += "order-confounded" in found(replace(plan, **moved))
+    # 0.05 +- 0.009 of 600
+    assert 0.03 < named / 600 < 0.08
 
 
 def test_loads_that_are_not_known_are_said():

@@ -21,22 +21,34 @@ def fitted(responses, *, transform="none", coded=PLAN, **more):
     )  # fmt: skip
 
 
-def test_a_parabola_of_three_levels_misses_what_its_slope_and_curvature_suggest():
-    """Cubic a rho^2/3 (x^3 - x), quartic a rho^3/4 (x^4 - x^2), a of the series of a logarithm."""
-    slope, curvature, rho = 0.8, -0.3, 2 / 3
-    x = np.array([-1.0, 0.0, 1.0, -1.0, 1.0])
-    levels = x[:, None]
+@pytest.mark.parametrize("response", ["loss_factor", "storage_spring_constant"])
+def test_a_parabola_of_three_levels_misses_what_spectra_of_its_slope_and_curvature_do(response):
+    """Drawn spectra: what the parabola misses, by regression on its slope and curvature."""
+    rng = np.random.default_rng(5)
+    time = np.arange(-12.0, 12.0, 0.1)
+    slope, curvature = 0.8, -0.3
+    x = np.array([-1.0, 0.0, 1.0, -0.5, 0.5])
+    apart = np.log(0.3 + 0.2 * x)[:, None] - time
+    part = 1 / np.cosh(apart) if response == "loss_factor" else 1 + np.tanh(apart)
+    low, middle, high, *between = part @ rng.normal(size=(time.size, 20000))
+    bent = np.stack([(high - low) / 2, (high + low) / 2 - middle])
+    missed = np.stack([
+        own - middle - at * bent[0] - at**2 * bent[1] for own, at in zip(between, x[3:], strict=True)
+    ])  # fmt: skip
+    gain = missed @ bent.T @ np.linalg.inv(bent @ bent.T)
+    left = np.mean((missed - gain @ bent) ** 2, axis=1)
+    given = np.array([slope, curvature])
+    size = given @ np.linalg.solve(np.cov(bent), given) / 2
+    wanted = np.sqrt((gain @ given) ** 2 + size * left)
+    levels = np.array([-1.0, 0.0, 1.0, -1.0, 1.0])
     found = fit_surfaces(
-        levels, [slope * x + curvature * x**2], factor_names=["f"], response_names=["y"],
-        low=[0.1], high=[0.5], units="coded", with_tests=False,
+        levels[:, None], [slope * levels + curvature * levels**2], factor_names=["frequency"],
+        response_names=[response], low=[0.1], high=[0.5], units="coded", with_tests=False,
     )  # fmt: skip
-    at = np.array([-1.0, -0.6, 0.0, 0.3, 1.0])
-    size = max(slope, abs(2 * curvature / rho))
-    beyond = curvature + rho / 2 * slope  # what a logarithm of this slope does not bend
-    cubic = np.hypot(size * rho**2 / 3, beyond * rho)
-    quartic = np.hypot(size * rho**3 / 4, beyond * rho**2 * 11 / 12)
-    wanted = np.hypot(cubic * (at**3 - at), quartic * (at**4 - at**2))
-    np.testing.assert_allclose(discrepancy_of(found).at(at[:, None])[0], wanted, atol=1e-9)
+    at = discrepancy_of(found).at(x[:, None])[0]
+    assert at[:3] == pytest.approx(0.0, abs=1e-8)
+    # a cubic and a quartic stand for all that is missed
+    assert at[3:] == pytest.approx(wanted, rel=0.1)
 
 
 def test_a_loss_that_is_least_between_the_levels_is_within_the_interval():
@@ -47,7 +59,7 @@ def test_a_loss_that_is_least_between_the_levels_is_within_the_interval():
 
     coded = np.array([-1.0, 0.0, 1.0, -1.0, 1.0])[:, None]
     found = fit_surfaces(
-        coded, [law(0.3 + 0.2 * coded[:, 0])], factor_names=["f"], response_names=["y"],
+        coded, [law(0.3 + 0.2 * coded[:, 0])], factor_names=["frequency"], response_names=["y"],
         low=[0.1], high=[0.5], units="coded", with_tests=False, transforms="log",
     )  # fmt: skip
     discrepancy = discrepancy_of(found)
@@ -55,7 +67,7 @@ def test_a_loss_that_is_least_between_the_levels_is_within_the_interval():
     left, middle, right = np.log(law(np.array([0.1, 0.3, 0.5])))
     missed = 0.375 * left + 0.75 * middle - 0.125 * right - np.log(law(0.2))
     assert missed == pytest.approx(0.099, abs=1e-3)
-    assert missed / 2 < discrepancy.at(between)[0, 0] < missed
+    assert missed / 2 < discrepancy.at(between)[0, 0] < 1.5 * missed
 
 
 def test_nothing_is_missed_at_the_runs_of_one_factor_and_something_between_them():
@@ -65,8 +77,8 @@ def test_nothing_is_missed_at_the_runs_of_one_factor_and_something_between_them(
     assert found.at(PLAN)[0] == pytest.approx(0.0, abs=1e-8)
     between = np.array([[-0.5, 0.0, 0.0]])
     assert 0.02 < found.at(between)[0, 0] < 0.1
-    # slope and curvature of three factors, three interactions, three contrasts of the residuals
-    assert found.degrees_of_freedom == pytest.approx([12.0])
+    # slope and curvature of three factors
+    assert found.degrees_of_freedom == pytest.approx([6.0])
 
 
 def test_scatter_alone_is_no_lack_of_fit():
@@ -122,8 +134,7 @@ def exponential(rng, at):
         (exponential, "none", 0.93),
         (exponential, "log", 0.93),
         (relaxing, "none", 0.93),
-        # one time within the frequencies turns a logarithm faster than three levels can show
-        (relaxing, "log", 0.8),
+        (relaxing, "log", 0.93),
     ],
 )
 def test_intervals_hold_laws_that_are_not_quadratic(law, transform, least):
@@ -145,3 +156,52 @@ def test_intervals_hold_laws_that_are_not_quadratic(law, transform, least):
             kept.append(((ends[0, :, 0] <= truth) & (truth <= ends[0, :, 1])).mean())
     assert np.mean(held) > least
     assert np.mean(held) >= np.mean(scatter)
+
+
+def line_of(static, storage, loss, frequency, amplitude):
+    """K_ap, H, K_1 and tau of a storage and a loss."""
+    spring, above = np.hypot(static + storage, loss), storage
+    time = above / loss / (2 * np.pi * frequency)
+    return np.stack([
+        spring, np.pi * (amplitude / spring) ** 2 * loss, (above**2 + loss**2) / above, time
+    ])  # fmt: skip
+
+
+@pytest.mark.parametrize("slow", [1.0, 20.0])
+def test_times_are_held_where_a_loss_turns_within_the_frequencies(slow):
+    """Greatest by a time within the range, or least between a slow and a fast time.
+
+    The relaxation time bends more than its slope and curvature say, as the loss does: looked at
+    between the lower two frequencies, which are farthest apart.
+    """
+    rng = np.random.default_rng(2)
+    centre, half = (LOW + HIGH) / 2, (HIGH - LOW) / 2
+    names = ("apparent_spring_constant", "hysteresis_energy", "dissipation_spring_constant",
+             "relaxation_time")  # fmt: skip
+    held = []
+    for _ in range(30):
+        # of a peak a slow relaxation stands beside; of a dip a fast one far above
+        middle = np.exp(rng.uniform(np.log(0.13), np.log(0.4)))
+        apart = rng.uniform(4, 12) if slow == 1.0 else 1.0
+        times = np.array([apart, slow / apart]) / (2 * np.pi * middle)
+        shares = rng.uniform(0.3, 1.0, 2) * (1 if slow == 1.0 else np.array([1.0, 0.3]))
+
+        def law(at, times=times, shares=shares):
+            turn = 2 * np.pi * at[:, :1] * times
+            static = 1.5 + 0.02 * (at[:, 1] - 21)
+            storage, loss = ((shares * one / (1 + turn**2)).sum(axis=1) for one in (turn**2, turn))
+            return line_of(static, storage, loss, at[:, 0], at[:, 2] / 100)
+
+        points = rng.uniform([-1, -1, -1], [0, 1, 1], (40, 3))
+        truth = law(centre + half * points)[3]
+        runs = law(centre + half * PLAN) * (1 + 1e-3 * rng.normal(size=(4, 15)))
+        low, high = (np.array([*end[:2], end[2] / 100]) for end in (LOW, HIGH))
+        surfaces = fit_surfaces(
+            PLAN, runs, factor_names=("frequency", "mean_tension", "tension_amplitude"), low=low,
+            high=high, units="coded", response_names=names, with_tests=False,
+            transforms=("none", "log", "none", "log-times-frequency"),
+        )  # fmt: skip
+        at = evaluate_surfaces(surfaces, points, units="coded")
+        ends = with_shared_at_points(surfaces, at, np.zeros((0, 4, 10)), []).confidence_interval[3]
+        held.append(((ends[:, 0] <= truth) & (truth <= ends[:, 1])).mean())
+    assert np.mean(held) > 0.93

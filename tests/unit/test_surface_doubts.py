@@ -65,6 +65,24 @@ def test_a_drift_is_named_with_its_slope_and_its_absence_is_silent():
     assert drifting_responses(still, drift_over_order(still, order)) == ()
 
 
+def test_one_experiment_of_twenty_is_named_though_nothing_drifts():
+    """Four responses of each experiment, one of them with its logarithm beside it."""
+    rng = np.random.default_rng(12)
+    n_experiments, named = 400, 0
+    for _ in range(n_experiments):
+        values = 10 + rng.normal(size=(4, 15))
+        surfaces = fit_surfaces(
+            CODED, values[[0, 1, 2, 3, 3]], units="coded", factor_names=["f", "T", "a"],
+            response_names=["apparent_spring_constant", "dissipation_spring_constant",
+                            "relaxation_time", "hysteresis_energy", "log_hysteresis_energy"],
+            low=[0] * 3, high=[1] * 3, transforms=["none"] * 4 + ["log"], with_tests=False,
+        )  # fmt: skip
+        drift = drift_over_order(surfaces, rng.permutation(15))
+        named += bool(drifting_responses(surfaces, drift))
+    # one in twenty +- 0.011
+    assert 0.02 < named / n_experiments < 0.085
+
+
 def test_a_drift_of_other_surfaces_is_refused():
     one = fitted(CODED[:, 0] + 3)
     other = drift_over_order(one, np.arange(15))
