@@ -882,6 +882,12 @@ _OF_HOLDS: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         " {worth:.3g} N ({share:.1%} of the loss): drop, rate per decade and Prony series refer to"
         " the length at the end of the ramp; their uncertainty allows for half of this change",
     ),
+    "hold-ramp-within-steps": (
+        "warning",
+        "the ramp takes two steps of the log at most: what relaxed between its end and the first"
+        " reading of the hold is not in the log, and tension at the start and drop are known to"
+        " what a decade of time takes. Log faster",
+    ),
     "hold-start-contradicted": (
         "refusal",
         "drop, rate per decade and Prony series not given: the log peaks at {peak:.4g} N near the"

@@ -89,6 +89,66 @@ def _exponentials(elapsed: Floats, relaxation_time: Floats) -> Floats:
     return columns
 
 
+def terms_by_shape_of_ramp(
+    added: ArrayLike,
+    duration: float,
+    tension: Floats,
+    relaxation_time: Floats,
+    long_time_tension: float,
+    *,
+    ramp_duration: float,
+    since_end: float,
+) -> Floats:
+    """Terms after a step in length, the ramp as it was logged in place of one of constant rate.
+
+    What the ramp would add without relaxing follows from what it added, by the terms themselves.
+
+    Parameters
+    ----------
+    added : array_like, shape (n_times,)
+        Tension that the ramp had added at even times up to its end. [N]
+    duration : float
+        Of the ramp. [s]
+    tension, relaxation_time : ndarray, shape (n_terms,)
+        By a ramp of constant rate. [N], [s]
+    long_time_tension : float
+        [N]
+    ramp_duration, since_end : float
+        Of that ramp, and how much later than the logged one it ends. [s]
+
+    Returns
+    -------
+    tension : ndarray, shape (n_terms,)
+        [N]
+
+    Examples
+    --------
+    A ramp of constant rate of a term that relaxes as fast:
+
+    >>> elastic = np.linspace(0.0, 400.0, 65)
+    >>> t = np.linspace(0.0, 5.0, 65)
+    >>> logged = 0.6 * elastic + 0.4 * 80 * 5 * (1 - np.exp(-t / 5))
+    >>> print(terms_by_shape_of_ramp(logged, 5.0, np.array([160.0]), np.array([5.0]), 240.0,
+    ...                              ramp_duration=5.0, since_end=0.0).round(1))
+    [160.]
+    """
+    logged = np.asarray(added, dtype=np.float64)
+    ratio = duration / (logged.size - 1) / relaxation_time
+    decay, gain = np.exp(-ratio), -np.expm1(-ratio) / ratio
+    share = tension / (long_time_tension + tension.sum())
+    rest = 1.0 - share.sum()
+    elastic, states = 0.0, np.zeros(relaxation_time.size)
+    for load in logged[1:]:
+        states = states * decay
+        push = (load - rest * elastic - states.sum()) / (rest + share @ gain)
+        elastic += push
+        states = states + share * gain * push
+    # of each term at the end of the ramp, over what a step to its length would have left
+    left = np.divide(states, share * elastic, out=np.ones_like(states), where=share > 0)
+    at_end = tension * _ramp_factor(relaxation_time, ramp_duration=ramp_duration)
+    return np.asarray(at_end * np.exp(since_end / relaxation_time) / left)
+
+
 _DEGENERATE = "terms not positive, or not distinct"
 
 GRID_TIMES = 20
@@ -98,6 +158,9 @@ STARTS = 3
 DECISIVE = 10.0
 
 LONGEST_TIME = 2.0
+
+LARGEST_SHARE = 0.5
+"""Uncertainty of a term, or of its time, as a share of it, beyond which there is no series. [1]"""
 
 BLOCK_ERROR = 2e-4
 
@@ -175,9 +238,9 @@ def _unsupported(
         return f"a time of {times.max():.3g} s is too long for a hold of {longest:.3g} s"
     if times.min() < shortest:
         return f"a time of {times.min():.3g} s is shorter than the record resolves"
-    if np.any(uncertainty[1 : size.size + 1] > 0.5 * size):
+    if np.any(uncertainty[1 : size.size + 1] > LARGEST_SHARE * size):
         return "a term is uncertain by more than half its size"
-    if np.any(uncertainty[size.size + 1 :] > 0.5):
+    if np.any(uncertainty[size.size + 1 :] > LARGEST_SHARE):
         return "a relaxation time is uncertain by more than half"
     return None
 

@@ -77,7 +77,7 @@ def ramp_end_time(time: Floats, place: Floats, *, band: float) -> tuple[float, f
     end = float(time[-1])
     step = float(time[-1] - time[-2]) if time.size > 1 else 0.0
     # a ramp within a step or two: each is cut short, and says nothing of the rate
-    if time.size <= _FEWEST_STEPS:
+    if time.size <= FEWEST_STEPS:
         return end, step / 3**0.5
     left = np.abs(place - place[-1])
     stroke, duration = float(left[0]), end - float(time[0])
@@ -100,9 +100,33 @@ def ramp_end_time(time: Floats, place: Floats, *, band: float) -> tuple[float, f
     return end, width / 12**0.5
 
 
-_FEWEST_STEPS = 3  # samples
+FEWEST_STEPS = 3  # samples
 
 _SLOWS = 0.8  # of the rate of the steps before, that the last whole one has
+
+
+def time_to_stop(time: Floats, place: Floats, *, held_at: float) -> float:
+    """How much longer a ramp that slows down moves after its last sample. [s].
+
+    Of an evenly slowing crosshead, by what it has left to go and its last speed; nil for one that
+    comes to its corner at the mean speed of the ramp, or runs back.
+
+    Examples
+    --------
+    Slowing evenly to a stand at 4 s, the last sample at 3 s.
+
+    >>> t = np.arange(0.0, 3.1, 0.1)
+    >>> x = np.where(t < 2, t, 4 - (4 - t) ** 2 / 4 - 1)
+    >>> print(round(time_to_stop(t, x, held_at=3.0), 1))
+    0.9
+    """
+    if time.size <= FEWEST_STEPS:
+        return 0.0
+    back = min(_STEPS_BEFORE, time.size - 2)
+    speed = (place[-1] - place[-1 - back]) / (time[-1] - time[-1 - back])
+    mean = (place[-1] - place[0]) / (time[-1] - time[0])
+    left = (held_at - place[-1]) / speed if speed else 0.0
+    return 2 * float(left) if left > 0 and abs(speed) < _SLOWS * abs(mean) else 0.0
 
 
 @dataclass(frozen=True)

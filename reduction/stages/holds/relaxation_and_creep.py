@@ -52,16 +52,26 @@ from reduction.record.samples import (
 from reduction.record.settings import HoldSettings
 from reduction.stages.approach import find_approach, last_motion
 from reduction.stages.cycles.loops import reading_noise
-from reduction.stages.holds.prony_series import PronyFit, fit_prony, prony_tension
+from reduction.stages.holds.prony_series import (
+    LARGEST_SHARE,
+    PronyFit,
+    fit_prony,
+    prony_tension,
+    terms_by_shape_of_ramp,
+)
 from reduction.stages.holds.ramp_end import (
+    FEWEST_STEPS,
     MOTION_KNOWN_TO,
     at_length_of_ramp_end,
     level_at_end,
     ramp_end_time,
+    time_to_stop,
 )
 from reduction.stages.moduli.least_squares import lag_one_inflation
 from reduction.stages.moduli.splice_slip import find_steps, sample_noise
 from reduction.stages.standstills import Standstills
+
+_EMPTY = np.empty(0)
 
 
 @dataclass(frozen=True)
@@ -74,6 +84,8 @@ class _Ramp:
     duration: float
     stiffness: float
     end_uncertainty: float = 0.0
+    # tension over that at its start, at even times up to its end; empty where it adds none. [N]
+    added: Floats = field(default_factory=lambda: _EMPTY)
 
     @property
     def length(self) -> float:
@@ -146,8 +158,13 @@ def _find_ramp(
         duration=min(end - float(seconds[0]), float(np.sqrt(12 * spread))),
         stiffness=_upper_slope(place, load),
         end_uncertainty=end_uncertainty,
+        added=np.interp(np.linspace(seconds[0], ended, _TIMES_OF_RAMP), seconds, load - lowest)
+        if adds is load
+        else _EMPTY,
     )
 
+
+_TIMES_OF_RAMP = 65
 
 _RINGS = 0.02  # of the tension that a ramp adds
 
@@ -683,6 +700,14 @@ class Hold:
         return shifted(self.time, float(centre))
 
     @property
+    def ramp_is_within_steps(self) -> bool:
+        """Whether the ramp takes two steps of the log at most: each is cut short."""
+        if self.ramp is None or self.time.size < 2:
+            return False
+        step = float(self.time[1] - self.time[0])
+        return self.ramp.length <= (FEWEST_STEPS - 1) * (1 + 1e-6) * step
+
+    @property
     def ramp_duration(self) -> float:
         """Of the equivalent constant-rate ramp; 0 where none is known. [s]."""
         return 0.0 if self.ramp is None else self.ramp.duration
@@ -756,6 +781,8 @@ def _hold_ends(hold: Hold) -> _Ends:
             u_initial = float(
                 np.hypot(u_initial, hold.ramp.stiffness * reading_noise(hold.position))
             )
+    if hold.ramp_is_within_steps:
+        u_initial = float(np.hypot(u_initial, _lost_in_a_decade(hold) / np.sqrt(3)))
     late = _late_load(hold, first.value)
     if late is not None:
         u_initial = float(np.hypot(u_initial, _LATE_MISSES * late.rise))
@@ -784,6 +811,22 @@ def _ends_of(
     uncertainty = float(np.hypot(u_final, (1 - drop) * u_initial) / initial)
     known = uncertainty if drop == drop else np.nan
     return _Ends(initial, final, drop, known, u_initial, u_final, n_initial, n_final, late)
+
+
+def _lost_in_a_decade(hold: Hold) -> float:
+    """Tension that is lost while the time since the ramp grows tenfold, from the first step on.
+
+    A ramp within a step or two of the log may have ended anywhere in the last: of what relaxed
+    until the first reading nothing is in the log, and that may be as much as in the decade behind.
+    """
+    since = shifted(hold.time, hold.ramp_end_time)
+    begin = int(np.searchsorted(since, 0.0, side="right"))
+    stop = int(np.searchsorted(since, 10 * since[min(begin, since.size - 1)], side="right"))
+    if stop - begin < FEWEST_SAMPLES // 4:
+        return 0.0
+    part = slice(begin, stop)
+    _, rate, _ = _on_line(since[part], hold.tension[part], float(since[begin]), noise=0.0)
+    return float(abs(rate) * since[begin] * np.log(10))
 
 
 def _at_last(hold: Hold, n_samples: int) -> tuple[float, float]:
@@ -905,12 +948,14 @@ class _Motion:
     """What the crosshead does after the end of its ramp.
 
     ``time`` and ``distance``, shape (n_blocks,), are block means [s], [m]; ``greatest`` the
-    greatest of them, signed, zero where none is told from noise [m].
+    greatest of them, signed, zero where none is told from noise; ``known_to`` the standard
+    uncertainty of the position that they count from [m].
     """
 
     time: Floats
     distance: Floats
     greatest: float
+    known_to: float
 
 
 def _motion_of(hold: Hold) -> _Motion:
@@ -921,19 +966,24 @@ def _motion_of(hold: Hold) -> _Motion:
     begin = level_at_end(since, hold.position, noise=noise, step=_step_of(hold.position))
     later = int(np.searchsorted(since, 0.0, side="right"))
     if since.size - later < 2:
-        return _Motion(np.empty(0), np.empty(0), 0.0)
+        return _Motion(np.empty(0), np.empty(0), 0.0, 0.0)
     blocks = logarithmic_blocks(since[later:], hold.position[later:], per_decade=10)
     quantum = sample_noise(hold.position)[1]
+    # of a crosshead that stands the beginning is known to its noise
+    own = min(begin.standard_uncertainty, _NOISE_OF_BEGIN * noise)
     spread = np.hypot(
-        np.hypot(noise / np.sqrt(blocks.count), begin.standard_uncertainty),
+        np.hypot(noise / np.sqrt(blocks.count), own),
         quantum / np.sqrt(12) if noise < quantum / 2 else 0.0,
     )
     distance = blocks.value - begin.value
     told = np.where(np.abs(distance) > _MOTION_TOLD * spread, distance, 0.0)
     return _Motion(
-        blocks.elapsed + hold.ramp_end_time, distance, float(told[np.argmax(np.abs(told))])
-    )
+        blocks.elapsed + hold.ramp_end_time, distance, float(told[np.argmax(np.abs(told))]),
+        begin.standard_uncertainty,
+    )  # fmt: skip
 
+
+_NOISE_OF_BEGIN = 3.0  # at most: of a line through three readings
 
 _MOTION_TOLD = 5.0  # standard uncertainties: some fifty blocks are looked at
 
@@ -947,8 +997,10 @@ def _at_one_length(hold: Hold, ends: _Ends) -> tuple[Hold, float]:
     motion = hold.motion
     stiffness = np.nan if hold.ramp is None else hold.ramp.stiffness
     worth = stiffness * motion.greatest
+    # a crosshead that settles between two readings
+    of_begin = float(np.nan_to_num(abs(stiffness) * motion.known_to))
     if not abs(worth) > _MOTION_WORTH * abs(ends.initial - ends.final):
-        return hold, 0.0
+        return hold, of_begin
     distance = np.interp(hold.time, motion.time, motion.distance)
     lost = min(max(ends.drop, 0.0), 1.0)
     share = abs(worth) / abs(ends.initial - ends.final)
@@ -956,7 +1008,7 @@ def _at_one_length(hold: Hold, ends: _Ends) -> tuple[Hold, float]:
     # the intervals hold half of it
     hold.notes.append(replace(found, severity="note") if share < _MOTION_LARGE else found)
     kept = at_length_of_ramp_end(hold.tension, distance, stiffness=stiffness, lost_share=lost)
-    return replace(hold, tension=kept), float(MOTION_KNOWN_TO * abs(worth))
+    return replace(hold, tension=kept), float(np.hypot(MOTION_KNOWN_TO * abs(worth), of_begin))
 
 
 def _step_reason(hold: Hold) -> Note | None:
@@ -1135,6 +1187,16 @@ def _ramp_before(time: Floats, moved: Floats, answer: Floats, *, band: float) ->
     return _find_ramp(*before, band=band) if before[0].size > 2 else None
 
 
+def _with_time_to_stop(
+    ramp: _Ramp, time: Floats, position: Floats, first: int, held_at: float
+) -> _Ramp:
+    """A ramp that may have ended at any time while its crosshead came to its stand."""
+    own = slice(int(np.searchsorted(time[: first + 1], ramp.start_time)), first + 1)
+    known = np.flatnonzero(_is_finite_and_later(time[own], position[own])) + own.start
+    left = time_to_stop(time[known], position[known], held_at=held_at)
+    return replace(ramp, end_uncertainty=float(np.hypot(ramp.end_uncertainty, left / 3**0.5)))
+
+
 def select_hold(
     time: Floats,
     position: Floats,
@@ -1192,6 +1254,7 @@ def select_hold(
     )
     leads_to = np.nan
     if ramp is not None and standstills.tension_tolerance is None and place.size:
+        ramp = _with_time_to_stop(ramp, time, position, first, float(np.median(place)))
         leads_to = _ramp_leads_to(time, position, tension, ramp, first, float(place[0]))
     return Hold(
         time=seconds,
@@ -1308,11 +1371,13 @@ def _greatest(values: Floats) -> float:
 
 _BESIDE, _SAMPLES_BESIDE = 0.05, 5
 
-_EMPTY = np.empty(0)
 
+def _rate(hold: Hold, ends: _Ends, *, known_to: float) -> _Rate | None:
+    """Share of tension lost per decade, or None with a refusal.
 
-def _rate(hold: Hold, ends: _Ends) -> _Rate | None:
-    """Share of tension lost per decade, or None with a refusal."""
+    What a motion is worth relaxes as the rest does, but is taken off as it is: the rate is known to
+    that share of it, twice what is not known of the motion.
+    """
     if hold.ramp is None:
         hold.refusals.append(note("rate-without-ramp"))
         return None
@@ -1330,7 +1395,8 @@ def _rate(hold: Hold, ends: _Ends) -> _Rate | None:
             note("rate-not-told-from-zero", loss=-slope.value, spread=slope.standard_uncertainty)
         )
         return None
-    return _Rate(-slope.value, slope.standard_uncertainty, slope.elapsed_low, slope.elapsed_high)
+    spread = float(np.hypot(slope.standard_uncertainty, slope.value * 2 * known_to / ends.initial))
+    return _Rate(-slope.value, spread, slope.elapsed_low, slope.elapsed_high)
 
 
 def _prony(hold: Hold, ends: _Ends, settings: HoldSettings, *, known_to: float) -> PronyFit | None:
@@ -1458,6 +1524,32 @@ def _less_known(fit: PronyFit, unknown: float) -> PronyFit:
     )
 
 
+def _with_shape_of_ramp(fit: PronyFit, hold: Hold) -> PronyFit | None:
+    """A series whose terms are known to what the shape of the ramp makes of them, or a refusal.
+
+    The ramp of constant rate that stands for it has the centre and the spread of the tension that
+    was logged, which relaxed during the ramp.
+    """
+    ramp = hold.ramp
+    if ramp is None or not ramp.added.size:
+        return fit
+    since_end = _equivalent_end(hold) - ramp.end_time
+    own = terms_by_shape_of_ramp(
+        ramp.added, ramp.length, fit.tension, fit.time, fit.long_time_tension,
+        ramp_duration=hold.ramp_duration, since_end=since_end,
+    )  # fmt: skip
+    off = np.abs(own - fit.tension)
+    if np.any(off > LARGEST_SHARE * fit.tension):
+        found = (
+            f"a term changes by {float((off / fit.tension).max()):.0%} with the shape of its ramp"
+        )
+        reason = "the ramp is not of constant rate"
+        hold.refusals.append(note("no-prony-series", reason=reason, found=found))
+        return None
+    spread = np.hypot(fit.tension_standard_uncertainty, off)
+    return replace(fit, tension_standard_uncertainty=spread)
+
+
 def _result(
     hold: Hold,
     *,
@@ -1498,6 +1590,8 @@ def _result(
                 shifted(times_known, hold.ramp_end_time), known, times, begin_uncertainty=unsure
             )
         reasons = _reasons_against(hold, ends, settings) if kind == "relaxation" else []
+        if kind == "relaxation" and not reasons and hold.ramp_is_within_steps:
+            hold.notes.append(note("hold-ramp-within-steps"))
         hold.refusals.extend(reasons)
         late = ends.late
         if kind == "relaxation" and late is not None:
@@ -1511,14 +1605,15 @@ def _result(
             rate = _creep(hold)
         elif not reasons:
             kept, unknown = _at_one_length(hold, ends)
-            if kept is not hold:
-                ends = _with_motion(ends, _hold_ends(kept), unknown)
+            ends = _with_motion(ends, ends if kept is hold else _hold_ends(kept), unknown)
             drop = _Rate(ends.drop, ends.drop_uncertainty, np.nan, np.nan)
-            rate = _rate(kept, ends)
+            rate = _rate(kept, ends, known_to=unknown)
             prony = _prony(kept, ends, settings, known_to=unknown)
             if prony is not None:
                 modelled = _at_ramp_end(kept, prony)
-                prony = _less_known(prony, unknown)
+                prony = _with_shape_of_ramp(_less_known(prony, unknown), kept)
+            if prony is None:
+                modelled = np.nan
     _describe(hold, rate, follows_hold=follows_hold)
     shown = rate or _Rate(np.nan, np.nan, np.nan, np.nan)
     return HoldResult(
