@@ -48,6 +48,11 @@ def test_a_hold_begins_where_its_ramp_ends(law, tmp_path):
     assert check(law, 1, tmp_path) >= 2
 
 
+def test_a_line_through_few_readings_leads_no_higher_than_the_ramp(tmp_path):
+    """Five readings a second of what relaxes in seconds: the ramp says more than the hold."""
+    assert check("hold-tether", 116, tmp_path) >= 2
+
+
 @pytest.mark.nightly
 @pytest.mark.parametrize("law", LAWS)
 def test_holds_of_many_realisations(law, tmp_path):

@@ -6,7 +6,7 @@ import pytest
 from reduction.record.settings import HoldSettings, PhaseSettings
 from reduction.stages.approach import find_approach
 from reduction.stages.holds.ramp_end import ramp_end_time
-from reduction.stages.holds.relaxation_and_creep import reduce_holds
+from reduction.stages.holds.relaxation_and_creep import reduce_holds, select_hold
 from reduction.stages.standstills import find_standstills
 
 END, RAMP, DURATION = 20.0, 15.0, 300.0
@@ -194,3 +194,93 @@ def test_a_ramp_that_stands_in_most_of_its_last_steps_ends_at_its_last_sample():
     place = np.floor(np.minimum(time, 30) / 4)
     end, width = ramp_end_time(time, place, band=0.5)
     assert end == 39.0 and width > 0
+
+
+def relaxed(time, place, *, fast=0.0):
+    """Tension of a path between times: 60 N that stay, 40 N of 10 s, and some of 0.05 s."""
+    states = np.zeros((2, time.size))
+    times, sizes = np.array([10.0, 0.05]), np.array([40.0, fast])
+    for i in range(1, time.size):
+        ratio = (time[i] - time[i - 1]) / times
+        push = (place[i] - place[i - 1]) * -np.expm1(-ratio) / ratio
+        states[:, i] = states[:, i - 1] * np.exp(-ratio) + sizes * push
+    return 60 * place + states.sum(axis=0)
+
+
+def hold_of(time, place, tension):
+    rng = np.random.default_rng(8)
+    tension = tension + 0.03 * rng.standard_normal(time.size)
+    place = place + 1e-5 * rng.standard_normal(time.size)
+    stand = find_standstills(time, place, [tension], settings=PhaseSettings(), is_held=True)
+    (hold,) = reduce_holds(
+        time, place, [tension], [place], stand, specimens=("piece",), settings=HoldSettings()
+    )
+    return hold
+
+
+def test_a_crosshead_that_settles_within_a_few_readings_is_taken_off():
+    """It runs back by 1 % in about a second, of which half is between two readings."""
+    fine = np.arange(0.0, 160.0, 0.01)
+    place = np.interp(fine, [10.0, 14.0], [0.0, 1.01])
+    held = relaxed(fine, place)
+    after = fine > 14
+    moved = np.where(after, 1 + 0.01 * np.exp(-np.clip(fine - 14, 0, None) / 0.7), place)
+    logged = slice(3, None, 50)
+    hold = hold_of(fine[logged], moved[logged], relaxed(fine, moved)[logged])
+    end = np.searchsorted(fine, 14.0)
+    drop = 1 - held[-1] / held[end]
+    assert [one.code for one in hold.notes if one.code == "hold-settles"]
+    assert abs(hold.relaxation_drop - drop) < 2 * hold.relaxation_drop_standard_uncertainty
+    assert hold.relaxation_drop == pytest.approx(drop, abs=0.004)
+
+
+@pytest.mark.parametrize("bend", [0.3, 1.0])
+def test_terms_are_known_to_what_the_shape_of_the_ramp_makes_of_them(bend):
+    """The elastic tension of a ramp of constant speed that stiffens: 40 N at its end, 10 s."""
+    time = np.arange(0.0, 200.0, 0.05)
+    way = np.clip((time - 10) / 20, 0, 1)
+    elastic = (way + bend * way**2) / (1 + bend)
+    hold = hold_of(time, way, relaxed(time, elastic))
+    assert hold.prony_time == pytest.approx([10], rel=0.02)
+    (off,) = (hold.prony_tension - 40) / hold.prony_tension_standard_uncertainty
+    assert abs(off) < 2
+
+
+def test_a_ramp_of_two_rates_has_no_series():
+    """The last 30 s add less than half of a constant rate: the term is twice what it makes."""
+    time = np.arange(0.0, 200.0, 0.05)
+    place = np.interp(time, [10.0, 20.0, 50.0], [0.0, 0.7, 1.0])
+    hold = hold_of(time, place, relaxed(time, place))
+    assert not hold.prony_tension.size
+    assert "the ramp is not of constant rate" in hold.refused
+
+
+def test_a_ramp_within_two_steps_of_the_log_is_known_to_what_a_decade_takes():
+    """A loss by the logarithm of the time, from a ramp of half a second, at a reading a second."""
+    time = np.arange(0.2, 300.0)
+    since = np.clip(time - 9.5, 0, None)
+    place = np.clip((time - 9.0) / 0.5, 0, 1)
+    # the mean over the ramp of 1 - 0.1 lg(1 + t / 0.01)
+    before = np.linspace(0, 0.5, 201)
+    loss = 0.1 * np.log10(1 + (since[:, None] + before) / 0.01).mean(axis=1)
+    hold = hold_of(time, place, 100 * place * (1 - loss))
+    start = 100 * (1 - 0.1 * np.log10(1 + before / 0.01).mean())
+    assert [one.code for one in hold.notes if one.code == "hold-ramp-within-steps"]
+    off = hold.hold_initial_tension - start
+    assert abs(off) < 2 * hold.hold_initial_tension_standard_uncertainty
+    # two thirds of a decade passed before the first reading
+    assert hold.hold_initial_tension_standard_uncertainty > 4
+
+
+@pytest.mark.parametrize("duration", [5.0, 10.0, 20.0])
+def test_a_ramp_that_slows_evenly_may_end_when_its_crosshead_stands(duration):
+    """The last quarter slows to a stand: the end found is before that, within its half width."""
+    time = np.arange(0.0, 120.0, 0.02)
+    s = np.clip((time - 5) / duration, 0, 1)
+    way = np.where(s < 0.75, s, 0.75 + 0.125 * (1 - ((1 - s) / 0.25) ** 2)) / 0.875
+    way += 1e-5 * np.random.default_rng(8).standard_normal(time.size)
+    stand = find_standstills(time, way, [100 * way], settings=PhaseSettings(), is_held=True)
+    last = stand.first.size - 1
+    found = select_hold(time, way, 100 * way, way, stand, last).ramp
+    assert found.end_time < 5 + duration
+    assert 5 + duration - found.end_time < np.sqrt(3) * found.end_uncertainty

@@ -631,9 +631,9 @@ class Hold:
     logged_peak, ramp_peak, earlier_peak : float
         Greatest reading of tension beside the end of the ramp, of these until it ends, and in its
         last half before these; NaN where the ramp does not add tension. [N]
-    ramp_leads_to : float
+    ramp_leads_to, ramp_leads_to_within : float
         Tension to which the last readings before the end of the ramp lead, at the length where it
-        ends; NaN where it is not known. [N]
+        ends, and its noise; NaN where it is not known. [N]
     n_logged : int
         How many samples the log has of it, those that are left out included. [1]
     on_tension : bool
@@ -654,6 +654,7 @@ class Hold:
     ramp_peak: float = float("nan")
     earlier_peak: float = float("nan")
     ramp_leads_to: float = float("nan")
+    ramp_leads_to_within: float = float("nan")
     n_logged: int = 0
     on_tension: bool = False
     refusals: list[Note] = field(default_factory=list)
@@ -794,7 +795,10 @@ def _hold_ends(hold: Hold) -> _Ends:
     # of a piece that has broken the ramp says nothing
     if SIGNIFICANT * hold.tension_noise < led_to < first.value:
         u_initial = float(np.hypot(u_initial, led_to / np.sqrt(3)))
-    return _ends_of(first.value, u_initial, final, u_final, first.n_samples, n_final, late)
+    initial = first.value
+    if late is None and initial > hold.logged_peak + SIGNIFICANT * hold.tension_noise:
+        initial, u_initial = _with_ramp(hold, initial, u_initial)
+    return _ends_of(initial, u_initial, final, u_final, first.n_samples, n_final, late)
 
 
 def _ends_of(
@@ -811,6 +815,20 @@ def _ends_of(
     uncertainty = float(np.hypot(u_final, (1 - drop) * u_initial) / initial)
     known = uncertainty if drop == drop else np.nan
     return _Ends(initial, final, drop, known, u_initial, u_final, n_initial, n_final, late)
+
+
+def _with_ramp(hold: Hold, initial: float, uncertainty: float) -> tuple[float, float]:
+    """Tension at the end of a ramp that a hold leads back to, and the ramp leads to: of both.
+
+    A line through a few noisy readings of what relaxes fast may lead above all that was logged.
+    Where the ramp leads to less, within what is known of both, each has the weight of its own.
+    """
+    ahead, own = hold.ramp_leads_to, hold.ramp_leads_to_within
+    if not SIGNIFICANT * float(np.hypot(own, uncertainty)) > initial - ahead > 0:
+        return initial, uncertainty
+    weight = uncertainty**2 / (own**2 + uncertainty**2)
+    both = float(np.hypot(weight * own, (1 - weight) * uncertainty))
+    return initial + weight * (ahead - initial), both
 
 
 def _lost_in_a_decade(hold: Hold) -> float:
@@ -1252,10 +1270,10 @@ def select_hold(
     earlier, on_ramp, peak = (
         (np.nan,) * 3 if ramp is None else _logged_peaks(time, tension, ramp, first, last)
     )
-    leads_to = np.nan
+    leads_to = within = np.nan
     if ramp is not None and standstills.tension_tolerance is None and place.size:
         ramp = _with_time_to_stop(ramp, time, position, first, float(np.median(place)))
-        leads_to = _ramp_leads_to(time, position, tension, ramp, first, float(place[0]))
+        leads_to, within = _ramp_leads_to(time, position, tension, ramp, first, float(place[0]))
     return Hold(
         time=seconds,
         position=place,
@@ -1269,6 +1287,7 @@ def select_hold(
         ramp_peak=on_ramp,
         earlier_peak=earlier,
         ramp_leads_to=leads_to,
+        ramp_leads_to_within=within,
         n_logged=last + 1 - first,
         on_tension=standstills.tension_tolerance is not None,
     )
@@ -1314,25 +1333,29 @@ _ROUNDED = 1e-9
 
 def _ramp_leads_to(
     time: Floats, position: Floats, tension: Floats, ramp: _Ramp, first: int, held_at: float
-) -> float:
-    """Tension to which the last readings before the end of a ramp lead, where it ends."""
+) -> tuple[float, float]:
+    """Tension to which the last readings before the end of a ramp lead, where it ends; noise."""
     begin = int(np.searchsorted(time[: first + 1], ramp.start_time))
     end = int(np.searchsorted(time[: first + 1], ramp.end_time))
     known = np.flatnonzero(np.isfinite(position[begin:end] + tension[begin:end])) + begin
     if known.size < _FEWEST_ON_RAMP:
-        return float("nan")
+        return float("nan"), float("nan")
     load, place = tension[known[-_FEWEST_ON_RAMP:]], position[known[-_FEWEST_ON_RAMP:]]
     # readings that noise sets apart as far as the ramp does lead nowhere
     noise = reading_noise(position[first : first + known.size])
     if not np.abs(np.diff(place)).min() > SIGNIFICANT * noise:
-        return float("nan")
+        return float("nan"), float("nan")
     earlier, slope = np.diff(load) / np.diff(place)
     ahead = held_at - place[-1]
     # of a curve that bends more than noise does, the line lies below
     bend = (slope - earlier) / (place[-1] - place[0])
     if abs(bend) * (place[-1] - place[-2]) ** 2 < _BENDS * reading_noise(tension[begin:end]):
         bend = 0.0
-    return float(load[-1] + slope * ahead + bend * ahead * (held_at - place[-2]))
+    leads_to = float(load[-1] + slope * ahead + bend * ahead * (held_at - place[-2]))
+    # of a line through two readings; what is drawn on may bend, and be cut short
+    reach = ahead / (place[-1] - place[-2])
+    noise = reading_noise(tension[first : first + known.size]) * float(np.hypot(1 + reach, reach))
+    return leads_to, float(np.hypot(noise, (leads_to - load[-1]) / np.sqrt(3)))
 
 
 _BENDS = 3.0  # noise of a reading
@@ -1505,7 +1528,8 @@ def _with_delay(
 
 def _with_motion(read: _Ends, kept: _Ends, unknown: float) -> _Ends:
     """Ends as they are read, with the drop at one length and what is not known of that."""
-    spread = float(np.hypot(kept.drop_uncertainty, unknown / read.initial))
+    known_to = max(kept.drop_uncertainty, read.drop_uncertainty)
+    spread = float(np.hypot(known_to, unknown / read.initial))
     return replace(read, drop=kept.drop, drop_uncertainty=spread)
 
 
