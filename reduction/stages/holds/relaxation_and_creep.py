@@ -967,7 +967,7 @@ class _Motion:
 
     ``time`` and ``distance``, shape (n_blocks,), are block means [s], [m]; ``greatest`` the
     greatest of them, signed, zero where none is told from noise; ``known_to`` the standard
-    uncertainty of the position that they count from [m].
+    uncertainty of the position that they count from, zero where noise explains it [m].
     """
 
     time: Floats
@@ -997,7 +997,7 @@ def _motion_of(hold: Hold) -> _Motion:
     told = np.where(np.abs(distance) > _MOTION_TOLD * spread, distance, 0.0)
     return _Motion(
         blocks.elapsed + hold.ramp_end_time, distance, float(told[np.argmax(np.abs(told))]),
-        begin.standard_uncertainty,
+        begin.standard_uncertainty if begin.standard_uncertainty > own else 0.0,
     )  # fmt: skip
 
 
