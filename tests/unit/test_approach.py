@@ -284,3 +284,16 @@ def test_a_ramp_that_slows_evenly_may_end_when_its_crosshead_stands(duration):
     found = select_hold(time, way, 100 * way, way, stand, last).ramp
     assert found.end_time < 5 + duration
     assert 5 + duration - found.end_time < np.sqrt(3) * found.end_uncertainty
+
+
+@pytest.mark.parametrize("duration", [1.15, 1.25, 1.35])
+def test_a_ramp_that_slows_within_its_last_step_is_no_corner(duration):
+    """Five readings a second: the last quarter of the ramp is a step and a half."""
+    fine = np.arange(0.0, 120.0, 0.01)
+    s = np.clip((fine - 5) / duration, 0, 1)
+    way = np.where(s < 0.75, s, 0.75 + 0.125 * (1 - ((1 - s) / 0.25) ** 2)) / 0.875
+    tension = relaxed(fine, way)
+    logged = slice(2, None, 20)
+    hold = hold_of(fine[logged], way[logged], tension[logged])
+    drop = 1 - tension[-20] / tension[np.searchsorted(fine, 5 + duration)]
+    assert abs(hold.relaxation_drop - drop) < 3 * hold.relaxation_drop_standard_uncertainty

@@ -62,8 +62,8 @@ def ramp_end_time(time: Floats, place: Floats, *, band: float) -> tuple[float, f
     Notes
     -----
     No source: the last step of a ramp sampled at even steps is cut short where the ramp ends
-    between two samples.  A ramp that slows down has no corner, and is over at the last sample: what
-    its last fiftieth takes longer than at its mean rate is how far, either way, it may have ended
+    between two samples, or slows down within it.  A ramp that slows down has no corner, and is
+    over at the last sample: what its last fiftieth takes longer than at its mean rate is how far, either way, it may have ended
     from there.  A step of the log that does not show the corner is such a width, too; of a ramp
     within two steps, both of which are cut short, it ends before the last sample.
 
@@ -71,8 +71,9 @@ def ramp_end_time(time: Floats, place: Floats, *, band: float) -> tuple[float, f
     --------
     The crosshead stands after half the last step.
 
-    >>> print(ramp_end_time(np.arange(4.0), np.array([0.0, 1.0, 2.0, 2.5]), band=0.01))
-    (2.5, 0.0)
+    >>> end, known_to = ramp_end_time(np.arange(4.0), np.array([0.0, 1.0, 2.0, 2.5]), band=0.01)
+    >>> print(end, round(known_to, 3))
+    2.5 0.144
     """
     end = float(time[-1])
     step = float(time[-1] - time[-2]) if time.size > 1 else 0.0
@@ -97,6 +98,8 @@ def ramp_end_time(time: Floats, place: Floats, *, band: float) -> tuple[float, f
         width = max(width, step)
     elif not (slows and abs(rate - rates[-1]) * step > band):
         end = float(time[-2]) + step * float(np.clip(last / (rate * step), 0.0, 1.0))
+        # a crosshead that slows within the step that is cut short ends later in it
+        width = max(width, float(time[-1]) - end)
     return end, width / 12**0.5
 
 
