@@ -63,9 +63,10 @@ def ramp_end_time(time: Floats, place: Floats, *, band: float) -> tuple[float, f
     -----
     No source: the last step of a ramp sampled at even steps is cut short where the ramp ends
     between two samples, or slows down within it.  A ramp that slows down has no corner, and is
-    over at the last sample: what its last fiftieth takes longer than at its mean rate is how far, either way, it may have ended
-    from there.  A step of the log that does not show the corner is such a width, too; of a ramp
-    within two steps, both of which are cut short, it ends before the last sample.
+    over at the last sample: what its last fiftieth takes longer than at its mean rate is how far,
+    either way, it may have ended from there.  A step of the log that does not show the corner is
+    such a width, too; of a ramp within two steps, both of which are cut short, it ends before the
+    last sample.
 
     Examples
     --------
