@@ -47,7 +47,7 @@ def test_a_surface_is_looked_up_as_it_was_fitted(surfaces):
     # scatter of the runs, what a quadratic may miss at the last point, and what the load cell and the extensometer do to all of them
     missed = discrepancy_of(fitted).at((points - centre) / half)[0]
     assert missed[0] < 1e-3 * missed[2]
-    own, of_missed = expected.run_standard_uncertainty[0], 2 * 3 + 3 + 3
+    own, of_missed = expected.run_standard_uncertainty[0], 2 * 3  # two for each factor
     scatter = np.hypot(own, missed)
     freedom = scatter**4 / (own**4 / expected.degrees_of_freedom[0] + missed**4 / of_missed)
     coded = (points - centre) / half
