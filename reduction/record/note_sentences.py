@@ -485,9 +485,9 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "cycles-in-gaps": (
         "note",
-        "gaps of the log have room for {n_hidden} cycles beside the {n_cycles} that it holds:"
-        " slopes per decade of cycles count them, with an uncertainty that includes the slopes"
-        " without them. A cycle_counter in the layout settles it",
+        "gaps in the log could hold {n_hidden} cycles in addition to the {n_cycles} logged: slopes"
+        " per decade of cycles count them, and their uncertainty allows for the slopes without"
+        " them. A cycle_counter in the layout settles this",
     ),
     "counted-without-stroke": (
         "note", "{n_cycles} machine-counted cycles have no stroke, first machine cycle {first}",
@@ -525,8 +525,8 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "planned-cycles-not-whole": (
         "note",
-        "{n_found} complete cycles found, {n_planned} planned: cycles that are not whole at the"
-        " begin or the end of the row are not counted",
+        "{n_found} complete cycles found, {n_planned} planned: incomplete cycles at the beginning"
+        " or the end of the cycling are not counted",
     ),
     "no-plateau": (
         "note",
@@ -714,8 +714,8 @@ _OF_MODULI: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             f" lost over a cycle: residual {effect:+.1%} of the modulus (standard error"
             f" {_share(error)}). "
             + (f"The stated channel lag explains up to {of_lag:.1%} of it" if of_lag else
-               "The readings at the turns explain it, which lie between the same two readings in"
-               " all cycles" if is_of_turns else
+               "The readings at the turns explain it: in all cycles the turn lies between the same"
+               " two readings" if is_of_turns else
                "Possible causes: channel lag, a dwell at the reversals, slip or slack"
                f"{', or too few samples for the curvature' if is_coarse else ''}")
         ),
@@ -884,9 +884,9 @@ _OF_HOLDS: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "hold-ramp-within-steps": (
         "warning",
-        "the ramp takes two steps of the log at most: what relaxed between its end and the first"
-        " reading of the hold is not in the log, and tension at the start and drop are known to"
-        " what a decade of time takes. Log faster",
+        "the ramp takes at most two steps of the log: what relaxed between its end and the first"
+        " reading of the hold is not in the log. The uncertainties of initial tension and drop"
+        " allow for the loss in a decade of time. Log faster",
     ),
     "hold-start-contradicted": (
         "refusal",
@@ -910,9 +910,9 @@ _OF_HOLDS: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "hold-begins-with-jerk": (
         "warning",
         "tension dips from {before:.4g} to {lowest:.4g} N as the crosshead stops, and swings: the"
-        " crosshead stops with a jerk, and mass between the specimen and the load cell goes on."
-        " {settled:.2g} s are left out. The initial tension is that before the dip, with an"
-        " uncertainty that allows for {after:.4g} N, to which the readings after it lead back",
+        " crosshead stops with a jerk, and the mass between specimen and load cell swings on. The"
+        " first {settled:.2g} s are left out. The initial tension is that before the dip; its"
+        " uncertainty allows for {after:.4g} N, to which the readings after the swing lead back",
     ),
     "prony-misses-ramp-end": (
         "refusal",
