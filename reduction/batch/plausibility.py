@@ -413,6 +413,7 @@ def _of_columns(campaign: Campaign, survey: Survey) -> Iterator[Note]:
 
 
 def _load_columns(layout: Layout) -> tuple[str, ...]:
+    """Columns of a log that its loads are read from."""
     return tuple(
         str(channel.column) for key, channel in layout.channels.items() if key.startswith("tension")
     )

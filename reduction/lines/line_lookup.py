@@ -618,8 +618,8 @@ def _refuse_outside(
         if not low - rounded <= value <= high + rounded:
             unit = quantity_of(name).unit
             unit, factor = ("%", 100.0) if unit == "1" else (unit, 1.0)
-            numbers = (plain_number(factor * float(one)) for one in (value, low, high))
-            told.append(f"{name} {{}} {unit}, tested {{}} to {{}} {unit}".format(*numbers))
+            asked, least, most = (plain_number(factor * float(one)) for one in (value, low, high))
+            told.append(f"{name} {asked} {unit}, tested {least} to {most} {unit}")
     raise DataError(
         f"outside the tested range of {surface.quantity} of {line.name}: "
         f"{int((~inside).sum())} of {inside.size} points",

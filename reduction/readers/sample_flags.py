@@ -617,15 +617,14 @@ def _updates(values: Floats) -> Integers | None:
     >>> print(_updates(np.repeat(signal[::3], 3))[:4], _updates(np.round(signal, 1)))
     [ 3  6  9 12] None
     """
-    (head, *_) = [*sample_blocks(values.size, values, size=_LOOKED_AT), slice(0)]
-    looked = values[head]
-    place = np.flatnonzero(looked[1:] != looked[:-1]) + 1
+    looked = values[:_LOOKED_AT]
+    place = _new_readings(looked)
     if place.size < _FEWEST_UPDATES:
         return None
-    step = np.abs(looked[place] - looked[place - 1])
+    step = np.nan_to_num(np.abs(looked[place] - looked[place - 1]))
+    least = np.quantile(step[step > 0], 0.01) if step.any() else np.inf
     # some signals stand still in parts: repeats there say nothing
-    fast = step[1:] > _SEVERAL_CODES * np.quantile(step[step > 0], 0.01) if (step > 0).any() else []
-    gaps = np.diff(place)[fast]
+    gaps = np.diff(place)[step[1:] > _SEVERAL_CODES * least]
     if gaps.size < _FEWEST_UPDATES:
         return None
     usual = int(np.median(gaps))
@@ -635,11 +634,14 @@ def _updates(values: Floats) -> Integers | None:
         or np.mean(gaps == 1) > 1 - _REGULAR
     ):
         return None
-    found = [np.empty(0, dtype=np.intp)]
-    for part in sample_blocks(values.size, values, overlap=1):
-        piece = values[part]
-        found.append(part.start + 1 + np.flatnonzero(piece[1:] != piece[:-1]))
-    return np.concatenate(found)
+    parts = sample_blocks(values.size, values, overlap=1)
+    return np.concatenate([part.start + _new_readings(values[part]) for part in parts])
+
+
+def _new_readings(values: Floats) -> Integers:
+    """Samples that are not equal to the one before; a missing one is none."""
+    found: Integers = np.flatnonzero((values[1:] != values[:-1]) & np.isfinite(values[1:])) + 1
+    return found
 
 
 _LOOKED_AT = 1 << 18  # samples
@@ -668,14 +670,13 @@ def _at_updates(record: Record) -> tuple[Record, Integers | None]:
     (slow, rows), *others = found.items()
     all_repeat = len(found) == len(names) and all(_alike(rows, one) for _, one in others)
     rows = _without_breaks(rows, record.n_samples)
-    kept = [record.crosshead_position, *record.tension]
-    for place, name in enumerate(names):
+    kept = []
+    for name, one in zip(names, series, strict=True):
         own = found.get(name)
-        kept[place] = take_samples(kept[place], rows)
-        if own is not None and not _alike(own, rows):  # late in these rows, too
-            kept[place] = np.interp(
-                rows, own, take_samples(series[place], own), left=np.nan, right=np.nan
-            )
+        if own is None or _alike(own, rows):
+            kept.append(take_samples(one, rows))
+        else:  # late in these rows, too
+            kept.append(np.interp(rows, own, take_samples(one, own), left=np.nan, right=np.nan))
     at_rows: dict[str, Any] = {
         name: take_samples(one, rows)
         for name in (
@@ -714,6 +715,7 @@ def _without_breaks(rows: Integers, n_samples: int) -> Integers:
 
 
 def _alike(one: Integers, other: Integers) -> bool:
+    """Whether nearly all rows are those of both."""
     return np.intersect1d(one, other).size > _REGULAR * max(one.size, other.size)
 
 

@@ -193,6 +193,10 @@ def test_a_channel_that_is_read_less_often_than_logged_is_not_late(every):
     # it may be late by anything up to a row
     (errors,) = _with_late_readings(found, [InstrumentErrors("new", lag=0.01)])
     assert errors.lag == pytest.approx(np.hypot(0.01, 0.1 / np.sqrt(3)))
+    # rows without a position are no new readings of it
+    gap = position.copy()
+    gap[300:420] = np.nan
+    assert flagged(record(position=gap, load=load)).n_samples == TIME.size // every
     # where the load repeats with it nothing is late
     both = flagged(record(position=position, load=load[rows]))
     assert both.n_samples == TIME.size // every

@@ -1119,7 +1119,7 @@ def find_cycles(
             is_counted = count > 0
             first, last, count = first[is_counted], last[is_counted], count[is_counted]
             branch_first, branch_last = branch_first[is_counted], branch_last[is_counted]
-        elif cycle_counter is not None:
+        elif counter is None and cycle_counter is not None:
             notes.append(note("counter-constant"))
     if first.size == 0:
         raise DataError(

@@ -1505,6 +1505,7 @@ _LEAST_OF_GREATEST = 0.2  # of the noise: half the scatter of the greatest of hu
 
 
 def _means_of_parts(values: Floats) -> Floats:
+    """Mean of each of five consecutive parts, nearly equally long."""
     ends = np.arange(_PARTS + 1) * values.size // _PARTS
     return np.asarray(np.add.reduceat(values, ends[:-1]) / np.diff(ends))
 

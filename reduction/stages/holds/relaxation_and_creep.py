@@ -1389,6 +1389,7 @@ def _logged_peaks(
 
 
 def _greatest(values: Floats) -> float:
+    """Greatest value, NaN of none."""
     return float(np.max(values)) if values.size else float("nan")
 
 
