@@ -289,4 +289,4 @@ def test_turns_between_the_same_two_readings_are_no_warning_and_a_late_load_is(
     )  # fmt: skip
     (note,) = found.notes
     assert note.severity == severity
-    assert ("the same two readings in all cycles" in str(note)) is (severity == "note")
+    assert ("the turn lies between the same two readings" in str(note)) is (severity == "note")
