@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator, Mapping, Sequence
+import pickle
+from collections.abc import Hashable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any, Final
 
 import numpy as np
@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from reduction.archive.atomic_write import remove_abandoned
 from reduction.archive.open import Opener, reading
 from reduction.archive.product_files import OF_CAMPAIGN
+from reduction.archive.scratch_file import ScratchFile
 from reduction.batch.catalogue import (
     CONDITIONS,
     FILE_NAME,
@@ -47,6 +48,9 @@ _CYCLES_AT_ONCE = 10_000
 
 _ROWS_AT_ONCE = 16_384  # their conditions, and what the writer keeps of 60 columns, take 40 MB
 
+_ARCHIVES_AT_ONCE = 100
+"""Whose numbers are sorted together, in some 30 MB."""
+
 _WHOLE = -1
 
 _TYPES: Final = {"row": pyarrow.int32(), "is_whole": pyarrow.bool_()}
@@ -64,15 +68,41 @@ class CatalogueEntry:
     numbers: list[Any]
 
 
+class CatalogueEntries:
+    """Entries of archives, on disk until the catalogue is written: a thousand take 0.3 GB."""
+
+    def __init__(self) -> None:
+        self._scratch = ScratchFile()
+        self._places: dict[Path, slice] = {}
+
+    def __contains__(self, path: Path) -> bool:
+        """Whether an archive has its entry."""
+        return path in self._places
+
+    def __getitem__(self, path: Path) -> CatalogueEntry:
+        """Give the entry of an archive."""
+        found: CatalogueEntry = pickle.loads(self._scratch.get(self._places[path]))  # noqa: S301
+        return found
+
+    def add(self, path: Path, archive: xr.Dataset) -> None:
+        """Keep the entry of an archive."""
+        self._places[path] = self._scratch.put(pickle.dumps(entry_of(path, archive)))
+
+
 def write_catalogue(
     archives: Sequence[Path],
     path: Path,
     *,
-    entries: Mapping[Path, CatalogueEntry] = MappingProxyType({}),
+    entries: CatalogueEntries | None = None,
     opener: Opener = reading,
 ) -> None:
     """Write the catalogue of a campaign, whole or not at all; what has an entry is not opened."""
-    _write([entries.get(one) or _entry_of(one, opener=opener) for one in sorted(archives)], path)
+    entries = entries or CatalogueEntries()
+    for one in archives:
+        if one not in entries:
+            with opener(one) as archive:
+                entries.add(one, archive)
+    _write(entries, sorted(archives), path)
 
 
 def rebuild(folder: Path) -> dict[str, str]:
@@ -80,53 +110,64 @@ def rebuild(folder: Path) -> dict[str, str]:
     left_out = {}
     for campaign in campaigns_below(folder):
         shown = _shown_path(campaign.name)
-        entries = []
+        entries, known = CatalogueEntries(), []
         try:
             for path in _archives_of(campaign):
                 try:
-                    entries.append(_entry_of(path))
+                    with reading(path) as archive:
+                        entries.add(path, archive)
+                    known.append(path)
                 except (ArchiveError, OSError, RuntimeError, ValueError, LookupError) as error:
                     # one that opens may have parts that are damaged, or not those of an archive
                     words = (str(error) or type(error).__name__).splitlines()[0]
                     left_out[f"{shown}/{_shown_path(path.name)}"] = _shown_path(words)
-            if entries:
-                _write(entries, campaign / FILE_NAME)
+            if known:
+                _write(entries, known, campaign / FILE_NAME)
         except OSError as error:
             left_out[shown] = _shown_path(str(error))
     return left_out
 
 
-def _write(entries: Sequence[CatalogueEntry], path: Path) -> None:
-    """Write the tests and their numbers, sorted by quantity, a part of them at a time."""
-    rows: list[dict[str, Any]] = []
-    numbers = []
-    for entry in entries:
-        for one in entry.numbers:
-            row = pyarrow.array(one["row"].to_numpy() + len(rows), pyarrow.int32())
-            numbers.append(one.set_column(0, "row", row))
-        rows += entry.rows
-    tests = pyarrow.Table.from_pylist(
-        [row | {"row": place} for place, row in enumerate(rows)], schema=_TESTS
-    )
+def _write(entries: CatalogueEntries, archives: Sequence[Path], path: Path) -> None:
+    """Write the tests, then their numbers, a part of the archives at a time."""
+    parts = [
+        archives[first : first + _ARCHIVES_AT_ONCE]
+        for first in range(0, len(archives), _ARCHIVES_AT_ONCE)
+    ]
+    names, ends, of_parts = dict.fromkeys(_TESTS.names), [0], []
+    for part in parts:
+        rows: list[dict[str, Any]] = []
+        for entry in (entries[one] for one in part):
+            names |= dict.fromkeys(name for one in entry.numbers for name in one.column_names)
+            rows += [row | {"row": place} for place, row in enumerate(entry.rows, ends[-1])]
+            ends.append(ends[-1] + len(entry.rows))
+        of_parts.append(pyarrow.Table.from_pylist(rows, schema=_TESTS))
+    tests = pyarrow.concat_tables(of_parts)
+    first_row = dict(zip(archives, ends, strict=False))
     # each number with the conditions of its test: the file can be read by itself
-    conditions = tests.select(["row", "is_whole", *CONDITIONS])
-    names = dict.fromkeys(name for one in (tests, *numbers) for name in one.column_names)
+    conditions = tests.select(["row", "is_whole", *CONDITIONS]).combine_chunks()
     types = {name: _TYPES.get(name) or _column_type(name) for name in names}
     schema = pyarrow.schema(types.items(), {MARK: _mark()})
     remove_abandoned(path)
     with (
-        _whole_file(path) as part,
-        part.open("wb") as file,  # opened here: a path may be no text
+        _whole_file(path) as new,
+        new.open("wb") as file,  # opened here: a path may be no text
         pyarrow.parquet.ParquetWriter(file, schema, compression="zstd") as writer,
     ):
         writer.write_table(_complete(tests, schema), max(1, tests.num_rows))  # the first group
-        for some in _by_quantity(numbers):
-            # in one piece: each piece of each column costs as much as some thousand rows
-            table = pyarrow.concat_tables(some, promote_options="default").combine_chunks()
-            of_test = conditions.take(table["row"]).drop_columns("row")
-            for name in of_test.column_names:
-                table = table.append_column(name, of_test[name])
-            writer.write_table(_complete(table, schema), table.num_rows)
+        for part in parts:
+            numbers = []
+            for one in part:
+                for table in entries[one].numbers:
+                    row = pyarrow.array(table["row"].to_numpy() + first_row[one], pyarrow.int32())
+                    numbers.append(table.set_column(0, "row", row))
+            for some in _by_quantity(numbers):
+                # in one piece: each piece of each column costs as much as some thousand rows
+                table = pyarrow.concat_tables(some, promote_options="default").combine_chunks()
+                of_test = conditions.take(table["row"]).drop_columns("row")
+                for name in of_test.column_names:
+                    table = table.append_column(name, of_test[name])
+                writer.write_table(_complete(table, schema), table.num_rows)
     # what the writer had is not needed again
     pyarrow.default_memory_pool().release_unused()
 
@@ -172,12 +213,6 @@ def _kept_cycles(n_cycles: int) -> NDArray[np.intp]:
     """
     numbers = [one * 10**power for power in range(len(str(n_cycles))) for one in (1, 2, 5)]
     return np.array(sorted({n for n in numbers if n < n_cycles} | {n_cycles}), dtype=np.intp) - 1
-
-
-def _entry_of(path: Path, *, opener: Opener = reading) -> CatalogueEntry:
-    """Read what a catalogue keeps of an archive; `ArchiveError` where it cannot be read."""
-    with opener(path) as archive:
-        return entry_of(path, archive)
 
 
 def entry_of(path: Path, archive: xr.Dataset) -> CatalogueEntry:

@@ -38,7 +38,7 @@ from reduction.batch.campaign_status import (
     status_csv,
 )
 from reduction.batch.catalogue import FILE_NAME
-from reduction.batch.catalogue_entries import CatalogueEntry, entry_of, write_catalogue
+from reduction.batch.catalogue_entries import CatalogueEntries, write_catalogue
 from reduction.batch.experiment_product import write_experiments
 from reduction.batch.prediction_product import write_comparisons, write_predictions
 from reduction.batch.reduce_tests import reduce_campaign
@@ -435,10 +435,10 @@ def _run(
     superseded = _put_aside([path for path in gone if path.name not in stray], folder)
     page = CampaignPage(folder, units=units, stray=stray, opener=opener)
     if archives or products:
-        entries: dict[Path, CatalogueEntry] = {}
+        entries = CatalogueEntries()
 
         def each(path: Path, archive: xr.Dataset) -> None:
-            entries[path] = entry_of(path, archive)
+            entries.add(path, archive)
             page.add(path, archive)
 
         # of a thousand archives each is opened once for all that is made of it
@@ -446,7 +446,6 @@ def _run(
         write_catalogue(
             [*archives, *products.values()], folder / FILE_NAME, entries=entries, opener=opener
         )
-        entries.clear()
     if archives or products or statuses:  # where all tests failed the page says that and why
         progress.stage("report", 0)
         made = {one.test for one in statuses if one.status not in ("failed", "no_work")}

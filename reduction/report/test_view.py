@@ -22,8 +22,9 @@ from reduction.archive.open import in_memory
 from reduction.archive.shared_errors import FREEDOM, stated_errors_of
 from reduction.archive.test_dataset import stored_cycles
 from reduction.archive.uncertainty_budget import effective_freedom
-from reduction.archive.variables import at_places, read_notes
+from reduction.archive.variables import at_places, read_notes, stored
 from reduction.quantities.flags import LINE_METHODS
+from reduction.quantities.row import COMPONENT
 from reduction.quantities.units import UnitSystem
 from reduction.record.contributions import (
     StatedErrors,
@@ -48,22 +49,39 @@ OF_NO_TEST = "of_no_test"
 """Status of an archive that status.csv has no row for: the campaign has no such test now."""
 
 _OF_SECTION = (
-    "_by_cycle", "_at_time", "_untrimmed", "elastomer_", "prony_", "modulus_ratio_uncertainty",
+    "_by_cycle", "_untrimmed", "elastomer_", "prony_", "modulus_ratio_uncertainty",
     "segment_tension_low_", "segment_tension_high_", "standstill_", "mark_", "splice_",
     "stretched_diameter", "crosshead_position_", "nominal_stress_", "closed_loop_energy",
     "storage_spring_constant", "loss_spring_constant", "slope_reading_spread",
-    "mean_identity_residual", "segment_misfit", "segment_criterion", "hold_ramp_",
-    "tangent_modulus_scatter", "strain_coefficient_correlation",
+    "mean_identity_residual", "segment_misfit", "segment_criterion",
+    "tangent_modulus_scatter", "strain_coefficient_correlation", "alignment_strain", "area_",
+    "channel_lag", "coefficient_name", "cycles_counted_by", "declared_gauge_length", "diameter_",
+    "dynamic_modulus_per_decade", "earlier_maximum_tension", "earlier_tests", "hold_logged_",
+    "long_time_tension", "mean_strain_drift", "mean_strain_per_decade",
+    "modulus_ratio_degrees_of_freedom", "modulus_ratio_random", "modulus_ratio_standard",
+    "n_flagged", "peak_tension_change", "peak_tension_per_decade", "permanent_set",
+    "position_band", "quality_mask", "relaxed_", "slack_", "strain_bin_bounds", "strain_level",
+    "strain_marks_from", "strain_position_", "strain_slope_ratio", "strain_tension_",
+    "strain_window", "stress_at_strain",
 )  # fmt: skip
 """In the names of numbers that figures and tables over several tests leave out."""
 
 _OF_CYCLES = ("first_loading", "branch_tension")
 """The same where the test has cycles; they are what a pull answers with."""
 
+_OF_HOLDS = (
+    "_at_time", "hold_criterion", "hold_final_tension", "hold_kind", "hold_ramp_",
+    "hold_start_time",
+)  # fmt: skip
+"""The same of what is no rope, whose holds have figures of their own."""
+
 _REACHED = (
     "apparent_spring_constant",  # whether it had settled
     "mean_tension", "tension_amplitude", "mean_strain", "strain_amplitude",
 )  # fmt: skip
+
+
+_ROPES = frozenset({"rope", "wire"})
 
 
 @dataclass(frozen=True)
@@ -135,7 +153,12 @@ class TestView:
     def is_rope(self) -> bool:
         """True where every specimen is a rope or a wire."""
         kinds = self.texts("specimen_kind")
-        return bool(kinds) and set(kinds) <= {"rope", "wire"}
+        return bool(kinds) and set(kinds) <= _ROPES
+
+    @property
+    def has_rope(self) -> bool:
+        """True where any specimen is a rope or a wire."""
+        return not _ROPES.isdisjoint(self.texts("specimen_kind"))
 
     @property
     def is_hose(self) -> bool:
@@ -246,8 +269,14 @@ class TestView:
     def of_campaign(self) -> TestView:
         """Return the same test without what its own section alone shows: most of its numbers."""
         left_out = _OF_SECTION + (_OF_CYCLES if self.n_cycles else ())
-        own = [name for name in self.data.variables if any(one in str(name) for one in left_out)]
-        return replace(self, data=self.data.drop_vars(own))
+        left_out += () if self.has_rope else _OF_HOLDS
+        own = [
+            name
+            for name in map(str, self.data.variables)
+            # numbers of a whole test are those of a run of an experiment
+            if not name.startswith("test_") and any(one in name for one in left_out)
+        ]
+        return replace(self, data=_one_row_a_source(self.data.drop_vars(own)))
 
     def at_cycles(self, name: str, places: Integers) -> TestView:
         """Return one number of some cycles, counted from 0, with what its uncertainty rests on."""
@@ -257,6 +286,28 @@ class TestView:
             if str(key).startswith(name) or key == FREEDOM
         }
         return replace(self, data=xr.Dataset(own))
+
+
+def _one_row_a_source(data: xr.Dataset) -> xr.Dataset:
+    """Return an archive whose independent errors of one source and item are one, without a sign.
+
+    They are most of what a test takes in memory, and tables over several tests take no differences.
+    """
+    if COMPONENT not in data.sizes:
+        return data
+    source, of = (data.variables[f"uncertainty_source{end}"].values for end in ("", "_of"))
+    freedom = stored(data, FREEDOM)
+    # what is known from a few readings counts by itself in the degrees of freedom
+    is_few = np.isfinite(freedom.values) if freedom is not None else np.zeros(len(of), dtype=bool)
+    is_next = (source[1:] != source[:-1]) | (of[1:] != of[:-1]) | is_few[1:] | is_few[:-1]
+    first = np.flatnonzero(np.concatenate([[True], is_next]))
+    is_sum = np.diff([*first, len(source)]) > 1
+    found = data.isel({COMPONENT: first})
+    for name, variable in data.variables.items():
+        if variable.dims[:1] == (COMPONENT,) and str(name).endswith("_uncertainty_contribution"):
+            sums = np.sqrt(np.add.reduceat(variable.values**2, first))
+            found.variables[name].values[is_sum] = sums[is_sum]
+    return found
 
 
 def all_specimens(tests: Sequence[TestView]) -> list[str]:

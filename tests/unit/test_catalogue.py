@@ -13,8 +13,9 @@ import pytest
 import xarray as xr
 
 from reduction.archive.dataset_builder import SCHEMA_VERSION
-from reduction.archive.open import open_archive
+from reduction.archive.open import open_archive, reading
 from reduction.batch import catalogue as file
+from reduction.batch import catalogue_entries
 from reduction.batch.catalogue import (
     CONDITIONS,
     FILE_NAME,
@@ -32,8 +33,8 @@ from reduction.batch.catalogue import (
 )
 from reduction.batch.catalogue_entries import (
     LEFT_OUT,
-    _entry_of,
     _kept_cycles,
+    entry_of,
     rebuild,
     write_catalogue,
 )
@@ -398,7 +399,7 @@ def test_a_netcdf_file_whose_parts_are_not_those_of_an_archive_is_named(tmp_path
         odd.createVariable("mean_strain", "f8", ("specimen", "cycle"))[:] = 1.0
         odd.createVariable("strain_amplitude", "f8", ("specimen", "reading"))[:] = 1.0
     with pytest.raises(ArchiveError, match="odd.nc is not made as an archive is; found "):
-        _entry_of(path)
+        write_catalogue([path], tmp_path / FILE_NAME)
 
 
 @pytest.mark.parametrize(
@@ -466,6 +467,20 @@ def test_a_catalogue_is_the_same_bytes_when_it_is_made_again_in_any_order(catalo
     path.unlink()
     write_catalogue(sorted((catalogued / "one").glob("*.nc"), reverse=True), path)
     assert path.read_bytes() == first
+
+
+def test_a_catalogue_that_is_written_in_parts_answers_the_same(catalogued, monkeypatch):
+    path = catalogued / "one" / FILE_NAME
+    whole = pd.read_parquet(path)
+    monkeypatch.setattr(catalogue_entries, "_ARCHIVES_AT_ONCE", 1)
+    write_catalogue(sorted((catalogued / "one").glob("*.nc")), path)
+    parts = pd.read_parquet(path)
+    order = ["row", "quantity", "cycle", "branch_name", "strain_bin", "segment", "hold"]
+    known = [name for name in order if name in whole]
+    pd.testing.assert_frame_equal(
+        *(one.sort_values(known, kind="stable", ignore_index=True) for one in (whole, parts))
+    )
+    assert not whole.equals(parts)
 
 
 def test_a_question_gets_the_same_answer_from_the_numbers_that_it_needs(folder):
@@ -537,9 +552,14 @@ def test_of_many_cycles_those_that_are_not_kept_are_not_read(tmp_path):
     )
     path = tmp_path / "long.nc"
     data.to_netcdf(path, engine="netcdf4")
-    _entry_of(path)  # what stays is made before it is measured
+
+    def read():
+        with reading(path) as archive:
+            return entry_of(path, archive)
+
+    read()  # what stays is made before it is measured
     tracemalloc.start()
-    entry = _entry_of(path)
+    entry = read()
     _, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     assert peak < len(names) * numbers.nbytes

@@ -108,6 +108,16 @@ def rich_page(tmp_path_factory, rich_test):
     return Page(write_report(folder, folder / "reports").read_text(encoding="utf-8"))
 
 
+def test_the_page_is_the_same_from_all_numbers_of_its_tests(
+    rich_test, write, tmp_path, monkeypatch
+):
+    write(rich_test)
+    first = write_report(tmp_path, tmp_path / "first").read_text(encoding="utf-8")
+    monkeypatch.setattr(TestView, "of_campaign", lambda view: view)
+    again = write_report(tmp_path, tmp_path / "again").read_text(encoding="utf-8")
+    assert again == first
+
+
 def plain(text):
     return Note("fixture", "note", text=text)
 

@@ -19,6 +19,7 @@ from reduction.report.outcome_tables import (
     answer_of_ropes,
     creep_table,
     level_table,
+    pair_table,
     property_table,
 )
 from reduction.report.product_views import view_ropes
@@ -66,7 +67,9 @@ def level():
         "dynamic_stiffness_standard_uncertainty": [900.0, 900.0],
     }
     variables = {name: ("specimen", np.array(values)) for name, values in data.items()}
-    return xr.Dataset({"specimen": ("specimen", ["R-1", "R-9"])} | variables, attrs={"test": "D"})
+    names = {"specimen": ["R-1", "R-9"], "specimen_kind": ["rope", "rope"]}
+    texts = {name: ("specimen", values) for name, values in names.items()}
+    return xr.Dataset(texts | variables, attrs={"test": "D"})
 
 
 def held():
@@ -92,7 +95,11 @@ def held():
     }
     times = np.array([1.0, 600.0, 3600.0])
     return xr.Dataset(
-        {"specimen": ("specimen", ["R-1"]), "hold_time": ("hold_time", times)}
+        {
+            "specimen": ("specimen", ["R-1"]),
+            "specimen_kind": ("specimen", ["rope"]),
+            "hold_time": ("hold_time", times),
+        }
         | {name: ("held_pair", np.array(values)) for name, values in along.items()}
         | {name: ("hold", np.array(values)) for name, values in of_hold.items()}
         | {
@@ -109,8 +116,11 @@ def held():
 
 @pytest.fixture
 def ropes():
-    tests = {"D": TestView("test-0", level()), "Q": TestView("test-1", held())}
-    return view_ropes(dataset(), tests, "si")
+    return view_ropes(dataset(), views(), "si")
+
+
+def views():
+    return {"D": TestView("test-0", level()), "Q": TestView("test-1", held())}
 
 
 def texts(table):
@@ -173,6 +183,17 @@ def test_figures_draw_what_has_a_number(ropes):
     assert law["y"][-1] == pytest.approx(100 * 0.0012 * np.log10(3610 / 600), abs=1e-6)
     for draw in (draw_stiffness, draw_held_pairs, draw_creep):
         assert draw(ropes[1]) == []
+
+
+def test_what_a_page_keeps_of_a_test_is_enough_for_the_figures_and_tables_of_its_rope(ropes):
+    kept = {name: view.of_campaign() for name, view in views().items()}
+    (of_kept, _) = view_ropes(dataset(), kept, "si")
+    for draw in (draw_stiffness, draw_held_pairs, draw_creep):
+        assert repr([one.data for one in draw(of_kept)]) == repr(
+            [one.data for one in draw(ropes[0])]
+        )
+    for table in (level_table, pair_table, creep_table):
+        assert texts(table(of_kept)) == texts(table(ropes[0]))
 
 
 def test_properties_alone_are_a_page(tmp_path):
