@@ -170,14 +170,15 @@ def write_archive(dataset: xr.Dataset, path: Path) -> xr.Dataset:
         raise _not_written(path, error) from error
 
 
-def write_text_atomically(path: Path, text: str) -> None:
-    """Write a text file in UTF-8, line ends as they are in ``text``, whole or not at all."""
+def write_text_atomically(path: Path, *pieces: str | bytes) -> None:
+    """Write a text file in UTF-8, line ends as they are in its pieces, whole or not at all."""
     with append_atomically(path) as append:
-        append(text)
+        for one in pieces:
+            append(one)
 
 
 @contextmanager
-def append_atomically(path: Path) -> Iterator[Callable[[str], None]]:
+def append_atomically(path: Path) -> Iterator[Callable[[str | bytes], None]]:
     """Give what adds text to a file that appears whole when the block ends well, or not at all."""
     is_in_block = False
     remove_abandoned(path)
@@ -192,10 +193,10 @@ def append_atomically(path: Path) -> Iterator[Callable[[str], None]]:
         raise _not_written(path, error) from error
 
 
-def _append(part: Path, path: Path, text: str) -> None:
+def _append(part: Path, path: Path, text: str | bytes) -> None:
     try:
-        with part.open("a", encoding="utf-8", newline="") as file:
-            file.write(text)
+        with part.open("ab") as file:
+            file.write(text.encode("utf-8") if isinstance(text, str) else text)
     except OSError as error:
         raise _not_written(path, error) from error
 

@@ -134,26 +134,26 @@ def _write_pages(
     pages = _over_pages(sections, most)
     index = out / "index.html"
     kept: set[Path] = set()
-    text = ""
+    pieces: list[bytes] = []
     if len(pages) == 1:
-        text = render_page(replace(content, sections=pages[0], links=_links(pages[0])))
+        pieces = render_page(replace(content, sections=pages[0], links=_links(pages[0])))
     # tables and figures over all tests take room, too
-    if len(pages) > 1 or (pages[0] and len(text.encode("utf-8")) > most_in_all):
+    if len(pages) > 1 or (pages[0] and sum(map(len, pieces)) > most_in_all):
         names = [_NAME.format(number) for number in range(1, len(pages) + 1)]
         beside = [Link(name, _words(page)) for name, page in zip(names, pages, strict=True)]
         for name, page in zip(names, pages, strict=True):
-            write_text_atomically(out / name, render_page(_part_of(content, page, beside)))
+            write_text_atomically(out / name, *render_page(_part_of(content, page, beside)))
             kept.add(out / name)
         links = [
             link for name, page in zip(names, pages, strict=True) for link in _links(page, name)
         ]
         content = replace(content, links=links, beside=beside)
-        text = render_page(content)
-        if content.segments is not None and len(text.encode("utf-8")) > most_in_all:
+        pieces = render_page(content)
+        if content.segments is not None and sum(map(len, pieces)) > most_in_all:
             # of many tests they are the largest table, and each has its own in its section
             about = (*content.about, _SEGMENTS_ELSEWHERE)
-            text = render_page(replace(content, segments=None, about=about))
-    write_text_atomically(index, text)
+            pieces = render_page(replace(content, segments=None, about=about))
+    write_text_atomically(index, *pieces)
     for path in out.iterdir():
         if _is_page_of_tests(path.name) and path not in kept:
             take_away(path)

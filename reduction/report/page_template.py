@@ -203,21 +203,36 @@ def render_section(section: TestSection, *, is_folded: bool) -> RenderedSection:
     return RenderedSection(section.key, section.title, html)
 
 
-def render_page(page: Page) -> str:
-    """Return a page as HTML that opens from disk."""
+_PIECE = 1 << 18  # characters
+
+
+def render_page(page: Page) -> list[bytes]:
+    """Return a page as HTML that opens from disk, in pieces: it may have 15 MB."""
     room = files("reduction.report")
-    return (
+    plotly = get_plotlyjs()
+    # a text with one wide letter has four bytes for each, and this one has 5 million letters
+    slices = [plotly[first : first + _PIECE] for first in range(0, len(plotly), _PIECE)]
+    del plotly
+    found, waiting, n_waiting = [], [], 0
+    for text in (
         _environment()
         .get_template("page.html")
-        .render(
+        .generate(
             **{name: getattr(page, name) for name in Page.__dataclass_fields__},
             style=(room / "static" / "page.css").read_text("utf-8"),
             script="\n".join(
                 (room / "static" / f"{name}.js").read_text("utf-8") for name in _SCRIPTS
             ),
-            plotly=get_plotlyjs(),
+            plotly=slices,
         )
-    )
+    ):
+        waiting.append(text)
+        n_waiting += len(text)
+        if n_waiting >= _PIECE:
+            found.append("".join(waiting).encode("utf-8"))
+            waiting, n_waiting = [], 0
+    found.append("".join(waiting).encode("utf-8"))
+    return found
 
 
 @cache

@@ -312,7 +312,7 @@ def write_single_page(
         answers=[] if answer is None else [answer],
     )  # fmt: skip
     path = out / "index.html"
-    write_text_atomically(path, render_page(page))
+    write_text_atomically(path, *render_page(page))
     return path
 
 
@@ -495,7 +495,7 @@ def _write_curve_page(
         chapters=[section],
         synthetic=synthetic,
     )
-    write_text_atomically(path, render_page(page))
+    write_text_atomically(path, *render_page(page))
 
 
 def _rounded_with_unit(value: float, unit: Shown) -> str:
