@@ -555,8 +555,8 @@ class Extremes:
     greatest_measured_strain : mapping of str to float
         Of the extensometer, where there is one, or of the readings of a stepwise test. [1]
     at_greatest_position : mapping of str to Samples
-        Samples at the greatest position: at a held length the rubber goes on stretching as its
-        splices relax, so the greatest strain is at one of them, which the strain model tells.
+        Outermost samples at the greatest position: at a held length the rubber goes on stretching
+        as its splices relax, so the greatest strain is at one of them, by the strain model.
     first_rise : mapping of str to Samples
         Up to half of the peak tension.
     all_over : mapping of str to Samples
@@ -691,11 +691,33 @@ def _at_greatest_position(located: Located) -> dict[str, _Samples]:
         lambda part: position[part] >= near, position.size, most=_MOST_KEPT, samples=(position,)
     )
     place, loads = take_samples(position, at_top), take_samples(located.tension, at_top)
-    return {
-        name: _Samples(place, load)
-        for name, load in zip(located.record.specimens, loads, strict=True)
-        if np.isfinite(load).any()
-    }
+    found = {}
+    for name, load in zip(located.record.specimens, loads, strict=True):
+        outer = _outermost(place, load)
+        if outer.size:
+            found[name] = _Samples(place[outer], load[outer])
+    return found
+
+
+def _outermost(place: Floats, load: Floats) -> Integers:
+    """Index of the samples that no other passes both in position and in tension, either way.
+
+    The greatest strain is at one of them, whether strain falls with tension at one position, as
+    splices stretch, or rises.
+
+    Examples
+    --------
+    >>> print(_outermost(np.array([2.0, 2.1, 2.1, 2.0]), np.array([50.0, 60.0, 58.0, 55.0])))
+    [0 1 2]
+    """
+    known = np.flatnonzero(np.isfinite(load))
+    kept = []
+    for sign in (1.0, -1.0):
+        order = known[np.lexsort((sign * load[known], -place[known]))]
+        signed = sign * load[order]
+        least = np.minimum.accumulate(signed)
+        kept.append(order[np.concatenate([signed[:1] < np.inf, signed[1:] < least[:-1]])])
+    return np.unique(np.concatenate(kept))
 
 
 def _all_over(located: Located) -> dict[str, _Samples]:

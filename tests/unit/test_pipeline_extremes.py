@@ -8,6 +8,7 @@ import pytest
 from reduction.pipeline.located_test import Located
 from reduction.pipeline.reduce_test import (
     Extremes,
+    _outermost,
     _Samples,
     extremes_of_readings,
     extremes_of_test,
@@ -47,8 +48,23 @@ def test_the_greatest_tension_and_the_samples_at_the_greatest_position_are_kept(
     found = extremes_of_test(located())
     assert found.greatest_tension == {"a": 102, "b": 50}
     top = found.at_greatest_position["a"]
-    assert top.position.tolist() == [4.0, 4.002, 4.0] and top.tension.tolist() == [100, 102, 90]
+    # 100 N at 4.0 m lies between the others: no strain model has its greatest strain there
+    assert top.position.tolist() == [4.002, 4.0] and top.tension.tolist() == [102, 90]
     assert found.slack_tension == 2.0 and not found.has_extensometer
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_the_outermost_samples_hold_the_greatest_strain_of_all(sign):
+    rng = np.random.default_rng(3)
+    place = 4.0 + 0.001 * rng.integers(0, 8, 3000)
+    load = 100.0 - 5.0 * np.log1p(np.arange(3000.0)) + rng.normal(0.0, 0.5, 3000)
+    outer = _outermost(place, load)
+    assert outer.size < 40
+    for compliance in (1e-6, 1e-4, 1e-2):
+        strain = place - sign * compliance * load
+        assert strain[outer].max() == strain.max()
+    load[7] = np.nan
+    assert 7 not in _outermost(place, load)
 
 
 def test_the_first_rise_ends_with_the_first_sample_over_half_of_the_peak():
