@@ -11,45 +11,47 @@ from reduction.archive.write import write_text_atomically
 from reduction.lines.assembly import DeployedLine
 from reduction.lines.composite import CompositeCurve, PieceSource
 from reduction.prediction.armour import PredictedArmour
-from reduction.prediction.wave_load import PredictedWaveLoad
-from reduction.quantities.units import UnitSystem
+from reduction.prediction.wave_load import (
+    CODE_OF_HYDROLOGY,
+    PUBLISHED_COEFFICIENTS,
+    PredictedWaveLoad,
+)
+from reduction.quantities.digits import plain_number
+from reduction.quantities.units import UnitSystem, display_unit
 from reduction.record.measurement import Bools, Floats
 from reduction.report.campaign_summary import SummaryFinding, Tile
 from reduction.report.figure_data import Figure, Trace, axis, band, line, make_figure, plain_numbers
 from reduction.report.figures.theory_figures import (
+    THEORY_NAMES,
+    THEORY_WORDS,
     draw_errors,
     draw_section,
     draw_surface,
     draw_wave_load,
     draw_wire,
     force_per_length,
+    moment_unit,
+    of_layers,
 )
 from reduction.report.page_template import Page, about_page, render_page
-from reduction.report.prediction_tables import (
-    anchor_table,
-    armour_design_table,
-    cable_table,
-    extremes_table,
-    layers_table,
-    regime_table,
-    use_table,
-    wave_coefficient_table,
-    wave_table,
-    wires_table,
-)
+from reduction.report.sheet import Calculated, Sheet
 from reduction.report.test_section import Part, TestSection, make_part
 from reduction.report.test_view import NORMAL, factor_words
 from reduction.report.text_style import (
     COLOURS,
+    DEGREES,
+    PERCENT,
     SYMBOLS,
     PageTable,
     Shown,
+    TableCell,
     colour,
     make_table,
     measured,
     number,
     number_text,
     shown,
+    span,
     with_prefix,
     words,
 )
@@ -500,3 +502,277 @@ def _write_curve_page(
 
 def _rounded_with_unit(value: float, unit: Shown) -> str:
     return f"{number_text(value * unit.factor)} {unit.unit}"
+
+
+def wires_table(found: PredictedArmour, units: UnitSystem) -> PageTable | None:
+    """Return forces, moments and stresses of one wire of each layer by each theory."""
+    pairs = [
+        (place, theory, response)
+        for place in range(len(found.layer_names))
+        for theory, response in found.responses.items()
+    ]
+    sheet = Sheet(Calculated(units)).texts(
+        "layer, theory", [f"{found.layer_names[place]}, {THEORY_WORDS[theory]}"
+                          for place, theory, _ in pairs]
+    )  # fmt: skip
+    for name in ("axial_force", "shear_force", "bending_moment", "torsion_moment", "axial_stress",
+                 "bending_stress", "torsion_stress"):  # fmt: skip
+        words_, kind = name.replace("_", " "), name.partition("_")[2]
+        unit = {"force": shown("tension", units), "moment": moment_unit(units)}.get(kind, "stress")
+        values = [getattr(response, name)[place, 0] for place, _, response in pairs]
+        sheet.numbers(words_, values, unit)  # type: ignore[arg-type]
+    return sheet.table(
+        f"One wire of each layer by each theory, at {100 * float(found.strain[0]):g} % of strain of"
+        " the cable.",
+        is_compact=True,
+        remarks=[
+            "Exact: the exact helix with the report's moments; small and intermediate angles are"
+            " approximations. With an energy: the rod whose tension is the derivative of its"
+            " strain energy, used for layers and cable. Large angles: a spring without a core, a"
+            " different body.",
+            "No uncertainty is given: none is stated of the armour. None includes thinning of the"
+            " wires or compliance of the core.",
+        ],
+    )  # fmt: skip
+
+
+def layers_table(found: PredictedArmour, units: UnitSystem) -> PageTable | None:
+    """Return what each layer carries and presses, and whether its wires find room."""
+    limit, together = found.layers.yield_stress, found.together
+    yields = np.where(together.is_yielding[:, 0], "yes", "no")
+    return (
+        Sheet(Calculated(units))
+        .texts("layer", found.layer_names)
+        .numbers("tension", together.layer_tension[:, 0], "tension")
+        .numbers("torque", together.layer_torque[:, 0], moment_unit(units))
+        .numbers("pressure of the layer", together.layer_pressure[:, 0], "stress")
+        .numbers("pressure with all outside", together.core_pressure[:, 0], "stress")
+        .numbers("von Mises stress", together.wire_stress[:, 0], "stress")
+        .numbers("yield stress", limit, "stress")
+        .texts("yields", np.where(np.isfinite(limit), yields, ""))
+        .numbers("circumference filled", found.fill, PERCENT)
+        .numbers("room between wires", found.gap, "small length", 3)
+        .numbers("lost by thinning", found.thinning_loss, PERCENT, 2)
+        .table(
+            f"Layers at {100 * float(found.strain[0]):g} % of strain of the cable, innermost"
+            " first.",
+            is_compact=True,
+            remarks=["Torque: positive for right-handed wires. The cable is held against rotation;"
+                     " its core is rigid; friction between layers is neglected. Lost by thinning:"
+                     " the amount by which strain and tension are too high, since a thinning wire"
+                     " moves towards the core."],
+        )
+    )  # fmt: skip
+
+
+def cable_table(found: PredictedArmour, units: UnitSystem) -> PageTable:
+    """Return tension, torque, stiffness and first yield of all layers together."""
+    force, together = shown("tension", units), found.together
+    held, free = found.axial_stiffness
+    sheet = Sheet(Calculated(units))
+
+    def add(name: str, value: float) -> None:
+        sheet.numbers(name, [value], with_prefix(force, value))
+
+    add("tension", float(together.tension[0]))
+    sheet.numbers("torque", together.torque, moment_unit(units))
+    left_over = "net torque over the sum of the layers' magnitudes"
+    sheet.numbers(left_over, together.torque_imbalance, PERCENT, 3)
+    add("axial stiffness, held against rotation", held)
+    add("axial stiffness, free to rotate", free)
+    if found.strength is None:
+        about = "First yield not given: not every layer has a yield stress."
+    else:
+        sheet.numbers("strain at first yield", [found.strength.strain], PERCENT)
+        add("tension at first yield", found.strength.tension)
+        about = f"Layer {found.layer_names[found.strength.governing_layer]} yields first."
+    return sheet.turned(
+        "The cable.", ("value",), "number",
+        remarks=["Stiffness: force per unit strain of the cable, at rest.", about],
+    )  # fmt: skip
+
+
+def use_table(found: PredictedArmour) -> PageTable | None:
+    """Return between which angles each theory is within the tolerance, layer by layer."""
+    pairs = [
+        (f"{layer}, {THEORY_WORDS[theory]}", use.least_angle[i], use.greatest_angle[i])
+        for layer, use in zip(found.layer_names, found.use, strict=True)
+        for i, theory in enumerate(use.theory)
+    ]
+    sheet = Sheet(Calculated("si")).texts("layer, theory", [name for name, *_ in pairs])
+    for k, name in enumerate(found.use[0].quantity):
+        sheet.cells(
+            DEGREES.label(name.replace("_", " ")),
+            [_angles(float(low[k]), float(high[k])) for _, low, high in pairs],
+        )
+    return sheet.table(
+        f"Winding angles at which each theory is within {100 * found.tolerance:g} % of the exact"
+        " rod.",
+        remarks=["From 5 to 85 degrees in steps of 0.5; the longest of several ranges."],
+    )
+
+
+def _angles(low: float, high: float) -> TableCell:
+    if not np.isfinite(low):
+        return TableCell("nowhere", is_number=True)
+    return number(low, DEGREES, digits=3) if low == high else span(low, high, DEGREES, places=1)
+
+
+def armour_design_table(found: PredictedArmour, units: UnitSystem) -> PageTable | None:
+    """Return what was given of each layer."""
+    return (
+        Sheet(Calculated(units))
+        .texts("layer", found.layer_names)
+        .numbers("winding angle", of_layers(found, "winding_angle"), DEGREES)
+        .numbers("wire radius", of_layers(found, "wire_radius"), "small length")
+        .numbers("core radius", of_layers(found, "core_radius"), "small length")
+        .numbers("elastic modulus", of_layers(found, "elastic_modulus"), "stress")
+        .numbers("poisson ratio", of_layers(found, "poisson_ratio"), "number")
+        .counts("wires", of_layers(found, "n_wires"))
+        .texts("lay", found.layers.lay)
+        .table("Layers as given, innermost first.")
+    )
+
+
+def extremes_table(found: PredictedWaveLoad, units: UnitSystem) -> PageTable | None:
+    """Return greatest and least load of both forms, with how much less the improved one is."""
+    unit = force_per_length(units)
+    pairs = [(one, end) for one in ("horizontal", "vertical") for end in ("maximum", "minimum")]
+    sheet = Sheet(Calculated(units)).texts("load", [", ".join(pair) for pair in pairs])
+    for heading, form in (("improved", ""), ("classic", "_classic")):
+        own = [(getattr(found.extremes, f"{one}{form}"), end) for one, end in pairs]
+        sheet.numbers(heading, [getattr(load, end) for load, end in own], unit)
+        times = [getattr(load, f"time_of_{end}") for load, end in own]
+        sheet.numbers("at", times, "time", 3)
+    less = [getattr(found.difference, f"{one}_of_{end}") for one, end in pairs]
+    return sheet.numbers("less than classic", less, PERCENT).table(
+        "Extremes of the load over a period, by optimisation between the plotted times.",
+        remarks=[
+            "Classic: Morison's equation on the whole section. Improved: on the part under water"
+            " in still water. Each has its own times of extremes.",
+            "No uncertainty is given: none is stated for wave, hose or coefficients; that of the"
+            " coefficients alone is tens of percent.",
+        ],
+    )
+
+
+def wave_table(found: PredictedWaveLoad, units: UnitSystem) -> PageTable:
+    """Return what the wave is, and how far it is from the limits of its theory."""
+    theory = found.theory
+    return (
+        Sheet(Calculated(units))
+        .numbers("height", [theory.steepness * theory.wave_length], "length")
+        .numbers("period", [2 * np.pi / found.wave.angular_frequency], "time")
+        .numbers("length", [theory.wave_length], "length")
+        .numbers("depth of the water", [theory.relative_depth * theory.wave_length], "length")
+        .numbers("current along the wave", [found.current_velocity], _velocity(units))
+        .numbers("depth over length", [theory.relative_depth], "number")
+        .numbers("height over length", [theory.steepness], "number")
+        .numbers("height over breaking height", [theory.breaking_ratio], "number")
+        .numbers("Ursell number", [theory.ursell_number], "number")
+        .numbers(
+            "second harmonic of the surface over the first", [theory.elevation_ratio], "number"
+        )
+        .numbers(
+            "second harmonic of the velocity over the first", [theory.velocity_ratio], "number"
+        )
+        .numbers(
+            "given length over that of the period, minus one", [theory.length_mismatch], PERCENT
+        )
+        .turned(
+            "The wave.", ("value",), "number",
+            remarks=[
+                f"Computed by the theory of {_named(found.used)}. By relative depth, as the paper"
+                f" reads its table: {_named(theory.theory)}; by the letter of the table:"
+                f" {_named(theory.printed)}.",
+            ],
+        )
+    )  # fmt: skip
+
+
+def regime_table(found: PredictedWaveLoad, units: UnitSystem) -> PageTable:
+    """Return the hose in the water, and the numbers by which coefficients are chosen."""
+    section, regime = found.load.section, found.regime
+    return (
+        Sheet(Calculated(units))
+        .numbers("outer diameter", [section.outer_diameter], "small length")
+        .numbers("immersion depth", [section.immersion_depth], "small length")
+        .numbers("share of the section under water", [section.submerged_share], PERCENT)
+        .numbers("section under water", [section.submerged_section_area], "area")
+        .numbers("level of the flow", [found.elevation], "small length")
+        .numbers("maximum velocity of the water", [regime.greatest_velocity], _velocity(units))
+        .numbers("Keulegan-Carpenter number", [regime.keulegan_carpenter_number], "number")
+        .numbers("Reynolds number", [regime.reynolds_number], "number")
+        .numbers("Reynolds over Keulegan-Carpenter", [regime.frequency_parameter], "number")
+        .numbers("maximum drag over maximum inertia", [regime.drag_to_inertia], "number")
+        .numbers("diameter over wave length", [regime.diameter_to_length], "number")
+        .turned(
+            "The hose in the water, and the flow past it.", ("value",), "number",
+            remarks=["Velocity with the current, at the level of the load. Morison's equation holds"
+                     " up to a diameter of 0.2 wave lengths."],
+        )
+    )  # fmt: skip
+
+
+def anchor_table(found: PredictedWaveLoad, units: UnitSystem) -> PageTable:
+    """Return the greatest horizontal force of wind, wave and current, added and as one flow."""
+    length, speed, anchor = shown("length", units), _velocity(units), found.anchor
+    return (
+        Sheet(Calculated(units))
+        .numbers("wind alone", [anchor.wind], "tension")
+        .numbers("current alone", [anchor.current], "tension")
+        .numbers("wave alone, maximum", [anchor.wave], "tension")
+        .numbers("sum of the three", [anchor.separate], "tension")
+        .numbers("wave and current as one flow, with the wind", [anchor.combined], "tension")
+        .numbers("combined minus sum, over combined", [anchor.difference], PERCENT)
+        .turned(
+            f"Horizontal force on {length.factor * found.hose_length:.4g} {length.unit} of hose,"
+            " the anchor force.",
+            ("value",), "force",
+            remarks=[
+                f"Wind {speed.factor * found.wind_velocity:.4g} {speed.unit} at the hose, current"
+                f" {speed.factor * found.current_velocity:.4g} {speed.unit}. Drag varies with the"
+                " square of the velocity: velocities add, loads do not. The whole length is at one"
+                " phase: it lies along the crest.",
+            ],
+        )
+    )  # fmt: skip
+
+
+def wave_coefficient_table(found: PredictedWaveLoad) -> PageTable | None:
+    """Return published coefficients, with those of this case and where it stands among them."""
+    regime, published = found.regime, (*PUBLISHED_COEFFICIENTS, CODE_OF_HYDROLOGY)
+    at = f"KC {float(regime.keulegan_carpenter_number):.3g}"
+    at += f", Re {plain_number(float(regime.reynolds_number), 3)}"
+    return (
+        Sheet(Calculated("si"))
+        .texts("source", [one.source for one in published])
+        .texts("wave theory", [one.wave_theory for one in published])
+        .cells("drag", [_pair(*one.drag_coefficient) for one in published])
+        .numbers("inertia", [one.inertia_coefficient for one in published], "number", 3)
+        .texts("said of them", [one.comment for one in published])
+        .row(
+            words("this case"), words(_named(found.used)),
+            number(found.drag_coefficient, digits=3), number(found.inertia_coefficient, digits=3),
+            words(at),
+        )
+        .table(
+            "Coefficients of drag and inertia as published, and of this case.",
+            remarks=["None is for a floating cylinder, and none states its range of KC and Re."
+                     " Inertia: one plus the added mass."],
+        )
+    )  # fmt: skip
+
+
+def _named(theory: str) -> str:
+    return THEORY_NAMES.get(theory, theory)
+
+
+def _velocity(units: UnitSystem) -> Shown:
+    unit, factor = display_unit("m s-1", units)
+    return Shown({"m s-1": "m/s", "ft s-1": "ft/s"}.get(unit, unit), factor)
+
+
+def _pair(low: float, high: float) -> TableCell:
+    text = f"{low:g}" if low == high else f"{low:g} to {high:g}"
+    return TableCell(text, f"{low!r} {high!r}", is_number=True)

@@ -302,12 +302,12 @@ def _one_row_a_source(data: xr.Dataset) -> xr.Dataset:
     is_next = (source[1:] != source[:-1]) | (of[1:] != of[:-1]) | is_few[1:] | is_few[:-1]
     first = np.flatnonzero(np.concatenate([[True], is_next]))
     is_sum = np.diff([*first, len(source)]) > 1
-    found = data.isel({COMPONENT: first})
+    found = {name: at_places(one, COMPONENT, first) for name, one in data.variables.items()}
     for name, variable in data.variables.items():
         if variable.dims[:1] == (COMPONENT,) and str(name).endswith("_uncertainty_contribution"):
             sums = np.sqrt(np.add.reduceat(variable.values**2, first))
-            found.variables[name].values[is_sum] = sums[is_sum]
-    return found
+            found[name].values[is_sum] = sums[is_sum]
+    return xr.Dataset(found, attrs=data.attrs)
 
 
 def all_specimens(tests: Sequence[TestView]) -> list[str]:

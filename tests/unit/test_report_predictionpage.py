@@ -19,7 +19,7 @@ from reduction.report.figures.theory_figures import (
     draw_wire,
 )
 from reduction.report.page_template import about_page
-from reduction.report.prediction_tables import (
+from reduction.report.single_pages import (
     anchor_table,
     armour_design_table,
     cable_table,
@@ -30,8 +30,9 @@ from reduction.report.prediction_tables import (
     wave_coefficient_table,
     wave_table,
     wires_table,
+    write_armour_page,
+    write_wave_page,
 )
-from reduction.report.single_pages import write_armour_page, write_wave_page
 from reduction.report.text_style import NOT_GIVEN, Shown, with_prefix
 
 NASTY = "</script><script>alert(1)</script> & <b>"
