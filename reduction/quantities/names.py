@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import replace
 
 from reduction.quantities.axes import AXES
 from reduction.quantities.hoses import OF_COMPARISONS, OF_PREDICTIONS
@@ -95,8 +94,7 @@ def rows_of_response(name: str) -> Iterator[Quantity]:
     # what is measured is not transformed
     for row in OF_EVERY_SURFACE if scale else RESPONSE_PATTERNS:
         said = own_words if row.unit == "<response unit>" else words
-        yield replace(
-            row,
+        yield row._replace(
             name=row.name.replace("<response>", name),
             unit=units.get(row.unit, row.unit),
             long_name=f"{said}: {row.long_name}",
