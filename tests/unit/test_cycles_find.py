@@ -133,6 +133,13 @@ def test_dwells_are_parts_of_cycles(dwell, where):
     assert (cycles.plateau_rate == pytest.approx(0.2, rel=0.02)) or dwell == 2.0
 
 
+@pytest.mark.parametrize("dwell", [2.0, 2.5, 3.0])
+def test_ramps_of_a_wave_that_dwells_for_half_of_a_branch_have_their_own_rate(dwell):
+    points = strokes(50, 12, half=2.5, dwell_high=dwell, dwell_low=dwell)
+    cycles = find(*path(back([*LEAD, *points])), waveform="other")
+    assert cycles.plateau_rate == pytest.approx(1 / 2.5, rel=0.02)
+
+
 def test_branches_leave_out_dwells_that_are_standstills():
     time, position = path(back([*LEAD, *strokes(50, 12, dwell_low=10, dwell_high=10)], after=30))
     cycles = find(time, position)

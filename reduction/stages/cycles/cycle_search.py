@@ -1005,10 +1005,12 @@ def _trimmed(
     noise = estimate_noise(values)[0]
     if settings.waveform != "triangular":
         first, last = _stroke_span(values, branch_first, branch_last)
+        # a wave that stops at its turns has a ramp within the stroke alone
+        ends = (first, last) if settings.waveform == "other" else (branch_first, branch_last)
         return (
             first,
             last,
-            _plateau_rates(time, values, branch_first, branch_last, noise=noise),
+            _plateau_rates(time, values, *ends, noise=noise),
             [note("no-plateau", waveform=settings.waveform)],
         )
     first, last, rate = _constant_rate_span(
