@@ -64,6 +64,12 @@ _STORING = ("apparent_spring_constant", "dissipation_spring_constant", "storage_
 _FROM_LOSS = ("relaxation_time", "dashpot_coefficient")
 """Responses that are made from the loss."""
 
+_OF_ONE_TIME = ("dissipation_spring_constant", *_FROM_LOSS)
+"""Responses that a single relaxation leaves alone along the frequency."""
+
+_ODDS = 0.1
+"""Of a single relaxation time against a spectrum, before the runs: a judgement."""
+
 
 @dataclass(frozen=True)
 @read_only_arrays
@@ -129,6 +135,8 @@ def discrepancy_of(surfaces: ResponseSurfaces) -> SurfaceDiscrepancy:
     follows. Along the frequency the process is the one of [3]_ above; of storage, and of what
     is made from the loss, it is as large as the mean of what they and what the loss say, if
     that is more: slope and curvature of three levels may miss a relaxation that the loss shows.
+    A single relaxation time makes K_1 and tau constant and the loss not: what the loss adds to them
+    is weighted by the chance of their slope and curvature against that of scatter about none.
     Along other factors the process of the loss stands over the level and over its logarithm,
     weighted by how likely they make slope and curvature, whatever its size. Terms of several
     factors have one scale, from the interactions and from what the runs scatter about the
@@ -217,11 +225,8 @@ def _aliases(surfaces: ResponseSurfaces, used: np.ndarray, more: Integers) -> tu
     return change, np.sum(left**2, axis=0)
 
 
-def _without_scatter(surfaces: ResponseSurfaces, row: int, terms: Integers) -> Floats:
+def _without_scatter(own: Floats, scatter: Floats) -> Floats:
     """Products of some coefficients less what scatter alone gives, none of them negative."""
-    factor = surfaces.covariance_factor[surfaces.pattern[row]][np.ix_(terms, terms)]
-    own = surfaces.coefficient[row, terms]
-    scatter = np.nan_to_num(surfaces.sigma[row]) ** 2 * factor
     value, vector = np.linalg.eigh(np.outer(own, own) - scatter)
     return np.asarray((vector * np.maximum(value, 0.0)) @ vector.T)
 
@@ -244,6 +249,9 @@ class _OneFactor(NamedTuple):
     ``unlikely`` is one over the likelihood of both, of whatever size the process is.
     """
 
+    own: Floats
+    scatter: Floats
+    process: Floats
     products: Floats
     size: float
     gain: Floats
@@ -253,6 +261,18 @@ class _OneFactor(NamedTuple):
     def moment(self, size: float) -> Floats:
         """Mean products of the coefficients of third and fourth order, for a process of a size."""
         return np.asarray(self.gain @ self.products @ self.gain.T + size * self.left)
+
+    def chance(self, size: float) -> float:
+        """That a process of a size made slope and curvature, and not scatter about none. [1]."""
+        none, some = self.scatter, self.scatter + size * self.process
+        if not np.linalg.det(none) > 0:
+            return 1.0
+
+        def unlikely(spread: Floats) -> float:
+            square = self.own @ np.linalg.solve(spread, self.own)
+            return float(square + np.linalg.slogdet(spread)[1]) / 2
+
+        return float(1 / (1 + _ODDS * np.exp(min(unlikely(some) - unlikely(none), 500.0))))
 
 
 def _drawn(
@@ -277,12 +297,16 @@ def _drawn(
     terms = np.array(
         [np.flatnonzero((surfaces.exponents == n * own).all(axis=1))[0] for n in (1, 2)]
     )
-    products = _without_scatter(surfaces, row, terms)
+    slopes = surfaces.coefficient[row, terms]
+    factor_of = surfaces.covariance_factor[surfaces.pattern[row]][np.ix_(terms, terms)]
+    scatter = np.nan_to_num(surfaces.sigma[row]) ** 2 * factor_of
+    products = _without_scatter(slopes, scatter)
     inverse = np.linalg.inv(joint[:2, :2])
     gain = joint[2:, :2] @ inverse
     size = float(np.trace(inverse @ products)) / 2
     unlikely = size / np.sqrt(np.linalg.det(inverse))
-    return _OneFactor(products, size, gain, joint[2:, 2:] - gain @ joint[:2, 2:], float(unlikely))
+    left = joint[2:, 2:] - gain @ joint[:2, 2:]
+    return _OneFactor(slopes, scatter, joint[:2, :2], products, size, gain, left, float(unlikely))
 
 
 class _Loss(NamedTuple):
@@ -347,7 +371,9 @@ def _of_one_factor(
         share = loss.share * loss.spring / centre if is_storage else 1.0
         scale = centre ** surfaces.transform_exponent[row]
         # two estimates of one size, from two squares each
-        size += max(loss.size * (share * scale) ** 2 - size, 0.0) / 2
+        more = max(loss.size * (share * scale) ** 2 - size, 0.0) / 2
+        # of a single relaxation the loss goes its own way, and these stand still
+        size += more * (drawn.chance(size + more) if name in _OF_ONE_TIME else 1.0)
     return drawn.moment(size)
 
 

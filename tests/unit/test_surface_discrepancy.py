@@ -205,3 +205,40 @@ def test_times_are_held_where_a_loss_turns_within_the_frequencies(slow):
         ends = with_shared_at_points(surfaces, at, np.zeros((0, 4, 10)), []).confidence_interval[3]
         held.append(((ends[:, 0] <= truth) & (truth <= ends[:, 1])).mean())
     assert np.mean(held) > 0.93
+
+
+def test_times_of_a_single_relaxation_are_stated_no_wider_than_half_beyond_need():
+    """K_1 and tau stand still along the frequency, whatever the loss does."""
+    rng = np.random.default_rng(3)
+    centre, half = (LOW + HIGH) / 2, (HIGH - LOW) / 2
+    low, high = (np.array([*end[:2], end[2] / 100]) for end in (LOW, HIGH))
+    over = []
+    for _ in range(40):
+        time = np.exp(-rng.uniform(np.log(0.1), np.log(0.5))) / (2 * np.pi)
+        share = rng.uniform(0.3, 1.5)
+
+        def law(at, scatter, time=time, share=share):
+            turn = 2 * np.pi * at[:, 0] * time
+            static, amplitude = 1.5 + 0.02 * (at[:, 1] - 21), at[:, 2] / 100
+            storage, loss = (share * one / (1 + turn**2) for one in (turn**2, turn))
+            spring, energy, *_ = line_of(static, storage, loss, at[:, 0], amplitude)
+            spring, energy = (spring, energy) * (1 + scatter * rng.normal(size=(2, len(at))))
+            loss = energy / np.pi * (spring / amplitude) ** 2
+            storage = np.sqrt(spring**2 - loss**2) - static
+            return line_of(static, storage, loss, at[:, 0], amplitude)
+
+        points = rng.uniform(-1, 1, (40, 3))
+        truth = law(centre + half * points, 0.0)[2:]
+        surfaces = fit_surfaces(
+            PLAN, law(centre + half * PLAN, 1e-3),
+            factor_names=("frequency", "mean_tension", "tension_amplitude"), low=low, high=high,
+            units="coded", with_tests=False, transforms=("none", "log", "none", "log"),
+            response_names=("apparent_spring_constant", "hysteresis_energy",
+                            "dissipation_spring_constant", "relaxation_time"),
+        )  # fmt: skip
+        at = evaluate_surfaces(surfaces, points, units="coded")
+        ends = with_shared_at_points(surfaces, at, np.zeros((0, 4, 10)), []).confidence_interval[2:]
+        middle = ends.mean(axis=-1)
+        over.append(np.abs(truth - middle) / (ends[..., 1] - middle))
+    assert (np.mean(np.array(over) < 1, axis=(0, 2)) > 0.93).all()
+    assert (np.quantile(over, 0.95, axis=(0, 2)) > 1 / 1.5).all()
