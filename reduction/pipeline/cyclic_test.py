@@ -216,7 +216,13 @@ def parts_of_cycles(
     alike = np.zeros(len(specimens))
     if settings.cycles.waveform == "triangular" and np.any(lag):
         late = np.array(lag)
-        alike = np.where(late > 0, turns_alike(late, median_step(record.time)), 0.0)
+        known = loops.frequency[loops.frequency > 0]
+        both = turns_alike(
+            late, median_step(record.time),
+            period=float(np.mean(1 / known)) if known.size else 0.0,
+            n_cycles=cycles.n_cycles - break_in,
+        )  # fmt: skip
+        alike = np.where(late > 0, both, 0.0)
     amplitude = summarise_amplitude(loops, area=area, break_in_cycles=break_in, turns_alike=alike)
     loops.release_pages()
     if np.isnan(area).any():

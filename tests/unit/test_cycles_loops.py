@@ -1559,3 +1559,24 @@ def test_amplitude_of_a_saw_whose_slow_stroke_noise_hides_is_covered(rise):
         found = summarise_amplitude(loops, area=[1e-4], break_in_cycles=2)
         off.append((found.tension_amplitude[0] - true) / found.uncertainty["tension_amplitude"][0])
     assert np.sqrt(np.mean(np.square(off))) < 1.5
+
+
+def test_noise_of_a_tension_makes_no_saw_of_even_ramps():
+    # corners anywhere between readings, a step of strain of 16 times its noise
+    fine = np.arange(0, 180, 0.001)
+    ramps = np.abs((fine + 10) % 20 - 10) / 10
+    off, stated = [], []
+    for seed in range(6):
+        rng = np.random.default_rng(seed)
+        time = rng.uniform(0, 0.2) + np.arange(0, 179.7, 0.2007)
+        strain = np.interp(time, fine, ramps) + rng.normal(0, 0.00125, time.size)
+        force = 1000 + 300 * np.interp(time, fine, ramps) + rng.normal(0, 3, time.size)
+        stands = find_standstills(time, strain, force[None], settings=PhaseSettings())
+        cycles = find_cycles(time, strain, force[None], stands, settings=CycleSettings())
+        loops = close_loops(time, force[None], strain[None], cycles)
+        found = summarise_amplitude(loops, area=[1e-4], break_in_cycles=2)
+        stated.append(found.uncertainty["strain_amplitude"][0])
+        off.append(found.strain_amplitude[0] - 0.5)
+    # readings lie within half a step of a corner
+    assert max(stated) < 1.1 * 0.02 / 2 / np.sqrt(8)
+    assert np.sqrt(np.mean(np.square(off))) < min(stated)

@@ -76,6 +76,17 @@ def test_a_corner_that_both_channels_miss_is_not_in_the_spring_constant(lag):
         assert summary.uncertainty[name] == apart.uncertainty[name]
 
 
+@pytest.mark.parametrize("readings", [50.0, 50.05, 50.3])
+def test_corners_at_many_places_between_readings_miss_alike_in_both_channels(readings):
+    """Of ten cycles, tension logged late by half an interval, as a standard deviation."""
+    rng = np.random.default_rng(23)
+    place = rng.random((50_000, 1)) + readings * np.arange(10)
+    late = rng.normal(0, 0.5, (50_000, 1))
+    both = [2 * np.abs((at + 0.5) % 1 - 0.5).mean(axis=1) for at in (place + late, place)]
+    alike = turns_alike(np.array([0.5]), 1.0, period=readings, n_cycles=10)
+    assert np.sqrt((1 - alike) / 4) == pytest.approx([(both[0] - both[1]).std()], rel=0.02)
+
+
 def test_only_as_much_is_alike_as_both_channels_miss():
     values = np.full((1, 2), 100.0)
     loops = replace(loops_of(values), tension_turn_missed=3 * values, strain_turn_missed=values)

@@ -6,6 +6,7 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import diric
 
 from reduction.record.measurement import Bools, Floats, Integers, read_only_arrays
 from reduction.record.notes import Note
@@ -200,20 +201,24 @@ class Loops:
         trim_heap(self.frequency)
 
 
-def turns_alike(lag: Floats, interval: float) -> Floats:
-    r"""Correlation of what tension and strain miss of a corner that both have. [1].
+def turns_alike(lag: Floats, interval: float, *, period: float = 0.0, n_cycles: int = 1) -> Floats:
+    r"""Correlation of what tension and strain miss of the corners that both have. [1].
 
-    .. math:: \rho = \frac{96}{\pi^4} \sum_{k\ \mathrm{odd}}
-              \frac{e^{-2 \pi^2 k^2 \sigma^2}}{k^4}, \qquad r = \frac{1 + 2 \rho}{3}
+    .. math:: r = 1 - \frac{64}{\pi^4} \sum_{k\ \mathrm{odd}} \frac{R_k^2}{k^4}
+              \left(1 - e^{-2 \pi^2 k^2 \sigma^2}\right), \qquad
+              R_k = \frac{\sin \pi k N p}{N \sin \pi k p}
 
     Notes
     -----
     A corner of two ramps lies d from the nearest reading, anywhere within half an interval to
     either side, and :math:`|d|` times the slope is missed.  Tension that is logged late turns at
     another place: the autocorrelation of :math:`|d|`, a triangle over the intervals, in the mean
-    over lags of standard uncertainty :math:`\sigma` intervals.  The difference of two shares that
-    lie anywhere within one width W then has the variance :math:`W^2 (1 - \rho) / 6`, where each
-    alone has :math:`W^2 / 8` (`WITHIN_STEP`), which r makes of these.
+    over lags of standard uncertainty :math:`\sigma` intervals.  Of the mean over N corners, p
+    intervals apart, the harmonic k of that triangle keeps :math:`R_k`: all of it where each lies
+    at the same place between two readings, nothing where they lie evenly there.  The
+    difference of two shares that lie anywhere within one width W then has the variance
+    :math:`W^2 (1 - r) / 4`, where each alone has :math:`W^2 / 8` (`WITHIN_STEP`): what a machine
+    rounds of its corners, both have.
 
     Examples
     --------
@@ -221,10 +226,18 @@ def turns_alike(lag: Floats, interval: float) -> Floats:
 
     >>> print(turns_alike(np.array([0.0, 0.01, 0.1]), 0.1).round(3))
     [1.    0.874 0.333]
+
+    Of ten cycles of 50 and of 50.3 readings:
+
+    >>> for readings in (50, 50.3):
+    ...     print(turns_alike(np.array([0.1]), 0.1, period=0.1 * readings, n_cycles=10).round(3))
+    [0.333]
+    [1.]
     """
     odd = np.arange(1, 20, 2)
-    faded = np.exp(-2 * (np.pi * np.outer(lag, odd) / interval) ** 2)
-    return np.asarray((1 + 2 * (faded @ odd**-4.0) / (odd**-4.0).sum()) / 3)
+    apart = -np.expm1(-2 * (np.pi * np.outer(lag, odd) / interval) ** 2)
+    kept = diric(2 * np.pi * odd * period / interval, n_cycles) ** 2
+    return np.asarray(1 - 2 / 3 * (apart @ (kept / odd**4)) / (odd**-4.0).sum())
 
 
 WITHIN_STEP = np.sqrt(8)  # width over deviation, of what is likeliest at either end

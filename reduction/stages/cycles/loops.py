@@ -1374,7 +1374,10 @@ def _readings_at_turns(
         above = top - np.stack([values[peak - 1], values[peak + 1]])
         below = np.stack([values[end - 1], values[after]]) - last
         slow, fast = np.nanmedian(np.sort(above, axis=0) + np.sort(below, axis=0), axis=1)
-        if slow < _STEEP * reading_noise(values) < fast:
+        # of a driven channel with even strokes both are where its corners lie between readings
+        strokes = np.median([peak - begin, end - peak], axis=1)
+        may_fall = answers or strokes.max() > _UNEVEN * strokes.min()
+        if may_fall and slow < _STEEP * reading_noise(values) < fast:
             missed = np.fmax(missed, slow)
     return way * top, way * first, way * last, missed
 
@@ -1604,6 +1607,8 @@ def _mean_of_rest(values: Floats, at: Integers, greatest: Floats, *, within: Flo
 
 
 _STEEP = 20.0  # noise of a reading, between the slow steps and the fast ones
+
+_UNEVEN = 2.0  # times the faster stroke, which the slower one of a saw lasts
 
 _OF_A_STEP = 0.05  # of the mean step of a branch
 
