@@ -96,6 +96,7 @@ def _settings_json(
     document: dict[str, Any] = {
         "description": asdict(describe(campaign, survey)),
         "target_strain": plan.target_strain,
+        **({} if plan.step_range is None else {"step_range": plan.step_range}),
         "reduction": asdict(plan.settings),
         "uncertainty": asdict(campaign.uncertainty),
         "layouts": {

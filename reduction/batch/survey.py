@@ -124,6 +124,7 @@ def _step_plan(plan: TestPlan, step: StepPlan, place: int) -> TestPlan:
         settings=replace(plan.settings, cycles=cycles),
         attributes=plan.attributes | note,
         step_place=place,
+        step_range=step.time_range or step.cycle_range,
         failed=step.failed,
         steps=(),
     )

@@ -63,6 +63,8 @@ class TestPlan:
     """Id of the test whose log this is: another than ``id`` for a step of a log."""
     step_place: int = 0
     """Place of a step in its log, from 1; 0 for a test without steps."""
+    step_range: tuple[float, float] | None = None
+    """Times [s] or cycle numbers between which a step lies; None for a test without steps."""
     failed: bool | None = None
     """Whether the specimens broke, where the laboratory says so."""
     steps: tuple[StepPlan, ...] = ()

@@ -273,6 +273,20 @@ def test_a_log_in_steps_has_each_in_the_history_and_one_that_fails_is_one_earlie
     assert names == "A, weights" and np.isnan(numbers).all()
 
 
+def test_a_step_is_reduced_again_where_its_range_moves(row, command):
+    step = '[[tests.A.steps]]\nname = "first"\nfrom = "{} s"\nto = "{} s"\n'
+    text = (row / "campaign.toml").read_text()
+    for low, high in ((0, 50), (0, 90), (30, 90)):
+        (row / "campaign.toml").write_text(
+            text.replace("[tests.weights]", step.format(low, high) + "[tests.weights]")
+        )
+        assert run(row, command)["A.first"]["status"] == "reduced"
+        with open_archive(row / "processed" / "row" / "A.first.nc") as archive:
+            ends = [float(archive["time"][place]) for place in (0, -1)]
+        assert ends == pytest.approx([low, high])
+    assert run(row, command)["A.first"]["status"] == "unchanged"
+
+
 def test_each_product_has_the_key_of_its_settings(run_once):
     for path in (run_once / "processed" / "row").glob("*.nc"):
         with open_archive(path) as archive:
