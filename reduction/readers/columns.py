@@ -28,7 +28,7 @@ CLOCK_TEXT = re.compile(
 )
 """A time of day, with a date before it or none; of a date with slashes nobody knows the month."""
 
-_DAY = 86400.0
+DAY = 86400.0
 
 
 def clock_to_seconds(
@@ -45,10 +45,8 @@ def clock_to_seconds(
     for index, text in enumerate(texts):
         if text in missing:
             continue
-        match = CLOCK_TEXT.fullmatch(text)
-        date_of = math.nan if match is None else _day_of(match)
-        is_no_day = match is not None and bool(match[1] or match[4]) and math.isnan(date_of)
-        if match is None or int(match[7]) > 23 or is_no_day:
+        reading = clock_reading(text)
+        if reading is None:
             raise LogError(
                 path,
                 "a reading is not a clock time",
@@ -58,9 +56,7 @@ def clock_to_seconds(
                 needed="hours and minutes, such as 0945, 09:45 or 09:45:30, or a date before them, "
                 "2024-05-31 09:45:30 or 31.05.2024 09:45:30",
             )
-        hours, minutes = int(match[7]), int(match[8])
-        seconds[index] = 3600 * hours + 60 * minutes + float((match[9] or "0").replace(",", "."))
-        days[index] = date_of
+        days[index], seconds[index] = reading
     valid = np.flatnonzero(np.isfinite(seconds))
     if not valid.size:
         return seconds
@@ -68,14 +64,25 @@ def clock_to_seconds(
     if np.isfinite(dates).all():
         day = dates - dates[0]
     elif np.isnan(dates).all():
-        day = np.cumsum(np.diff(read, prepend=read[0]) < -_DAY / 2).astype(np.float64)
+        day = np.cumsum(np.diff(read, prepend=read[0]) < -DAY / 2).astype(np.float64)
     else:
         raise LogError(
             path, "some readings of a clock have a date and some have none",
             channel=channel, needed="a date in every row, or in none",
         )  # fmt: skip
-    seconds[valid] = read + _DAY * day - read[0]
+    seconds[valid] = read + DAY * day - read[0]
     return seconds
+
+
+def clock_reading(text: str) -> tuple[float, float] | None:
+    """Number of the day, NaN without a date, and seconds from midnight; None if no clock time."""
+    match = CLOCK_TEXT.fullmatch(text)
+    day = math.nan if match is None else _day_of(match)
+    is_no_day = match is not None and bool(match[1] or match[4]) and math.isnan(day)
+    if match is None or int(match[7]) > 23 or is_no_day:
+        return None
+    in_minute = float((match[9] or "0").replace(",", "."))
+    return day, 3600 * int(match[7]) + 60 * int(match[8]) + in_minute
 
 
 def _day_of(match: re.Match[str]) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
@@ -10,6 +11,7 @@ from itertools import pairwise
 import numpy as np
 
 from reduction.quantities.units import Dimension, parse_quantity, scale_to_si
+from reduction.readers.columns import DAY, clock_reading
 from reduction.readers.layout import CLOCK, Channel, Layout
 from reduction.readers.raw_log import RawLog
 from reduction.readers.sample_flags import flag_record
@@ -404,6 +406,7 @@ def to_record(
     counts = [_check_channels(layout, test_id, len(specimens)) for _, layout in logs]
     position_is_length = _check_datum([layout for _, layout in logs], test_id, length_needed)
     pieces = [_to_piece(log, layout, gap_factor=quality.gap_factor) for log, layout in logs]
+    pieces = _on_one_clock(pieces)
     _check_order(pieces)
     n_samples = sum(piece.time.size for piece in pieces)
     beside, rows = pieces[0].time, (len(specimens), n_samples)
@@ -520,6 +523,26 @@ def _load_train(layouts: Sequence[Layout], test_id: str) -> LoadTrain:
             needed="one load_cell_at, attached_mass and machine_compliance for all pieces",
         )
     return stated[0]
+
+
+def _on_one_clock(pieces: list[_Piece]) -> list[_Piece]:
+    """Pieces by a clock count from the first reading of the first; without dates, they go on."""
+    starts = [
+        next(filter(None, map(clock_reading, piece.log.text.get("time", ()))), None)
+        for piece in pieces
+    ]
+    placed: list[_Piece] = []
+    for piece, start in zip(pieces, starts, strict=True):
+        if starts[0] is None or start is None:
+            return pieces
+        after = DAY * (start[0] - starts[0][0]) + start[1] - starts[0][1]
+        if math.isnan(after):
+            if not math.isnan(start[0]) or not math.isnan(starts[0][0]):
+                return pieces  # a date in some alone
+            end = finite_extremes(placed[-1].time)[1] if placed else 0.0
+            after = end + (start[1] - starts[0][1] - end) % DAY
+        placed.append(replace(piece, time=piece.time + after) if after else piece)
+    return placed
 
 
 def _check_order(pieces: Sequence[_Piece]) -> None:

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -294,6 +296,32 @@ def test_pieces_that_each_count_from_zero_are_two_time_bases():
         match=r"two time bases; found b.csv from 0 s, a.csv to 19.9 s; needed pieces in order",
     ):
         convert((log(name="a.csv"), layout()), (log(name="b.csv"), layout()))
+
+
+@pytest.mark.parametrize(
+    ("texts", "starts"),
+    [
+        (("03.11.2026 23:59:50", "04.11.2026 00:00:20.5", "05.11.2026 00:00:20.5"),
+         (0.0, 30.5, 86430.5)),
+        (("23:59:50", "00:00:20", "00:00:19"), (0.0, 30.0, 86429.0)),
+    ],
+)  # fmt: skip
+def test_pieces_by_a_clock_go_on_at_their_clock(texts, starts):
+    clocked = [
+        (replace(log({"time": TIME}, name=f"{place}.csv"), text={"time": (text,)}), layout())
+        for place, text in enumerate(texts)
+    ]
+    record = convert(*clocked)
+    np.testing.assert_allclose(record.time, np.concatenate([TIME + start for start in starts]))
+
+
+def test_pieces_by_a_clock_in_the_wrong_order_are_refused():
+    clocked = [
+        (replace(log({"time": TIME}, name=name), text={"time": (text,)}), layout())
+        for name, text in (("a.csv", "2026-11-04 00:01:00"), ("b.csv", "2026-11-03 23:50:00"))
+    ]
+    with pytest.raises(DataError, match=r"found b.csv from -660 s, a.csv to 19.9 s"):
+        convert(*clocked)
 
 
 def test_pieces_with_other_channels_are_refused():
