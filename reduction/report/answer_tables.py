@@ -258,7 +258,7 @@ def pull_table(tests: Sequence[TestView]) -> PageTable | None:
     ]  # fmt: skip
     return make_table(
         "Pulls and weights. EA: slope of load against strain on the first loading, at half the"
-        " strain reached.",
+        " strain reached, or in the middle of a pull that begins above it.",
         columns, found, is_compact=True, is_tall=len(found) > _MOST_ROWS,
         remarks=[
             *_about_spread(
@@ -299,7 +299,10 @@ def _pull_rows(view: TestView, *, is_of_lines: bool) -> Iterator[list[TableCell]
         usable = np.flatnonzero(np.isfinite(stiffness.values))
         area = float("nan") if areas is None else float(np.ravel(areas)[place])
         if usable.size:
-            middle = int(usable[np.argmin(np.abs(strain[usable] - strain[at_end] / 2))])
+            half = strain[at_end] / 2
+            if strain[usable[0]] > half:  # the pull begins under a load
+                half = (strain[usable[0]] + strain[at_end]) / 2
+            middle = int(usable[np.argmin(np.abs(strain[usable] - half))])
             line = stiffness.cell(middle, force, area if is_modulus else 1.0)
             material = stiffness.cell(middle, stress, 1.0 if is_modulus else 1.0 / area)
         else:

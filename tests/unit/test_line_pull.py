@@ -57,6 +57,24 @@ class TestLoading:
         rows = _find_loading(load, load / 1e4, reference_tension=100.0)
         assert (rows[0], rows[-1]) == (100, 1000)
 
+    @pytest.mark.parametrize("seed", [0, 1, 2])
+    def test_a_hold_at_the_peak_is_no_part_of_the_pull(self, seed):
+        # strain creeps by a tenth of the pull while tension stands, and noise peaks late in the hold
+        _, strain, load = rising(600)
+        held = np.arange(1, 401)
+        creep = 0.1 * strain[-1] * np.log1p(held) / np.log(401)
+        load = np.concatenate([load, np.full(400, load[-1])])
+        load += np.random.default_rng(seed).normal(0, 2.0, load.size)
+        strain = np.concatenate([strain, strain[-1] + creep])
+        assert np.argmax(load) > 610
+        rows = _find_loading(load, strain)
+        assert 590 <= rows[-1] <= 600
+        pull = fit_pull(np.arange(1000) * 0.1, strain, load)
+        at = 0.99 * pull.tension_high
+        true = 1 / (CUBIC[1] + 2 * CUBIC[2] * at + 3 * CUBIC[3] * at**2)
+        found, error = quasi_static_spring_constant(pull, at)
+        assert found == pytest.approx(true, abs=4 * error) and error < 0.05 * true
+
     def test_a_record_that_begins_above_the_reference_is_used_whole(self):
         load = np.linspace(50, 1000, 500)
         rows = _find_loading(load, load / 1e4, reference_tension=20.0)

@@ -253,6 +253,18 @@ def test_a_slow_pull_of_a_rope_has_k_0_half_way():
     assert row[3:6] == ["10.00", "300.0", "4,000 ± 200"]
 
 
+def test_a_pull_that_begins_under_a_load_has_k_0_in_its_middle():
+    grid = (S, "tension_grid")
+    more = {
+        "tension_grid": ("tension_grid", [100.0, 200.0, 300.0]),
+        "quasi_static_strain": (grid, [[0.08, 0.09, 0.10]]),
+        "quasi_static_spring_constant": (grid, [[3e3, 4e3, 5e3]]),
+        "quasi_static_spring_constant_standard_uncertainty": (grid, [[2500.0, 100.0, 100.0]]),
+    }
+    (row,) = texts(pull_table([pulled(of="rope", **more)]))
+    assert row[5] == "4,000 ± 200"
+
+
 def test_weights_have_the_modulus_between_the_readings_half_way():
     more = {
         "tension": ("step", [0.0, 100.0, 200.0, 100.0]), "strain": ("step", [0.0, 0.1, 0.4, 0.2]),

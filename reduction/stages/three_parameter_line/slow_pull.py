@@ -71,6 +71,10 @@ _NOISE_FACTOR = 6.0
 # and above this share of the whole rise: the foot of the curve, where the line straightens
 _FOOT = 0.005
 
+# share of the rise before the peak that shows how the pull goes on, and how many times the strain
+# that its last readings add by that is gained in a hold
+_APPROACH, _HELD = 0.05, 1.5
+
 _FEWEST_SAMPLES = 8
 
 
@@ -97,7 +101,8 @@ def _find_loading(
     return to it are left out.  The start without a reference tension is the lowest reading
     before the peak plus six standard deviations of a reading, or plus half a percent of
     the rise where that is more.  What follows the peak (unloading, failure) is left out;
-    [1]_ pulls to failure.
+    [1]_ pulls to failure.  The greatest reading of a hold at the peak lies anywhere in it: where
+    strain goes on while tension stands, the pull ends as it reaches the hold.
 
     Examples
     --------
@@ -134,6 +139,14 @@ def _find_loading(
             found=f"{peak + 1 - first} from {load[first]:.4g} N to the peak of {load[peak]:.4g} N",
             needed=f"{_FEWEST_SAMPLES} or more",
         )
+    near = load[peak] - max(_NOISE_FACTOR * reading_noise(load[: peak + 1]), _FOOT * rise)
+    rising = first + int(np.argmax(load[first : peak + 1] >= near))
+    before = first + int(np.argmax(load[first : peak + 1] >= near - _APPROACH * rise))
+    gained = stretch[rows[[before, rising, peak]]]
+    as_before = (load[peak] - load[rising]) * (gained[1] - gained[0])
+    at_hold = (gained[2] - gained[1]) * (load[rising] - load[before])
+    if at_hold > _HELD * as_before and rising + 1 - first >= _FEWEST_SAMPLES:
+        return rows[first : rising + 1]
     return rows[first : peak + 1]
 
 
