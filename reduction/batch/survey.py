@@ -13,7 +13,7 @@ from reduction.batch.campaign_status import Progress, Silent, Status, TestStatus
 from reduction.batch.found_steps import FOUND, find_steps
 from reduction.batch.run_lock import RunLock
 from reduction.batch.workers import Task, Workers, work_on
-from reduction.campaign.plan import Campaign, StepPlan, TestPlan
+from reduction.campaign.plan import Campaign, StepPlan, TestPlan, cycles_of_kind
 from reduction.pipeline.located_test import Located, locate, slips_of, tension_at_marks
 from reduction.pipeline.reduce_test import Extremes, extremes_of_readings, extremes_of_test
 from reduction.readers.layout import Layout
@@ -114,14 +114,16 @@ def _step_record(record: Record, step: StepPlan, plan: TestPlan) -> Record:
 
 def _step_plan(plan: TestPlan, step: StepPlan, place: int) -> TestPlan:
     """The plan of one step as that of a test."""
-    cycles = replace(plan.settings.cycles, expected_cycles=step.expected_cycles)
+    cycles = replace(
+        plan.settings.cycles, expected_cycles=step.expected_cycles, waveform=plan.waveform
+    )
     note = {"step": step.name} | ({"step_note": step.note} if step.note else {})
     return replace(
         plan,
         id=step.product(plan.id),
         kind=step.kind,
         target_strain=step.target_strain or plan.target_strain,
-        settings=replace(plan.settings, cycles=cycles),
+        settings=replace(plan.settings, cycles=cycles_of_kind(cycles, step.kind)),
         attributes=plan.attributes | note,
         step_place=place,
         step_range=step.time_range or step.cycle_range,

@@ -30,7 +30,14 @@ from reduction.campaign.model import (
     stated_errors,
 )
 from reduction.campaign.outcome_results import outcomes_of
-from reduction.campaign.plan import Campaign, ComparisonPlan, StepPlan, TestPlan, product_of
+from reduction.campaign.plan import (
+    Campaign,
+    ComparisonPlan,
+    StepPlan,
+    TestPlan,
+    cycles_of_kind,
+    product_of,
+)
 from reduction.campaign.toml_file import (
     at_place,
     faults_of,
@@ -538,19 +545,18 @@ def _plan_test(
             path, f"test '{name}' names a specimen twice", found=", ".join(specimens),
             needed="each specimen once, in the order of the tension channels",
         )  # fmt: skip
-    strain = given("strain")
+    strain, kind = given("strain"), test.kind or defaults.kind
+    cycles = CycleSettings(
+        control=given("control"), waveform=given("waveform"), expected_cycles=test.n_cycles
+    )
     settings = ReductionSettings(
-        strain=StrainSettings(method=strain.method),
-        cycles=CycleSettings(
-            control=given("control"), waveform=given("waveform"), expected_cycles=test.n_cycles
-        ),
+        strain=StrainSettings(method=strain.method), cycles=cycles_of_kind(cycles, kind)
     )
     for table in (defaults.reduction, test.reduction):
         try:
             settings = apply_numbers(settings, table, control=given("control"))
         except SettingsError as error:
             raise in_toml(path, f"test '{name}': {error}") from error
-    kind = test.kind or defaults.kind
     attributes = {key: given(key) for key in _KEPT if given(key)}
     attributes |= {
         key: str(getattr(test, key))

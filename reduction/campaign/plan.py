@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Literal
 
@@ -17,7 +17,7 @@ from reduction.record.contributions import StatedErrors
 from reduction.record.errors import LogError
 from reduction.record.measurement import Source, Specimen, SpliceMarks
 from reduction.record.plain_text import is_address
-from reduction.record.settings import Limits, ReductionSettings
+from reduction.record.settings import CycleSettings, Limits, ReductionSettings
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ class TestPlan:
     specimens: tuple[str, ...]
     order: int | None
     control: str
-    waveform: str
+    waveform: Literal["triangular", "sinusoidal", "other"]
     target_strain: tuple[float, ...]
     attributes: dict[str, str]
     settings: ReductionSettings
@@ -72,6 +72,16 @@ class TestPlan:
     """Cycles since the test before that are in no log."""
     n_flex_cycles: int | None = None
     """Cycles of flexing in the log, all its steps together."""
+
+
+def cycles_of_kind(cycles: CycleSettings, kind: str) -> CycleSettings:
+    """Settings of the cycles of a kind of test.
+
+    The first cycles of a line that is bedded in are no sine, whatever drives them: they count
+    from turn to turn, as in a test whose waveform is not known.
+    """
+    is_sine = kind == "bedding-in" and cycles.waveform == "sinusoidal"
+    return replace(cycles, waveform="other") if is_sine else cycles
 
 
 @dataclass(frozen=True)

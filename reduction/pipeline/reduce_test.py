@@ -117,6 +117,7 @@ def _plausibility_notes(
     curves: ModulusCurves | None,
     control: Literal["position", "load"] = "position",
     is_snap: bool = False,
+    is_bedding: bool = False,
 ) -> tuple[Note, ...]:
     """Name what is hardly so: sign, unit of position, slack or drift in cycles, waveform."""
     notes = []
@@ -132,7 +133,7 @@ def _plausibility_notes(
         slack = _taut if is_snap else _slack
         # of a channel of the wrong sign a valley says nothing about slack
         half_strain = _half_range(strain[index], cycles)
-        if waveform != "sinusoidal":
+        if waveform != "sinusoidal" and not is_bedding:  # the first cycles leave a rope longer
             notes += _drift(name, loops, index, half_strain)
         notes += _sign(name, loops, index, slopes) or (
             []
@@ -807,6 +808,7 @@ def _notes_of_test(
         strain, specimens=specimens, slack_tensions=_slack_in_cycles(located, settings),
         waveform=settings.cycles.waveform, control=settings.cycles.control, cycles=located.cycles,
         loops=parts.get("loops"), curves=parts.get("curves"), is_snap=kind == "snap",
+        is_bedding=kind == "bedding-in",
     )  # fmt: skip
     notes += [
         replace(one, subject=name)

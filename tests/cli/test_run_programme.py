@@ -398,6 +398,29 @@ def test_a_bedding_in_that_begins_above_slack_gives_the_first_cycle(log, tmp_pat
     assert "of the first cycle" in original["property_remark"]
 
 
+def test_cycles_of_a_sine_that_bed_a_rope_in_begin_with_the_first(tmp_path):
+    """A rope of 1 MN that is longer by 0.01 (1 - exp(-n)) after the rise of the nth cycle."""
+    ramp, cycle = np.arange(0, 1, 0.1), np.arange(0, 8, 0.0025)
+    tension = np.concatenate([np.zeros(200), 2e3 * ramp, 21e3 - 19e3 * np.cos(2 * np.pi * cycle)])
+    before = 0.01 * (1 - np.exp(-np.floor(cycle)))
+    risen = (1 - np.cos(2 * np.pi * np.minimum(cycle % 1, 0.5))) / 2
+    longer = before + (0.01 - before) * (1 - np.exp(-1)) * risen
+    strain = tension / 1e6 + np.concatenate([np.zeros(210), longer])
+    noise = np.random.default_rng(8)
+    tension = tension + noise.normal(0, 4.0, tension.size)
+    strain = strain + noise.normal(0, 2e-6, strain.size)
+    rows = np.column_stack([0.1 * np.arange(tension.size), 10 * strain, tension, strain])
+    np.savetxt(tmp_path / "sine.csv", rows, fmt="%.7g", delimiter=",", header="t_s,x_m,F_N,e",
+               comments="")  # fmt: skip
+    result = run(tmp_path, made.single("sine", "bedding-in", 'waveform = "sinusoidal"'))
+    assert [(one.status, one.message) for one in result.tests] == [("reduced", "")]
+    found = row(result, "sine")
+    assert found["bedding_cycles"] == 8
+    near(found, "bedding_last_stiffness", 1e6)
+    # between the feet of the first and the last cycle
+    near(found, "bedding_permanent_strain", 0.01 * (1 - np.exp(-7)))
+
+
 def test_a_step_that_failed_is_named_where_its_property_is_missing(log, tmp_path):
     made.write(log, tmp_path / "P-7.csv")
     head, *lines = (tmp_path / "P-7.csv").read_text().splitlines()

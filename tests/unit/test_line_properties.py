@@ -151,6 +151,13 @@ def test_a_rise_that_was_held_on_its_way_says_so():
     assert whole.reason == ""
 
 
+def test_original_stiffness_ends_at_the_greatest_load_of_the_rise():
+    # the load falls again, and the rope creeps on: no hold, and no part of the rise
+    (one,) = named([bedding(first_rise=rise(20, 35, 60, 80, 79, np.nan, 75))], "original stiffness")
+    assert (one.value, one.high_tension) == (pytest.approx(60 / 0.03), 80.0)
+    assert one.reason == ""
+
+
 def test_original_stiffness_is_as_uncertain_as_both_ends_of_the_rise():
     whole = dataclasses.replace(
         rise(20, 50, 80), tension_random_standard_uncertainty=np.array([0.3, 9.0, 0.4])

@@ -467,21 +467,27 @@ def _original(steps: Sequence[StepOfProgramme], before: str) -> ChangeInLength:
     absent = replace(absent, step=first.name)
     rise = first.first_rise
     if rise is not None:
-        gain = float(rise.strain[-1] - rise.strain[0])
-        stiffness = float(rise.tension[-1] - rise.tension[0]) / gain
+        # a rope creeps on for a while as the load falls again: that is no part of its rise
+        top = max(int(np.argmax(rise.tension)), 1)
+        gain = float(rise.strain[top] - rise.strain[0])
+        stiffness = float(rise.tension[top] - rise.tension[0]) / gain
         of_tension, of_strain = (
-            rows[:, -1] - rows[:, 0]
+            rows[:, top] - rows[:, 0]
             for rows in (rise.tension_contribution, rise.strain_contribution)
         )
         spread = rise.tension_random_standard_uncertainty
         return replace(
             absent,
             value=stiffness,
-            random_standard_uncertainty=float(np.hypot(spread[0], spread[-1])) / gain,
+            random_standard_uncertainty=float(np.hypot(spread[0], spread[top])) / gain,
             contribution=(of_tension - stiffness * of_strain) / gain,
             low_tension=float(rise.tension[0]),
-            high_tension=float(rise.tension[-1]),
-            reason=_HELD if float(np.diff(rise.strain).max()) > RISE_GAP * rise.spacing else "",
+            high_tension=float(rise.tension[top]),
+            reason=(
+                _HELD
+                if float(np.diff(rise.strain[: top + 1]).max()) > RISE_GAP * rise.spacing
+                else ""
+            ),
         )
     if first.bedding is None:
         return replace(absent, reason=_NO_RISE)
