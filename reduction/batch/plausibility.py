@@ -147,7 +147,7 @@ def _of_specimen(
     tension = survey.extremes.greatest_tension.get(name, np.nan)
     strength = specimen.rated_break_strength or np.nan
     yield from _of_sizes(specimen, bands)
-    if tension > _STRENGTH_REACHED * strength and not survey.plan.failed:
+    if tension > _STRENGTH_REACHED * strength and name not in survey.broken:
         yield note("tension-above-strength", name, share=tension / strength)
     if tension < _LITTLE_OF_STRENGTH * strength and survey.levels is not None:
         yield note("tension-far-below-strength", name, share=tension / strength)
@@ -260,7 +260,8 @@ def _of_statements(campaign: Campaign, survey: Survey, models: Models) -> Iterat
             )  # fmt: skip
         yield from _of_length(campaign, survey, index, model)
         share = float(levels.final_share[index])
-        if share < _FALLEN and not plan.failed and plan.kind in ("tensile", "quasi-static"):
+        is_unsaid = name not in survey.broken and plan.kind in ("tensile", "quasi-static")
+        if share < _FALLEN and is_unsaid:
             yield note("load-falls-for-good", name, share=share)
         lead = float(levels.lead[index]) * levels.frequency
         # by more than that a channel runs backward, which its sign says

@@ -50,6 +50,7 @@ from reduction.stages.strain.zero_strain import (
     zero_at_tension,
 )
 from reduction.stages.test_levels import TestLevels, levels_of_test
+from reduction.stages.three_parameter_line.rope_programme import tensile_pull
 
 
 def _log_summary(located: Located) -> dict[str, Any]:
@@ -154,7 +155,8 @@ class Survey:
     ``reference_length`` [m] the length at displacement zero where it is stated.  ``extremes`` is
     how far the test went and ``levels`` what it was run at; ``found`` and ``notes`` what a person
     is told of the log, ``remarks`` what of its levels.  ``first_time`` is that of the first row
-    [s]; ``slips`` holds those of the splices, by specimen, where a later test is to know of them.
+    [s]; ``broken`` names the specimens that broke, as stated or by the log of a pull, and
+    ``slips`` holds those of the splices, by specimen, where a later test is to know of them.
     """
 
     plan: TestPlan
@@ -172,6 +174,7 @@ class Survey:
     reference_length: float | None = None
     extremes: Extremes = field(default_factory=Extremes)
     levels: TestLevels | None = None
+    broken: frozenset[str] = frozenset()
     found: dict[str, Any] = field(default_factory=dict)
     remarks: tuple[Note, ...] = ()
     notes: tuple[Note, ...] = ()
@@ -360,9 +363,23 @@ def _located(plan: TestPlan, located: Located, sources: tuple[Source, ...]) -> S
             cycles,
             control=plan.control,
         ),
+        broken=_broken(located, plan),
         found=_log_summary(located),
         notes=(*record.notes, *(() if cycles is None else cycles.notes)),
     )
+
+
+def _broken(located: Located, plan: TestPlan) -> frozenset[str]:
+    """Specimens that broke: as stated, or where the tension of a pull falls and stays there."""
+    if plan.failed is not None or plan.kind != "tensile":
+        return frozenset(plan.specimens if plan.failed else ())
+    try:
+        pull = tensile_pull(
+            located.position, located.tension, located.tension, rated_break_strength=np.nan
+        )
+    except DataError:  # too few readings: what the reduction says of them is enough
+        return frozenset()
+    return frozenset(np.array(plan.specimens)[pull.is_break].tolist())
 
 
 def _measure_marks(survey: Survey, located: Located, campaign: Campaign) -> None:

@@ -53,7 +53,8 @@ class TestLevels:
     final_share : ndarray, shape (n_specimens,)
         Tension at the end of the record, at its stretch, over the greatest. [1]
     n_strokes : int
-        Rises and falls of position by more than a quarter of its range, one after another.
+        Rises and falls of position by more than a quarter of its range, one after another, but as
+        many as there are holds: a line that is pulled from hold to hold does not cycle.
     is_copy : ndarray of bool, shape (n_specimens,)
         Specimens whose tension is that of one before them, reading by reading.
     load_step : ndarray, shape (n_specimens,)
@@ -193,7 +194,11 @@ def levels_of_test(
             for one in measured_strain
         ]),
         final_share=_final_share(position, tension),
-        n_strokes=_n_strokes(position, least=5 * standstills.position_tolerance),
+        n_strokes=max(
+            _n_strokes(position, least=5 * standstills.position_tolerance)
+            - int(np.count_nonzero(~standstills.is_rest)),
+            0,
+        ),
         is_copy=np.array([
             any(np.array_equal(tension[index], tension[before], equal_nan=True)
                 for before in range(index))

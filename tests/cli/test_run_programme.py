@@ -421,6 +421,40 @@ def test_cycles_of_a_sine_that_bed_a_rope_in_begin_with_the_first(tmp_path):
     near(found, "bedding_permanent_strain", 0.01 * (1 - np.exp(-7)))
 
 
+def log_of_loads(path, time, load, position=None):
+    """A log of a rope of 1 MN that creeps by .0002 a decade after each time its load moves."""
+    held = time - np.maximum.accumulate(np.where(np.gradient(load) != 0, time, 0.0))
+    strain = load / 1e6 + 2e-4 * np.log10(1 + held)
+    noise = np.random.default_rng(3)
+    rows = np.column_stack([
+        time, 10 * strain if position is None else position,
+        load + noise.normal(0, 5.0, time.size), strain + noise.normal(0, 2e-6, time.size),
+    ])  # fmt: skip
+    np.savetxt(path, rows, fmt="%.7g", delimiter=",", header="t_s,x_m,F_N,e", comments="")
+
+
+def test_a_rope_that_is_pulled_from_hold_to_hold_does_not_cycle(tmp_path):
+    turns, loads = [0.0, 20.0, 60.0], [0.0, 0.0, 1e4]
+    for high in (True, False) * 4:
+        turns += [turns[-1] + 300, turns[-1] + 340]
+        loads += [loads[-1], 3e4 if high else 1e4]
+    time = np.arange(0.0, turns[-1] + 300)
+    log_of_loads(tmp_path / "held.csv", time, np.interp(time, turns, loads))
+    result = run(tmp_path, made.single("held", "quasi-static"))
+    assert [(one.status, one.message) for one in result.tests] == [("reduced", "")]
+
+
+@pytest.mark.parametrize(("n_after", "status"), [(0, "check"), (4, "reduced"), (80, "reduced")])
+def test_a_pull_that_breaks_above_the_rated_strength_is_no_mistake(tmp_path, n_after, status):
+    time = np.arange(0.0, 100.0, 0.2)
+    load = np.concatenate([1.1e3 * time, np.zeros(n_after)])  # 110 kN; 100 kN are rated
+    time = 0.2 * np.arange(load.size)
+    log_of_loads(tmp_path / "pull.csv", time, load, position=time / 100)
+    result = run(tmp_path, made.single("pull", "tensile"))
+    assert [one.status for one in result.tests] == [status]
+    assert ("rated_break_strength" in result.tests[0].message) == (status == "check")
+
+
 def test_a_step_that_failed_is_named_where_its_property_is_missing(log, tmp_path):
     made.write(log, tmp_path / "P-7.csv")
     head, *lines = (tmp_path / "P-7.csv").read_text().splitlines()
