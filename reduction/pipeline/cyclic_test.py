@@ -133,9 +133,8 @@ def _curves_of_cycles(
         loops.apparent_spring_constant[:, break_in:],
     )  # fmt: skip
     laid_on = np.where(moves, reference, np.nan)
-    jumps = _notes_on_jumps(loops, names, break_in=break_in)
     if not moves.any():
-        return replace(curves, alignment_strain=laid_on, notes=(*curves.notes, *jumps))
+        return replace(curves, alignment_strain=laid_on)
     shift[~moves] = 0.0
     curves = curves_of(aligned_strain(strain, shift, cycles.cycle_number))
     far = np.abs(trend.mean_strain_drift) / (2 * np.nanmedian(loops.strain_amplitude, axis=1))
@@ -153,12 +152,12 @@ def _curves_of_cycles(
     return replace(
         curves,
         alignment_strain=laid_on,
-        notes=(*curves.notes, *jumps, *notes),
+        notes=(*curves.notes, *notes),
         made=(*curves.made, f"cycles laid on each other, shifted to a mean strain of: {laid}"),
     )
 
 
-def _notes_on_jumps(loops: Loops, names: Sequence[str], *, break_in: int) -> list[Note]:
+def notes_on_jumps(loops: Loops, names: Sequence[str], *, break_in: int) -> list[Note]:
     """Say where something has slipped, or a load cell has been knocked, between two cycles."""
     found = []
     for index, name in enumerate(names):

@@ -18,7 +18,11 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from reduction.pipeline.cyclic_test import parts_of_cycles, parts_of_first_loading
+from reduction.pipeline.cyclic_test import (
+    notes_on_jumps,
+    parts_of_cycles,
+    parts_of_first_loading,
+)
 from reduction.pipeline.located_test import (
     HELD,
     PULLED,
@@ -975,10 +979,15 @@ def reduce_test(
         else lag_of_test(record, position, tension, cycles, stated=[one.lag for one in instruments])
     )
     loop_notes = (
-        notes_of_loops(
-            cycle_parts["loops"], names=record.specimens, time_step=median_step(record.time),
-            lag=[one.lag for one in instruments] or [0.0] * len(specimens),
-            is_sinusoidal=settings.cycles.waveform == "sinusoidal",
+        (
+            *notes_of_loops(
+                cycle_parts["loops"], names=record.specimens, time_step=median_step(record.time),
+                lag=[one.lag for one in instruments] or [0.0] * len(specimens),
+                is_sinusoidal=settings.cycles.waveform == "sinusoidal",
+            ),
+            *notes_on_jumps(
+                cycle_parts["loops"], record.specimens, break_in=settings.cycles.break_in_cycles
+            ),
         )
         if "loops" in cycle_parts
         else ()

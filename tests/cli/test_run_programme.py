@@ -455,6 +455,24 @@ def test_a_pull_that_breaks_above_the_rated_strength_is_no_mistake(tmp_path, n_a
     assert ("rated_break_strength" in result.tests[0].message) == (status == "check")
 
 
+def test_a_grip_that_slips_under_a_rope_without_a_diameter_is_told(tmp_path):
+    cycle = np.arange(0, 40, 0.025)
+    load = 3e4 - 1e4 * np.cos(2 * np.pi * cycle)
+    creep = 3e-4 * np.log10(1 + cycle) - 2e-3 * np.exp(-cycle / 2)  # more at first than the slip
+    noise = np.random.default_rng(5)
+    for name, slip in (("slips", 8e-4), ("holds", 0.0)):
+        strain = load / 1e6 + creep + slip * (cycle > 20.3) + noise.normal(0, 5e-6, cycle.size)
+        rows = np.column_stack([12 * cycle, 10 * strain, load, strain])
+        np.savetxt(tmp_path / f"{name}.csv", rows, fmt="%.7g", delimiter=",",
+                   header="t_s,x_m,F_N,e", comments="")  # fmt: skip
+    kind = ("cyclic", 'waveform = "sinusoidal"')
+    result = run(tmp_path, made.single("slips", *kind, "order = 1"),
+                 made.single("holds", *kind, "order = 2"))  # fmt: skip
+    assert [one.status for one in result.tests] == ["check", "reduced"]
+    assert "the mean strain jumps by +0.08" in result.tests[0].message
+    assert "after cycle 20" in result.tests[0].message or "cycle 19" in result.tests[0].message
+
+
 def test_a_step_that_failed_is_named_where_its_property_is_missing(log, tmp_path):
     made.write(log, tmp_path / "P-7.csv")
     head, *lines = (tmp_path / "P-7.csv").read_text().splitlines()

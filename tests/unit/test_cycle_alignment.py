@@ -151,6 +151,18 @@ def test_a_slip_between_two_cycles_is_found_and_creep_is_none():
             assert size == pytest.approx(-1e-3, rel=0.05)
 
 
+@pytest.mark.parametrize("seed", range(5))
+def test_a_slip_that_is_less_than_the_creep_of_the_first_cycles_is_found(seed):
+    number = np.arange(60)
+    creep = 0.03 - 2e-3 * np.exp(-number / 2) + 2e-4 * np.log10(1 + number)
+    mean = creep + np.random.default_rng(seed).normal(0, 2e-6, 60)
+    steady = np.full(60, 1000.0), np.full(60, 6e4), np.full(60, 0.004)
+    assert jump_of_mean(12.0 * number, mean, *steady) is None
+    place, size = jump_of_mean(12.0 * number, mean + 3e-4 * (number >= 30), *steady)
+    assert place == 30
+    assert size == pytest.approx(3e-4, rel=0.05)
+
+
 def test_a_level_that_was_asked_for_is_no_slip():
     time, strain, tension, *rest = of_creeping_cycles(3, 1e-3)
     assert jump_of_mean(time, strain, tension + 60 * (np.arange(20) >= 10), *rest) is None

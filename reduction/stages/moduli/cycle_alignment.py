@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import maximum_filter1d
 
 from reduction.record.errors import DataError
 from reduction.record.measurement import Floats
@@ -80,7 +81,9 @@ def strain_shifts(mean_strain: Floats, *, break_in_cycles: int = 0) -> tuple[Flo
     return shift, reference
 
 
-_JUMP = 5.0  # over what the mean changes by in the same time between any other two cycles
+_JUMP = 5.0  # over what the mean changes by in the same time between the cycles beside it
+
+_BESIDE_JUMP = 10  # changes on each side: the creep of the first cycles may be more than a slip
 
 _JUMP_SEEN = 0.02  # of the amplitude
 
@@ -133,18 +136,33 @@ def jump_of_mean(
     rate = np.abs(change / lasts)
     if change.size <= 2 * _AROUND_JUMP + 1 or not np.isfinite(rate).all():
         return None
-    place = _AROUND_JUMP + int(np.argmax(rate[_AROUND_JUMP:-_AROUND_JUMP]))
-    sides = rate[[place - 1, place + 1]]
-    is_split = sides.max() > rate[place] / _JUMP
-    first = place - 1 if is_split and sides[0] > sides[1] else place
-    last = first + int(is_split)
+    found = [
+        _one_jump(place, change, lasts, rate)
+        for place in np.flatnonzero(rate == maximum_filter1d(rate, 2 * _BESIDE_JUMP + 1)).tolist()
+        if _AROUND_JUMP <= place < rate.size - _AROUND_JUMP
+    ]
+    if not found:
+        return None
+    first, last, rest = max(found, key=lambda one: abs(change[one[0] : one[1] + 1].sum()) / one[2])
     size = float(change[first : last + 1].sum())
-    rest = np.delete(rate, np.arange(first, last + 1)).max() * lasts[first : last + 1].max()
-    least = max(_JUMP * float(rest), _JUMP_SEEN * float(np.median(amplitude)))
+    least = max(_JUMP * rest, _JUMP_SEEN * float(np.median(amplitude)))
     followed = np.median(other[last + 1 :]) - np.median(other[: first + 1])
     if abs(size) <= least or abs(followed) > _ALONG * abs(size * float(np.median(slope))):
         return None
     return first + 1, size
+
+
+def _one_jump(place: int, change: Floats, lasts: Floats, rate: Floats) -> tuple[int, int, float]:
+    """First and last change of a jump, and the most that one beside it may be. [1]."""
+    sides = rate[[place - 1, place + 1]]
+    is_split = sides.max() > rate[place] / _JUMP
+    first = place - 1 if is_split and sides[0] > sides[1] else place
+    last = first + int(is_split)
+    beside = np.concatenate([
+        rate[max(first - _BESIDE_JUMP, 0) : first], rate[last + 1 : last + 1 + _BESIDE_JUMP]
+    ])  # fmt: skip
+    rest = float(beside.max() * lasts[first : last + 1].max())
+    return first, last, max(rest, float(np.finfo(np.float64).tiny))
 
 
 def is_shift_of_curve(
