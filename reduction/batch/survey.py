@@ -28,7 +28,7 @@ from reduction.record.errors import (
     refused_by_system,
 )
 from reduction.record.measurement import Floats, Record, Source, Specimen, StepReadings
-from reduction.record.notes import Note
+from reduction.record.notes import Note, note
 from reduction.record.row_account import account_rows
 from reduction.record.samples import finite_extremes
 from reduction.stages.load_at_slack import (
@@ -46,6 +46,7 @@ from reduction.stages.strain.tape_and_crosshead import (
 from reduction.stages.strain.zero_strain import (
     ZeroStrain,
     half_band_of,
+    jumps_of_length,
     zero_at_slack,
     zero_at_tension,
 )
@@ -328,8 +329,35 @@ def _with_load_at_slack(
         )
         if not campaign.specimens[one.subject].can_push
     ]  # fmt: skip
-    record = replace(located.record, notes=(*notes, *located.record.notes))
+    jumps = _jumps_of_length(whole, campaign, plan, until=float(located.record.time[-1]))
+    record = replace(located.record, notes=(*notes, *jumps, *located.record.notes))
     return replace(located, record=record, load_at_slack=tuple(found))
+
+
+def _jumps_of_length(
+    whole: Located, campaign: Campaign, plan: TestPlan, *, until: float
+) -> list[Note]:
+    """Say where the length that strain is read from jumps under load, up to the end of a test."""
+    measured, method = whole.record.measured_strain, plan.settings.strain.method
+    has_marks = any(name in campaign.marks for name in plan.specimens)
+    is_measured = measured is not None and (
+        method == "extensometer" or (method is None and not has_marks)
+    )
+    found = {}
+    for index, (name, tension) in enumerate(zip(plan.specimens, whole.tension, strict=True)):
+        if campaign.specimens[name].can_push:
+            continue
+        length, what, unit = (
+            (measured[index], f"the extensometer of {name}", "%")
+            if measured is not None and is_measured
+            else (whole.position, "crosshead_position", "m")
+        )
+        slack = whole.standstills.slack_tension
+        for time, size in jumps_of_length(whole.record.time, length, tension, slack_tension=slack):
+            if time <= until:
+                found[what] = note("length-jumps", what=what, size=size, unit=unit, time=time)
+                break  # the first one stands for those after it
+    return list(found.values())
 
 
 def _needs_length(campaign: Campaign, plan: TestPlan) -> bool:

@@ -344,6 +344,14 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "load is negative (median {load:.4g} N) and falls with stretch. If the log counts"
         " compression as positive, set sign = -1 for this channel; if it is set already, remove it",
     ),
+    "length-jumps": (
+        "warning",
+        lambda what, size, unit, time: (
+            f"{what} jumps by {100 * size if unit == '%' else size:+.3g} {unit} at {time:g} s, and"
+            " the tension does not follow: it was set to zero again, or slipped. Strain after it is"
+            " off by as much; amplitudes and EA are not. Take the jump out of the log"
+        ),
+    ),
     "strain-below-zero": (
         "warning",
         lambda least, tension, reference, rises: (
@@ -1711,7 +1719,7 @@ CAUSES = (
     "dead-length-large", "two-designs-of-one", "hose-length-not-tested", "static-at-frequency",
     "hose-not-of-design", "hose-unlike-design",
     "target-strain-missed", "density-outside-band", "strain-above-band",
-    "extensometer-off-at-slack", "reference-tension-elsewhere", "strain-below-zero",
+    "extensometer-off-at-slack", "reference-tension-elsewhere", "length-jumps", "strain-below-zero",
     "tension-late", "tension-behind-position", "loops-give-work", "loops-not-of-a-sine",
     "hold-load-late",
 )  # fmt: skip

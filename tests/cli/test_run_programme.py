@@ -473,6 +473,43 @@ def test_a_grip_that_slips_under_a_rope_without_a_diameter_is_told(tmp_path):
     assert "after cycle 20" in result.tests[0].message or "cycle 19" in result.tests[0].message
 
 
+@pytest.mark.parametrize("channel", ["crosshead_position", "the extensometer of R-1"])
+def test_a_length_that_is_set_to_zero_again_under_load_is_told(tmp_path, channel):
+    """Held at 30 kN, where the stroke, or the strain, is set back; cycles before and after it."""
+    cycles = 2e4 - 1e4 * np.cos(2 * np.pi * np.arange(0, 20, 0.025))
+    parts = [np.zeros(40), np.linspace(0, 1e4, 60), cycles, np.full(200, 1e4), cycles]
+    load = np.concatenate(parts)
+    time, noise = 0.5 * np.arange(load.size), np.random.default_rng(6)
+    set_back = np.where(np.arange(load.size) > 1000, 2e-3, 0.0)
+    strain = load / 1e6 + noise.normal(0, 2e-6, load.size)
+    of_stroke, of_strain = (set_back, 0) if channel == "crosshead_position" else (0, set_back)
+    rows = np.column_stack([time, 10 * (strain - of_stroke), load, strain - of_strain])
+    np.savetxt(tmp_path / "P.csv", rows, fmt="%.7g", delimiter=",", header="t_s,x_m,F_N,e",
+               comments="")  # fmt: skip
+    method = "gauge-length" if channel == "crosshead_position" else "extensometer"
+    steps = "".join(
+        f'[[tests.P.steps]]\nname = "{name}"\nfrom = "{low} s"\nto = "{high} s"\n'
+        for name, low, high in (("before", 50, 450), ("after", 548, 950))
+    )
+    # the rope has a gauge length in this campaign alone
+    path = made.write_campaign(
+        tmp_path, made.single("P", "cyclic", 'waveform = "sinusoidal"',
+                              f'strain = {{ method = "{method}" }}', steps)
+    )  # fmt: skip
+    text = path.read_text().replace("[specimens.R-1]", '[specimens.R-1]\ngauge_length = "10 m"')
+    path.write_text(text)
+    run_campaign(
+        load_campaign(path), processed=tmp_path / "p", reports=tmp_path / "r", clock=lambda: 0.0
+    )
+    notes_of = {}
+    for name in ("before", "after"):
+        with open_archive(next((tmp_path / "p").rglob(f"P.{name}.nc"))) as archive:
+            notes_of[name] = [one for one in archive["note"].to_numpy().tolist() if "jumps" in one]
+    assert notes_of["before"] == []
+    (told,) = notes_of["after"]
+    assert told.startswith(f"{channel} jumps by -0.")
+
+
 def test_a_step_that_failed_is_named_where_its_property_is_missing(log, tmp_path):
     made.write(log, tmp_path / "P-7.csv")
     head, *lines = (tmp_path / "P-7.csv").read_text().splitlines()

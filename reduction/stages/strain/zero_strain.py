@@ -18,7 +18,7 @@ import numpy as np
 
 from reduction.record.errors import DataError
 from reduction.record.measurement import Bools, Floats
-from reduction.record.samples import first_sample, last_sample
+from reduction.record.samples import first_sample, last_sample, step_of_codes
 from reduction.stages.standstills import Standstills, noise_range
 
 # of the reference tension to either side of it: a rope's curve is straight there
@@ -160,3 +160,81 @@ def zero_at_tension(
         float(middle - compliance * load.mean()), spread, float(compliance), True,
         reference_tension, stated_position,
     )  # fmt: skip
+
+
+# readings on each side between which a length jumps, and how far beyond their own steps
+_BESIDE_JUMP = 8
+_JUMP = 10.0
+
+_LEAST_JUMP, _CODES = 0.002, 3.5  # of the range of length, and steps in which it is written
+
+_IN_STEP = 3.5  # usual steps of time: in a longer gap a line may creep as far
+
+_ANSWER = (
+    0.1  # share of a jump that the load may answer: a line that is stretched answers all of it
+)
+
+
+def jumps_of_length(
+    time: Floats, length: Floats, tension: Floats, *, slack_tension: float
+) -> list[tuple[float, float]]:
+    """Times and sizes of steps of a length that the load does not answer.
+
+    Parameters
+    ----------
+    time, length, tension : ndarray, shape (n_samples,)
+        Length may be a measured strain. [s], [m], [N]
+    slack_tension : float
+        Up to which a specimen is slack, and answers no motion. [N]
+
+    Returns
+    -------
+    jumps : list of tuple of float
+        Time of the first reading after it, and its size. [s], [m]
+
+    Raises
+    ------
+    IndexError
+        If the arrays differ in length.
+
+    Notes
+    -----
+    A stroke that is set to zero again under load, a grip or an extensometer that is seated anew.
+    The medians of eight readings on both sides differ by the step, so a spike is none; the load
+    stays within a tenth of what a stretch of that size makes by the ranges of the record.
+
+    Examples
+    --------
+    >>> time = np.arange(200.0)
+    >>> load = np.interp(time, [0, 50, 200], [0.0, 1000.0, 1000.0])
+    >>> stroke = load / 1e4 - 0.02 * (time >= 120)
+    >>> found = jumps_of_length(time, stroke, load, slack_tension=20.0)
+    >>> print([(float(when), round(size, 4)) for when, size in found])
+    [(120.0, -0.02)]
+    """
+    known = np.flatnonzero(np.isfinite(length) & np.isfinite(tension))
+    if known.size < 4 * _BESIDE_JUMP:
+        return []
+    t, x, load = time[known], length[known], tension[known]
+    reach, pull = float(np.ptp(x)), float(np.ptp(load))
+    step = np.diff(x)
+    far = np.flatnonzero(np.abs(step) > max(_LEAST_JUMP * reach, _CODES * step_of_codes(x)))
+    found = []
+    for place in far[(far >= _BESIDE_JUMP) & (far < step.size - _BESIDE_JUMP)].tolist():
+        before, after = (
+            slice(place + 1 - _BESIDE_JUMP, place + 1),
+            slice(place + 1, place + 1 + _BESIDE_JUMP),
+        )
+        size = float(np.median(x[after]) - np.median(x[before]))
+        others = np.abs(np.delete(step[before.start : after.stop - 1], _BESIDE_JUMP - 1))
+        waits = np.diff(t[before.start : after.stop])
+        answered = abs(float(np.median(load[after]) - np.median(load[before])))
+        if (
+            abs(step[place]) > _JUMP * others.max()
+            and waits[_BESIDE_JUMP - 1] <= _IN_STEP * np.median(waits)
+            and abs(size - step[place]) < abs(step[place]) / 2
+            and answered < _ANSWER * pull * abs(size) / reach
+            and min(load[before].min(), load[after].min()) > slack_tension
+        ):
+            found.append((float(t[place + 1]), size))
+    return found
