@@ -15,7 +15,7 @@ from functools import lru_cache
 import numpy as np
 
 from reduction.quantities.units import DIMENSIONS, Dimension
-from reduction.readers.columns import CLOCK_TEXT, UNIT_BEHIND_NAME, stated_scale
+from reduction.readers.columns import CLOCK_TEXT, FORCE_OF_MASS, UNIT_BEHIND_NAME, stated_scale
 from reduction.readers.layout import CLOCK, UNKNOWN
 from reduction.record.errors import SettingsError
 from reduction.record.measurement import Floats
@@ -174,8 +174,8 @@ def _unit(column: SeenColumn, dimension: Dimension) -> str | None:
     for text in _stated_units(column):
         if text.startswith("%") and dimension != "strain":  # of a break strength
             return None
-        if dimension == "force" and text in ("lb", "lbs", "kg"):
-            return {"kg": "kgf"}.get(text, "lbf")
+        if dimension == "force" and text in ("lb", "lbs", *FORCE_OF_MASS):
+            return FORCE_OF_MASS.get(text, "lbf")
         if is_unit(text, dimension):
             return text
         if is_unit(text):
@@ -341,8 +341,12 @@ def propose_channels(columns: Sequence[SeenColumn]) -> _Proposal:
         candidates = [c for c in _candidates(key, columns) if c[0].number not in used]
         why = "by its name"
         if not candidates and key in ("time", "crosshead_position", "tension"):
-            candidates = _by_unit(key, [c for c in columns if c.number not in used])
+            free = [c for c in columns if c.number not in used]
+            candidates = _by_unit(key, free)
             why = f"the only one in a unit of {_NAMES[key][0]}"
+            clocks = [(c, CLOCK) for c in free if _is_clock(c) and ":" in "".join(c.texts[:1])]
+            if key == "time" and not candidates and len(clocks) == 1:
+                candidates, why = clocks, "the only one of times of day"
         if not candidates:
             continue
         taken = candidates[:1]

@@ -96,6 +96,9 @@ def _day_of(match: re.Match[str]) -> float:
         return math.nan
 
 
+FORCE_OF_MASS = {"kg": "kgf", **dict.fromkeys(("t", "to", "te", "tonne", "tonnes"), "tf")}
+"""Forces that scales write as masses."""
+
 _BRACKETS = {"(": ")", "[": "]", "{": "}", "<": ">"}
 
 _SHOWN = 40
@@ -223,8 +226,8 @@ def check_unit(path: Path, wanted: DeclaredColumn, found: str, *, row: int | Non
     text = found.strip()
     if text[:1] in _BRACKETS and text.endswith(_BRACKETS[text[0]]):
         text = text[1:-1].strip()
-    if wanted.dimension == "force" and text == "kg":  # as a scale writes a load
-        text = "kgf"
+    if wanted.dimension == "force":
+        text = FORCE_OF_MASS.get(text, text)
     if text in ("", "-", wanted.unit.strip()) or not wanted.is_compared:
         return
     try:
@@ -367,7 +370,7 @@ def _check_dimension_in_name(path: Path, want: DeclaredColumn, stated: str) -> N
 
 def _check_unit_in_name(path: Path, want: DeclaredColumn, stated: str) -> None:
     try:
-        text = {"kg": "kgf", "pct": "%"}.get(stated.strip(), stated.strip())
+        text = (FORCE_OF_MASS | {"pct": "%"}).get(stated.strip(), stated.strip())
         found = scale_to_si(text, want.dimension)
     except SettingsError:
         return

@@ -97,6 +97,14 @@ def check_unit_row(tmp_path, place, units, **channels):
     check_units(tmp_path / "log.csv", wanted, names=names, units=units, unit_row=2)
 
 
+@pytest.mark.parametrize("stated", ["t", "[to]", "tonnes", "tf"])
+def test_a_load_in_tonnes_is_a_force(tmp_path, stated):
+    load = {"tension": {"column": 1, "unit": "tf"}}
+    check_unit_row(tmp_path, 0, [stated], **load)
+    with pytest.raises(LogError, match="not the declared one"):
+        check_unit_row(tmp_path, 0, [stated], tension={"column": 1, "unit": "kN"})
+
+
 def test_a_counter_may_have_any_word_for_its_unit(tmp_path):
     check_unit_row(tmp_path, 0, ["cycles"], cycle_counter={"column": "n"})
     with pytest.raises(LogError, match="'cycles' is not a unit of force"):

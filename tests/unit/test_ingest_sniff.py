@@ -375,6 +375,13 @@ def test_a_column_in_a_unit_of_another_kind_is_not_proposed(tmp_path):
     assert columns(proposed(path))["tension.1"] == ("?", "?")
 
 
+def test_times_of_day_and_loads_in_tonnes_are_known(tmp_path):
+    rows = "".join(f"03.11.2026 23:59:{50 + i};{i},5;{i}\n" for i in range(9))
+    found = columns(proposed(write(tmp_path, "Date Time;Load;Elongation\n;t;mm\n" + rows)))
+    assert found["time"] == ("Date Time", "clock")
+    assert found["tension.1"] == ("Load", "tf")
+
+
 def test_an_unknown_unit_is_a_question(tmp_path):
     path = write(tmp_path, "time,load,temperature,strain\n0,1,2,3\n1,2,3,4\n2,3,4,5\n")
     assert {unit for _, unit in columns(proposed(path)).values()} == {"?"}
