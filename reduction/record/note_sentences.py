@@ -1056,6 +1056,11 @@ _OF_LINE: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "cycles-counted-until": ("note", "{how}"),
     "no-static-stiffness": ("refusal", "static stiffness not given: {reason}"),
+    "no-static-slope": (
+        "refusal",
+        "change of the static stiffness per decade of time not given: the readings of the upper"
+        " hold after 3 ramp times are {span:.2f} decades; needed {needed:g}",
+    ),
     "stiffness-beyond-hold": (
         "warning",
         "the stiffness at {reference:g} s is extrapolated; the hold has readings from {first:.3g}"

@@ -77,6 +77,21 @@ def test_rests_have_no_number():
     assert (pair.low_hold, pair.high_hold) == (1, 2)
 
 
+def test_a_short_hold_has_a_stiffness_at_a_time_within_it_and_no_slope():
+    # from 100 to 200 s after the centre of the ramp: 0.3 decades
+    time, position, load, strain = record(n=305)
+    far = (time >= 110) & (time < 205)
+    position, strain = (np.where(far, np.nan, one) for one in (position, strain))
+    begins = stands((10, 100), (110, 304), tension=[100.0, 300.0])
+    (pair,) = pairs_of(time, position, load, strain, begins, reference_time=150.0)
+    true = 4000 - 100 * np.log10(1.5)
+    assert pair.stiffness.stiffness_at_reference == pytest.approx(true, rel=1e-3)
+    assert np.isnan(pair.stiffness.slope_per_decade)
+    assert [one.code for one in pair.stiffness.notes] == ["no-static-slope"]
+    (pair,) = pairs_of(time, position, load, strain, begins, reference_time=600.0)
+    assert pair.stiffness is None
+
+
 def test_a_hold_that_is_too_short_is_refused_with_its_levels():
     time, position, load, strain = record(n=120)
     (pair,) = pairs_of(

@@ -168,11 +168,16 @@ def _static_stiffness(
         stiffness[part] = (load[part] - low_tension) / (stretch[part] - low_strain)
     blocks = logarithmic_blocks(clock, stiffness)
     x, y = np.log10(blocks.elapsed / reference_time), blocks.value
-    if x.size < _FEWEST_POINTS or x[-1] - x[0] < _SHORTEST_SPAN:
+    reaches = bool(clock[0] <= reference_time <= clock[-1])
+    span = float(x[-1] - x[0])
+    # a short line says the stiffness amid its readings, and not how that goes on
+    is_short = span < _SHORTEST_SPAN
+    if x.size < _FEWEST_POINTS or (is_short and not reaches):
         raise FitError(
             "the upper hold is too short for a line in the logarithm of time",
-            found=f"{x.size} points over {x[-1] - x[0]:.2f} decades",
-            needed=f"{_FEWEST_POINTS} points over {_SHORTEST_SPAN:g} decades",
+            found=f"{x.size} points over {span:.2f} decades",
+            needed=f"{_FEWEST_POINTS} points over {_SHORTEST_SPAN:g} decades, or among them the "
+            f"reference time of {reference_time:g} s",
         )
     share = blocks.weight / blocks.weight.sum()
     centre, level = float((share * x).sum()), float((share * y).sum())
@@ -181,34 +186,38 @@ def _static_stiffness(
     residual = np.sqrt(share) * (y - level - slope * (x - centre))
     variance = float((residual**2).sum()) / (x.size - 2) * lag_one_inflation(residual)
     u_slope = float(np.sqrt(variance / power))
+    u_level = float(np.sqrt(variance * (1 + centre**2 / power)))
+    at_reference = level - slope * centre
+    if is_short:
+        slope = u_slope = float("nan")
     width = float(stdtrit(x.size - 2, (1 + confidence) / 2)) * u_slope
-    reaches = clock[0] <= reference_time <= clock[-1]
     return _StaticStiffness(
         elapsed=blocks.elapsed,
         stiffness=y,
         reference_time=reference_time,
-        stiffness_at_reference=level - slope * centre,
-        stiffness_at_reference_standard_uncertainty=float(
-            np.sqrt(variance * (1 + centre**2 / power))
-        ),
+        stiffness_at_reference=at_reference,
+        stiffness_at_reference_standard_uncertainty=u_level,
         slope_per_decade=slope,
         slope_per_decade_standard_uncertainty=u_slope,
         slope_low=slope - width,
         slope_high=slope + width,
-        stiffness_over_strength=(level - slope * centre) / rated_break_strength,
+        stiffness_over_strength=at_reference / rated_break_strength,
         slope_per_decade_over_strength=slope / rated_break_strength,
         confidence=confidence,
-        notes=()
-        if reaches
-        else (
-            note(
-                "stiffness-beyond-hold",
-                reference=reference_time,
-                first=float(clock[0]),
-                last=float(clock[-1]),
+        notes=(
+            *((note("no-static-slope", span=span, needed=_SHORTEST_SPAN),) if is_short else ()),
+            *(
+                ()
+                if reaches
+                else (
+                    note(
+                        "stiffness-beyond-hold", reference=reference_time,
+                        first=float(clock[0]), last=float(clock[-1]),
+                    ),
+                )
             ),
         ),
-    )
+    )  # fmt: skip
 
 
 def creep_of_hold(hold: HoldResult, *, rated_break_strength: float = float("nan")) -> CreepOfHold:
