@@ -869,6 +869,43 @@ def test_a_cycle_without_a_neighbour_is_uncertain_by_the_sampling_of_both_its_en
     assert np.mean(stated) == pytest.approx(error.std(), rel=0.05)
 
 
+def stored_cycles(wave, *, every=20, n_cycles=10, period=2.0, step=0.02, skew=0.0):
+    """Each twentieth cycle of a synthetic wave, stored whole by the machine's count."""
+    number = np.repeat(1 + every * np.arange(n_cycles), round(period / step))
+    time = (number - 1) * period + np.tile(np.arange(0, period - step / 2, step), n_cycles)
+    phase = (time + skew) / period
+    driven = wave(phase)
+    stand = find_standstills(time, driven, driven[None], settings=PhaseSettings())
+    cycles = find_cycles(
+        time, driven, driven[None], stand, cycle_counter=number, settings=CycleSettings()
+    )
+    assert cycles.n_cycles == n_cycles
+    return time, driven, cycles
+
+
+def ramps_of(phase):
+    return 1 - np.abs(2 * (phase % 1) - 1)
+
+
+@pytest.mark.parametrize("skew", [0.0, 0.004])
+def test_cycles_stored_one_by_one_last_as_long_as_the_machine_takes(skew):
+    time, driven, cycles = stored_cycles(ramps_of, skew=skew)
+    loops = close_loops(time, 500 * driven[None], driven[None], cycles)
+    mean = summarise_amplitude(loops, area=np.ones(1), break_in_cycles=0)
+    frequency, own = mean.frequency[0], mean.uncertainty["frequency"][0]
+    assert abs(frequency - 0.5) < 2 * own
+    assert own < 0.01 * 0.5  # a sample in a hundred, at both ends
+
+
+def test_a_sine_stored_one_by_one_has_its_period_and_its_whole_range():
+    # the third harmonic of the answer is whole in a whole cycle alone
+    time, driven, cycles = stored_cycles(lambda phase: -np.cos(2 * np.pi * phase))
+    tension = 100 * (driven + 0.4 * driven**3)
+    loops = close_loops(time, tension[None], driven[None], cycles, waveform="sinusoidal")
+    assert loops.frequency == pytest.approx(0.5, rel=1e-5)
+    assert loops.tension_amplitude == pytest.approx(140.0, rel=1e-3)
+
+
 def test_a_cycle_without_time_is_refused():
     with pytest.raises(DataError, match="cycle 1 takes no time"):
         _cycle_basis(np.zeros(5), np.array([0]), np.array([4]))

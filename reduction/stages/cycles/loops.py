@@ -98,6 +98,7 @@ from reduction.stages.cycles.cycle_product import (
 )
 from reduction.stages.cycles.periods import (
     own_periods,
+    periods_alone,
     spread_of_turns,
     time_of_sample,
     touching,
@@ -908,6 +909,12 @@ def _shape_of_wave(
     is_kept = ((size > _ABOVE_NOISE * spread) & (orders > 1)) | (orders == 3)
     weights = np.concatenate([[0.0], of_wave[1:] * np.tile(is_kept, 2)])
     weights[1] = 1.0
+    lacks = (
+        period[some] - (take_samples(time, cycles.last) - take_samples(time, cycles.first))[some]
+    )
+    if np.median(lacks / period[some]) > _FINEST:
+        # of a stored cycle that ends before it is whole, the harmonics are part of its fundamental
+        weights[:2] = of_wave[:2]
     curve = terms(np.linspace(0, 2 * np.pi, 721))
     # the sums of de la Vallee Poussin, which hardly swing over where a wave falls at once, and keep
     # the lower half of the harmonics as they are
@@ -2108,7 +2115,7 @@ def close_loops(
     duration = end - begin
     period = _mean_period(begin, first, last, last_turn=end)
     moved = (tension if control == "load" else strain)[0] if driven is None else driven
-    turn_spread: Floats | float | None = None
+    turn_spread: Floats | None = None
     if waveform == "sinusoidal" and np.all(period > 0):
         period, turn_spread = _sine_period(time, moved, cycles, period)
         duration = period
@@ -2378,7 +2385,7 @@ _PASSES = 4  # each leaves a part in so many of the error as there are cycles
 
 def _sine_period(
     time: Floats, driven: Floats, cycles: Cycles, period: Floats
-) -> tuple[Floats, Floats | float]:
+) -> tuple[Floats, Floats]:
     """Period of the wave in each cycle, and the spread of one turn, by the driven channel's phase.
 
     Noise puts the turns of a log a sample early or late; the phase of a fundamental over a
@@ -2416,4 +2423,11 @@ def _sine_period(
     readings = float(np.median(cycles.last - cycles.first))
     of_noise = reading_noise(driven) * np.sqrt(2 / readings) / half / (2 * np.pi)
     least = abs(of_noise) * float(np.median(found)) if half else 0.0
-    return found, max(least, spread_of_turns(turns, cycles.first, cycles.last, step=0.0))
+    spread = np.full_like(
+        found, max(least, spread_of_turns(turns, cycles.first, cycles.last, step=0.0))
+    )
+    alone, own, of_own = periods_alone(
+        time, driven, cycles, is_sine=True, noise=reading_noise(driven)
+    )
+    found[alone], spread[alone] = own, np.fmax(of_own / np.sqrt(2), least)
+    return found, spread

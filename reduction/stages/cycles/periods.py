@@ -139,6 +139,115 @@ def time_of_sample(duration: Floats, cycles: Cycles) -> Floats:
     return np.asarray(duration / (cycles.last - cycles.first) / np.sqrt(12))
 
 
+def periods_alone(
+    time: Floats, driven: Floats, cycles: Cycles, *, is_sine: bool, noise: float
+) -> tuple[Integers, Floats, Floats]:
+    r"""Period and spread of one end of the cycles that a gap of the log follows, one by one.
+
+    .. math:: x(t) = c + a \cos \omega t + b \sin \omega t
+
+    Parameters
+    ----------
+    time, driven : ndarray, shape (n_samples,)
+        Of the record, and the channel that the machine moves. [s], [m] or [N]
+    cycles : Cycles
+        From `reduction.stages.cycles.cycle_search`.
+    is_sine : bool
+        Whether the wave is one: its period is fitted, with its phase. [-]
+    noise : float
+        Standard deviation of one reading of the driven channel. [m] or [N]
+
+    Returns
+    -------
+    place : ndarray of int, shape (n_alone,)
+        Which cycles have no other next to them. [1]
+    period, spread : ndarray, shape (n_alone,)
+        [s]
+
+    Raises
+    ------
+    IndexError
+        If a turn lies outside the record.
+
+    Notes
+    -----
+    The last reading of a stored cycle is up to a sample before it ends.  Ramps go on at their own
+    speed until they are where they began, and the valley is between there and the end of that
+    sample.
+
+    Examples
+    --------
+    Ten seconds of 0.1 Hz, of which the last reading is at 9.5 s:
+
+    >>> time = np.append(np.arange(20) * 0.5, 200.0)
+    >>> one, pair = np.array([0]), np.array([[0, 10]])
+    >>> cycles = Cycles(one, one + 19, pair, np.array([[10, 19]]), np.ones((1, 2)), np.zeros(21),
+    ...     np.zeros(21), np.zeros(21), 0.1)
+    >>> wave = -np.cos(0.2 * np.pi * time)
+    >>> print(periods_alone(time, wave, cycles, is_sine=True, noise=0.0)[1].round(6))
+    [10.]
+    >>> ramps = 5 - np.abs(time % 10 - 5)
+    >>> print(periods_alone(time, ramps, cycles, is_sine=False, noise=0.0)[1].round(6))
+    [10.]
+    """
+    touch = touching(cycles)
+    after = np.minimum(cycles.last + 1, time.size - 1)
+    steps = (take_samples(time, cycles.last) - take_samples(time, cycles.first)) / (
+        cycles.last - cycles.first
+    )
+    is_cut = take_samples(time, after) - take_samples(time, cycles.last) > _GAP * steps
+    is_cut |= (after == cycles.last) & is_cut.any()
+    place = np.flatnonzero(~touch & ~np.append(touch[1:], False) & is_cut)
+    period, spread = np.empty((2, place.size))
+    for row, one in enumerate(place.tolist()):
+        begin, peak, end = cycles.first[one], cycles.branch_last[one, 0], cycles.last[one]
+        at, level = time[begin : end + 1] - time[begin], driven[begin : end + 1]
+        known = np.isfinite(level)
+        duration, step = at[-1], steps[one]
+        if is_sine:
+            period[row], spread[row] = _fitted_period(at[known], level[known], duration)
+            if abs(period[row] - duration - step / 2) < _OF_STEPS * step:
+                continue
+        rise, fall = driven[peak] - level[0], driven[peak] - level[-1]
+        back = rise - fall  # what is left of the fall, or of the next rise
+        way, stop = (fall, end) if back > 0 else (rise, begin)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            speed = way / abs(time[stop] - time[peak])
+            extra = min(abs(back) / speed, step) if speed > 0 else 0.0
+        period[row] = duration + (extra + step) / 2
+        spread[row] = np.hypot((step - extra) / np.sqrt(12), noise / speed if speed > 0 else step)
+    return place, period, spread
+
+
+def _fitted_period(at: Floats, level: Floats, period: float) -> tuple[float, float]:
+    """Period of a sine, near one that is given, and its standard uncertainty by what is left."""
+    own = np.inf
+    for _ in range(_FITS):
+        phase = 2 * np.pi * at / period
+        terms = np.column_stack([np.ones(at.size), np.cos(phase), np.sin(phase)])
+        _, cosine, sine = np.linalg.lstsq(terms, level)[0]
+        of_rate = at * (sine * terms[:, 1] - cosine * terms[:, 2])
+        terms = np.column_stack([terms, of_rate])
+        found, *_ = np.linalg.lstsq(terms, level)
+        left = level - terms @ found
+        # what is left of a wave that is no pure sine goes on over a good part of the cycle
+        alike = max(at.size / _PARTS, 1.0)
+        variance = float(left @ left) / max(at.size - 4, 1) * alike
+        own = np.sqrt(variance * np.linalg.pinv(terms.T @ terms)[3, 3])
+        own *= period**2 / (2 * np.pi)
+        period = 2 * np.pi / (2 * np.pi / period + found[3])
+    return float(period), float(own)
+
+
+_GAP = 3.0  # steps between readings of a cycle, by which a wait is a gap of the log
+
+_OF_STEPS = 2.0  # from the middle of the sample that a stored cycle ends with
+
+_FITS = 4
+
+_PARTS = 8  # of a cycle, over which what is left of a fit has one sign
+
+
 def own_periods(
     time: Floats, driven: Floats, cycles: Cycles, duration: Floats, *, noise: float
 ) -> tuple[Floats, Floats]:
@@ -188,6 +297,8 @@ def own_periods(
     [20.8 20.8 20.8 20.8]
     """
     period, spread = np.array(duration), time_of_sample(duration, cycles)
+    alone, *of_alone = periods_alone(time, driven, cycles, is_sine=False, noise=noise)
+    period[alone], spread[alone] = of_alone
     touch = np.flatnonzero(_follow(time, cycles, duration))
     if not touch.size:
         return period, spread
@@ -229,6 +340,9 @@ def _follow(time: Floats, cycles: Cycles, duration: Floats) -> Bools:
     rest = take_samples(time, cycles.first[1:]) - take_samples(time, cycles.last[:-1])
     usual = float(np.median(rest)) if rest.size else 0.0
     alike = np.abs(rest - usual) <= _ALIKE * (usual + float(np.median(duration)))
+    # a wait without readings is one of the log, in which other cycles may be
+    n_steps = np.maximum(cycles.first[1:] - cycles.last[:-1], 1)
+    alike &= rest / n_steps <= _GAP * float(np.median(duration / (cycles.last - cycles.first)))
     return np.asarray(touching(cycles) | np.concatenate([[False], alike]))
 
 

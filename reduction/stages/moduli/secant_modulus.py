@@ -316,6 +316,9 @@ def _mean_frequency(loops: Loops, break_in_cycles: int) -> tuple[Floats, Floats]
         jitter = np.sqrt(np.mean(np.diff(period) ** 2) / 3) if n > 1 else 0.0
         ends = float(np.hypot(*own[row, known][[0, -1]])) / np.sqrt(2)
         of_turns = max(ends, mean[row] ** 2 * float(jitter)) / max(n - 1, 1)
+        # cycles that gaps part have ends of their own, which the sampling may miss alike
+        n_rows = 1 + np.sum(np.diff(time[row, known]) > _APART * period[:-1])
+        of_turns = max(of_turns, ends * n_rows / n) if n_rows > 1 else of_turns
         rate, of_rate = _line_over(time[row, known], angle[row, known])
         beyond = np.sqrt(max(rate**2 - of_rate**2, 0.0)) / (2 * np.pi)
         spread[row] = np.hypot(of_turns, beyond / np.sqrt(3))
@@ -334,6 +337,8 @@ def _line_over(time: Floats, values: Floats) -> tuple[float, float]:
 
 
 _FEWEST_OF_LINE = 4
+
+_APART = 1.5  # periods from the beginning of a cycle to that of the next one
 
 _WAITING, _MOST_ALIKE = 0.15, 0.75  # of a frequency; of the cycles
 
