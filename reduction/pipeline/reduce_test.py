@@ -186,6 +186,9 @@ def _sign(name: str, loops: Loops, index: int, slopes: Floats | None) -> list[No
     return [note("sign-of-tension", name, slope=slope)]
 
 
+_PUSHED = 5.0  # times the level at which a specimen counts as slack, below zero
+
+
 def _slack_in_cycles(located: Located, settings: ReductionSettings) -> list[float]:
     """Tension at or below which each specimen is slack in its cycles. [N].
 
@@ -207,6 +210,9 @@ def _slack(name: str, valley_tension: Floats, slack_tension: float) -> list[Note
     slack = int(np.count_nonzero(valley_tension <= slack_tension))
     if not slack:
         return []
+    least = _median(valley_tension)
+    if least < -_PUSHED * slack_tension:
+        return [note("pushed-in-cycles", name, least=least)]
     return [
         note(
             "slack-in-cycles",

@@ -617,6 +617,12 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "the specimen goes slack in {n_slack} of {n_cycles} cycles (tension at or below"
         " {slack_tension:.4g} N); their amplitudes and energies include the slack part",
     ),
+    "pushed-in-cycles": (
+        "warning",
+        "the specimen is pushed in the cycles (down to {least:.4g} N, median): amplitudes and"
+        ' energies include that part. A specimen that bears it is of kind "other"; in one that'
+        " cannot push the zero of the load is wrong",
+    ),
     "no-snap-loads": (
         "note",
         "{n_taut} of {n_cycles} cycles are not snap loads: tension stays above"

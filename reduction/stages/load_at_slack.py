@@ -28,6 +28,10 @@ _COVERED = 2.0  # stated standard uncertainties
 
 _NO_PUSH = 0.1  # of the first reading at slack, below zero
 
+_PUSHES = 10.0  # noise of a reading, by which load lies below a rest
+
+PULLS_BACK = 0.5  # of the load that pushed it, by friction and creep
+
 _STIFFER = 3.0  # near slack than over the whole stretch: a rubber, whose stiffness falls at first
 
 _MOST = 4096  # samples that say whether load rises with stretch
@@ -136,7 +140,7 @@ def load_at_slack(
     Noise averages out over the samples of a rest, the step q of a converter does not where the
     noise is less than one.  Where the crosshead stands further out than in another rest, and the
     load is greater by no more than that stretch explains, the specimen pulls: such a standstill
-    tells nothing of the zero.
+    tells nothing of the zero.  Nor does one after a push, by half of which it may pull back.
 
     Examples
     --------
@@ -152,9 +156,9 @@ def load_at_slack(
     """
     noise, quantum = estimate_noise(tension)
     rests = [
-        _End.of(tension[first : last + 1], place, _BEYOND * noise + quantum)
+        _End.of(tension, slice(first, last + 1), place, _BEYOND * noise + quantum)
         for first, last, place in zip(
-            standstills.first[is_slack], standstills.last[is_slack],
+            standstills.first[is_slack].tolist(), standstills.last[is_slack].tolist(),
             standstills.mean_position[is_slack].tolist(), strict=True,
         )
     ]  # fmt: skip
@@ -165,7 +169,12 @@ def load_at_slack(
     step = quantum / 12**0.5 if noise < quantum else 0.0
     stiffness = _STIFFER * finite_extremes(tension)[1] / stroke if stroke > 0 else np.inf
     if np.isfinite(stiffness):
-        ends = [one for one in ends if not any(_pulls(one, by, stiffness, noise) for by in ends)]
+        ends = [
+            one for one in ends
+            if not any(
+                _pulls(one, by, stiffness, noise, _push(tension, by, one, noise)) for by in ends
+            )
+        ]  # fmt: skip
     counts = np.array([one.n_samples for one in ends])
     own = noise / np.sqrt(counts.sum())
     readings = [one.load for one in ends]
@@ -184,14 +193,16 @@ class _End(NamedTuple):
     load: float
     mean: float
     n_samples: int
+    samples: slice
 
     @classmethod
-    def of(cls, loads: Floats, place: float, spread: float) -> _End | None:
+    def of(cls, tension: Floats, samples: slice, place: float, spread: float) -> _End | None:
         """Of the loads of a standstill, None where none is known.
 
         Where a crosshead that is read in coarse steps begins to pull, its place shows it late: a
         last part that rises out of the spread is of the pull.
         """
+        loads = tension[samples]
         loads = loads[np.isfinite(loads)]
         if not loads.size:
             return None
@@ -199,7 +210,7 @@ class _End(NamedTuple):
         if loads.size - still <= loads.size // 3:
             loads = loads[:still]
         last = loads[-_quarter(loads.size) :]
-        return cls(place, float(last.mean()), float(loads.mean()), int(loads.size))
+        return cls(place, float(last.mean()), float(loads.mean()), int(loads.size), samples)
 
     @property
     def n_read(self) -> int:
@@ -211,11 +222,19 @@ def _quarter(n_samples: int) -> int:
     return max(n_samples // 4, 1)
 
 
-def _pulls(rest: _End, shorter: _End, stiffness: float, noise: float) -> bool:
-    """Whether a rest reads more than a shorter one, by no more than its stretch explains."""
-    more = rest.load - shorter.load
-    own = noise * np.sqrt(1 / rest.n_read + 1 / shorter.n_read)
-    return bool(_BEYOND * own < more <= stiffness * (rest.place - shorter.place))
+def _pulls(rest: _End, other: _End, stiffness: float, noise: float, push: float) -> bool:
+    """Whether a rest reads more than another, by no more than its stretch or a push explains."""
+    more = rest.load - other.load
+    own = noise * np.sqrt(1 / rest.n_read + 1 / other.n_read)
+    explained = max(stiffness * (rest.place - other.place), PULLS_BACK * push)
+    return bool(_BEYOND * own < more <= explained)
+
+
+def _push(tension: Floats, earlier: _End, later: _End, noise: float) -> float:
+    """By how much load was below an earlier rest since: it pushed the specimen shorter. [N]."""
+    least, _ = finite_extremes(tension[earlier.samples.stop : later.samples.start])
+    push = earlier.load - least
+    return push if push > _PUSHES * noise else 0.0
 
 
 def _moved(earlier: _End, later: _End, stiffness: float, noise: float, step: float) -> float:

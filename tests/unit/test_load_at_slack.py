@@ -207,6 +207,19 @@ def test_a_rest_that_is_stretched_or_noisy_is_no_drift():
     assert load_at_slack(load, stands, np.array([False, True])).drift == 0.0
 
 
+@pytest.mark.parametrize(("after", "is_drift"), [(9.0, False), (60.0, True)])
+def test_a_hose_that_was_pushed_pulls_at_its_own_length(after, is_drift):
+    # 50 N of push in between: it pulls back by less, and 60 N are of the load cell
+    load = np.r_[np.zeros(300), np.linspace(0, -50, 100), np.linspace(-50, 100, 200),
+                 np.full(300, after)]  # fmt: skip
+    load += np.random.default_rng(8).normal(0, 0.1, load.size)
+    stands = Standstills(**vars(rests((0, 299), (600, 899))) | {"mean_position": np.zeros(2)})
+    found = load_at_slack(load, stands, np.array([True, True]), stroke=0.3)
+    assert (found.drift != 0) is is_drift
+    # a rest at which it pulls says nothing of the zero
+    assert found.load == pytest.approx(after / 2 if is_drift else 0.0, abs=0.1)
+
+
 def hose_log(folder, *, mounted, stated, zero=0.0, creep=0.0):
     """A hose that is mounted at a tension, stretched three times, and back; its load at slack."""
     begin = mounted / 4000

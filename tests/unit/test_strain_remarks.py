@@ -1,10 +1,16 @@
-"""Unit tests of reduction.stages.strain.strain_fit: each sentence, and its absence."""
+"""Sentences on strain, and their absence: of the fit to the marks, and of strain none has."""
 
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
+from reduction.record.errors import DataError
 from reduction.record.measurement import SpliceMarks
+from reduction.stages.strain.impossible_strain import (
+    note_on_strain_below_zero,
+    refuse_impossible_strain,
+)
 from reduction.stages.strain.strain_fit import _on_reading_time, _remarks_on
 from reduction.stages.strain.strain_model import StrainModel
 
@@ -125,3 +131,21 @@ def test_it_is_said_how_far_the_moment_of_reading_matters():
     # 1.18 * (0.001 - 0.0009) * 500 / 2.55
     assert "by 0.00 points of strain rms; read as it begins, 0.30 points" in note
     assert "would be +2.3 points other" in note
+
+
+def test_a_mark_of_missing_readings_is_told_from_a_wrong_unit():
+    strain = np.r_[np.linspace(0, 0.5, 50), -9.99, -9.99]
+    with pytest.raises(DataError, match="2 readings have that lowest value.*missing marks"):
+        refuse_impossible_strain(strain, specimen="new", test_id="T-1")
+    with pytest.raises(DataError, match="Is the unit, the sign or the zero"):
+        refuse_impossible_strain(np.linspace(-2, 0.5, 50), specimen="new", test_id="T-1")
+
+
+@pytest.mark.parametrize(("push", "said"), [(60.0, False), (5.0, True)])
+def test_a_specimen_that_was_pushed_pulls_before_it_has_its_length_again(push, said):
+    # the way back is 20 N above the way in
+    way = np.linspace(-0.1, 0.2, 200)
+    strain = np.r_[way[::-1], way]
+    tension = np.r_[-push + 100 * way[::-1], 20 + 100 * way]
+    found = note_on_strain_below_zero(strain, tension, specimen="h", reference_tension=2.0)
+    assert bool(found) is said

@@ -8,7 +8,7 @@ from reduction.record.errors import DataError
 from reduction.record.measurement import Floats
 from reduction.record.notes import Note, note
 from reduction.record.samples import finite_extremes
-from reduction.stages.load_at_slack import rises_with_stretch
+from reduction.stages.load_at_slack import PULLS_BACK, rises_with_stretch
 
 # of the reference tension: noise about it, and what a rope creeps by, are no contradiction
 _ABOVE = 2.0
@@ -32,11 +32,16 @@ def refuse_impossible_strain(strain: Floats, *, specimen: str, test_id: str) -> 
     low, high = finite_extremes(strain)
     if low > -1:
         return
+    lowest = np.count_nonzero(strain == low)
+    is_mark = 1 < lowest < strain.size and float(np.min(strain[strain > low])) > -1
     raise DataError(
         f"strain of '{specimen}' in test '{test_id}' is at or below -100 %",
         found=f"{100 * low:.4g} to {100 * high:.4g} %",
         needed="a length above zero",
-        hint="Is the unit, the sign or the zero of crosshead_position right, and that of the marks "
+        hint=f"{lowest} readings have that lowest value, and no other is below -100 %: if it means "
+        "that none was taken, add it to the missing marks of the layout."
+        if is_mark
+        else "Is the unit, the sign or the zero of crosshead_position right, and that of the marks "
         "or of the gauge length?",
     )
 
@@ -48,7 +53,7 @@ def note_on_strain_below_zero(
 
     ``reference_tension`` [N] is that at which strain is zero: that of the gauge length, or that up
     to which the specimen counts as slack.  A position that falls while tension rises has a wrong
-    sign, another one a wrong zero.
+    sign, another one a wrong zero.  What was pushed pulls on its way back while it is still short.
 
     Examples
     --------
@@ -59,7 +64,8 @@ def note_on_strain_below_zero(
     cord: strain falls to -24 % at tensions up to 218 N, above the 5 N at which it should be ...
     """
     with np.errstate(invalid="ignore"):
-        pulls = tension > _ABOVE * reference_tension
+        push = max(-finite_extremes(tension)[0], 0.0)
+        pulls = tension > max(_ABOVE * reference_tension, PULLS_BACK * push)
         low, high = finite_extremes(strain)
         below = pulls & (strain < -_BELOW * (high - low))
     n_below = int(np.count_nonzero(below))
