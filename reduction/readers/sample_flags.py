@@ -677,14 +677,7 @@ def _at_updates(record: Record) -> tuple[Record, Integers | None]:
             kept.append(take_samples(one, rows))
         else:  # late in these rows, too
             kept.append(np.interp(rows, own, take_samples(one, own), left=np.nan, right=np.nan))
-    at_rows: dict[str, Any] = {
-        name: take_samples(one, rows)
-        for name in (
-            "time", "quality_flag", "crosshead_position_quality_flag", "measured_strain",
-            "fill_pressure", "cycle_counter",
-        )
-        if (one := getattr(record, name)) is not None
-    }  # fmt: skip
+    at_rows = _at_rows(record, rows)
     said = note(
         "rows-repeated" if all_repeat else "read-less-often",
         channel=slow,
@@ -695,6 +688,51 @@ def _at_updates(record: Record) -> tuple[Record, Integers | None]:
     )
     at_rows |= {"crosshead_position": kept[0], "tension": np.stack(kept[1:])}
     return replace(record, notes=(*record.notes, said), **at_rows), rows
+
+
+def _at_rows(record: Record, rows: Integers) -> dict[str, Any]:
+    """The series of a record at some of its rows, but for position and tension."""
+    return {
+        name: take_samples(one, rows)
+        for name in (
+            "time", "quality_flag", "crosshead_position_quality_flag", "measured_strain",
+            "fill_pressure", "cycle_counter",
+        )
+        if (one := getattr(record, name)) is not None
+    }  # fmt: skip
+
+
+def _in_order(record: Record) -> tuple[Record, Integers | None]:
+    """The record with its rows in order of time and none twice; these rows, or None.
+
+    A logger that writes its buffer twice, or two of them in the wrong order, leaves rows that are
+    as even as the others once they are sorted; those of a clock that slips back are not.
+    """
+    time = record.time
+    parts = sample_blocks(time.size, time, overlap=1)
+    falls = any((np.diff(time[part]) < 0).any() for part in parts)
+    if not falls or time.size > _MOST_SORTED or not np.isfinite(time).all():
+        return record, None
+    rows = np.argsort(time, kind="stable")
+    place, load = take_samples(record.crosshead_position, rows), take_samples(record.tension, rows)
+    both = np.vstack([time[rows], place, load])
+    is_copy = np.all(np.diff(both, axis=1) == 0, axis=0)
+    rows = rows[np.concatenate([[True], ~is_copy])]
+    steps = np.diff(time[rows])
+    if not steps.size or steps.min() < _EVEN * np.median(steps):
+        return record, None
+    n_moved = int(np.count_nonzero(np.diff(rows) < 0))
+    said = note("rows-sorted", n_twice=time.size - rows.size, n_moved=n_moved)
+    at_rows = _at_rows(record, rows) | {
+        "crosshead_position": take_samples(record.crosshead_position, rows),
+        "tension": take_samples(record.tension, rows),
+    }
+    return replace(record, notes=(*record.notes, said), **at_rows), rows
+
+
+_MOST_SORTED = 10_000_000  # rows, in memory
+
+_EVEN = 0.5  # of the usual step of time, between rows that are in order
 
 
 def _without_breaks(rows: Integers, n_samples: int) -> Integers:
@@ -740,12 +778,14 @@ def flag_record(
     notes: Sequence[Note] = (),
 ) -> Record:
     """Return the record with its flags set and what they mean in its notes."""
-    record, rows = _at_updates(record)
-    if rows is not None and verified:
-        verified = {
-            (index, int(np.searchsorted(rows, start)), int(np.searchsorted(rows, stop))): limits
-            for (index, start, stop), limits in verified.items()
-        }
+    for arrange in (_in_order, _at_updates):
+        record, rows = arrange(record)
+        if rows is not None and verified:
+            rows = np.sort(rows)  # a piece with limits of its own is one after the other
+            verified = {
+                (index, int(np.searchsorted(rows, start)), int(np.searchsorted(rows, stop))): limits
+                for (index, start, stop), limits in verified.items()
+            }
     position_flag: _Flags = zeros_like(record.time, dtype=np.uint16)
     tension_flag: _Flags = zeros_like(record.tension, dtype=np.uint16)
     position = record.crosshead_position

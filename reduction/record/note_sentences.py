@@ -119,6 +119,17 @@ _OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         " rows: of its {n_rows} rows only those with a new one are used. It may still be late by up"
         " to a row, {step:.3g} s, which is in the interval as a lag: log at the channel's own rate",
     ),
+    "rows-sorted": (
+        "note",
+        lambda n_twice, n_moved: (
+            "the rows of the log are not in order of time: "
+            + ", ".join(
+                [f"{n_twice} that it has twice are left out"] * bool(n_twice)
+                + [f"they are sorted (time goes back at {n_moved} of them)"] * bool(n_moved)
+            )
+            + ". Check whether the logger wrote a buffer twice or late"
+        ),
+    ),
     "rows-repeated": (
         "note",
         "the log repeats each reading in {every:.0f} rows: of its {n_rows} rows those with new"

@@ -24,9 +24,9 @@ def record(*, time=TIME, position=None, load=None, **settings):
         tension=(200 + 10 * WAVE + RANDOM.normal(0, 0.3, TIME.size) if load is None else load)[
             np.newaxis
         ],
-        quality_flag=np.zeros((1, TIME.size), dtype=np.uint16),
-        crosshead_position_quality_flag=np.zeros(TIME.size, dtype=np.uint16),
-        n_rows_read=TIME.size,
+        quality_flag=np.zeros((1, len(time)), dtype=np.uint16),
+        crosshead_position_quality_flag=np.zeros(len(time), dtype=np.uint16),
+        n_rows_read=len(time),
         **settings,
     )
 
@@ -43,6 +43,32 @@ def test_a_clean_record_gets_no_flag_and_no_note():
     result = flagged(record(notes=("kept",)))
     assert not result.quality_flag.any() and not result.crosshead_position_quality_flag.any()
     assert tuple(map(str, result.notes)) == ("kept",)
+
+
+def test_a_buffer_that_a_logger_writes_twice_or_late_is_put_in_order():
+    plain = flagged(record())
+    place, load = plain.crosshead_position, plain.tension[0]
+    twice = np.r_[0:1000, 872:2000]
+    late = np.r_[0:1000, 1064:1128, 1000:1064, 1128:2000]
+    for rows, words in (
+        (twice, "128 that it has twice"),
+        (late, "sorted (time goes back at 1 of them)"),
+    ):
+        found = flagged(record(time=TIME[rows], position=place[rows], load=load[rows]))
+        np.testing.assert_array_equal(found.time, TIME)
+        np.testing.assert_array_equal(found.crosshead_position, place)
+        np.testing.assert_array_equal(found.tension[0], load)
+        assert not found.crosshead_position_quality_flag.any()
+        assert words in str(found.notes[0])
+
+
+@pytest.mark.parametrize("slip", [0.15, 0.3])
+def test_a_clock_that_slips_back_is_flagged_and_not_sorted(slip):
+    time = TIME.copy()
+    time[1000:] -= slip
+    found = flagged(record(time=time))
+    assert found.n_samples == TIME.size
+    assert where(found.crosshead_position_quality_flag, Quality.REPEATED_OR_BACKWARD_TIME)
 
 
 def test_every_fault_gets_its_mask_and_a_line_in_the_notes():
