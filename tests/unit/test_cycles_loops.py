@@ -1617,3 +1617,29 @@ def test_noise_of_a_tension_makes_no_saw_of_even_ramps():
     # readings lie within half a step of a corner
     assert max(stated) < 1.1 * 0.02 / 2 / np.sqrt(8)
     assert np.sqrt(np.mean(np.square(off))) < min(stated)
+
+
+@pytest.mark.parametrize("per_cycle", [16.3, 20.3])
+@pytest.mark.parametrize("noise", [0.0, 0.3])
+def test_ramps_of_a_hose_that_locks_end_beyond_their_readings(per_cycle, noise):
+    # tension steepens towards the peak: the lines beside it cross below the readings
+    place = np.arange(60 * per_cycle).astype(int)
+    strain = 0.4 + 0.2 * (1 - 2 * np.abs(2 * ((place / per_cycle + 0.03) % 1) - 1))
+    locks = 0.05 * np.logaddexp(0, (strain - 0.45) / 0.05)
+    tension = 200 * strain + 30_000 * locks**2
+    top, foot = (
+        200 * one + 30_000 * (0.05 * np.logaddexp(0, (one - 0.45) / 0.05)) ** 2
+        for one in (0.6, 0.2)
+    )
+    tension = tension + np.random.default_rng(4).normal(0, 1, tension.size) * noise
+    stand = find_standstills(1.0 * place, strain, tension[None], settings=PhaseSettings())
+    cycles = find_cycles(1.0 * place, strain, tension[None], stand, settings=CycleSettings())
+    loops = close_loops(1.0 * place, tension[None], strain[None], cycles)
+    mean = summarise_amplitude(loops, area=np.ones(1), break_in_cycles=0)
+    for value, own, true in (
+        (mean.tension_amplitude[0], mean.uncertainty["tension_amplitude"][0], (top - foot) / 2),
+        (mean.apparent_spring_constant[0], mean.uncertainty["apparent_spring_constant"][0],
+         (top - foot) / 0.4),
+    ):  # fmt: skip
+        assert abs(value - true) < 2 * own
+        assert own < 0.08 * true

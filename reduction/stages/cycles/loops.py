@@ -1332,11 +1332,17 @@ def _readings_at_turns(
         above = level_of_turn(values, peak, top, sign=1) - top
         below = last - level_of_turn(values, end, last, sign=-1)
         noise = _within_scatter(reading_noise(moved), moved[peak])
+        own = _within_scatter(reading_noise(values), values[peak])
         # a machine may rest at one of its turns alone
         lowest = _places(-moved, np.maximum(end - on_fall, peak), stop)
         rests, rests_below = rests_at_turns(moved, peak), rests_at_turns(-moved, lowest)
         of_peak, of_valley = (
-            np.abs(level_at_corner(values, moved, at, sign=sign, noise=noise, rests=rest) - level)
+            np.abs(
+                level_at_corner(
+                    values, moved, at, sign=sign, noise=noise, rests=rest, own_noise=own
+                )
+                - level
+            )
             for at, sign, level, rest in ((at_top, 1, top, rests), (at_last, -1, last, rests_below))
         )
         # lines beside a rest cross above it, and of its readings noise makes one the greatest

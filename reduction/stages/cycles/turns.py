@@ -50,6 +50,8 @@ _ROUNDED = 0.2  # of that step, by which a turn lies below the lines beside it
 
 _MOST_CORNERS = 0.8  # of the turns of a wave
 
+_BENDS = 3 * 6**0.5  # noise of a reading: three standard deviations of a second difference
+
 _BESIDE = 3  # samples on either side of a turn by which lines cross
 
 
@@ -296,11 +298,13 @@ def level_at_corner(
     sign: int,
     noise: float,
     rests: bool,
+    own_noise: float = 0.0,
 ) -> Floats:
     """Level to which the approach of a series goes on, to the corner of the channel that moves it.
 
     What relaxes within a sample after the corner leaves no line there: the readings after it say
-    nothing of the level, and those before it all.
+    nothing of the level, and those before it all.  An approach that clearly steepens, as of a hose
+    whose cords lock, goes on as a parabola.
 
     Parameters
     ----------
@@ -316,6 +320,8 @@ def level_at_corner(
         Standard deviation of one reading of ``moved``. [any]
     rests : bool
         Whether ``moved`` stays where it turns: `rests_at_turns`. [-]
+    own_noise : float
+        Standard deviation of one reading of ``values``. [any]
 
     Returns
     -------
@@ -336,6 +342,13 @@ def level_at_corner(
     >>> force = np.where(place <= 5, 100 + 10 * (place - 5.6), 80)
     >>> print(level_at_corner(force, drive, np.array([5]), sign=1, noise=0, rests=True))
     [100.]
+
+    A force that steepens by 4 from step to step, and a corner half a step after a reading:
+
+    >>> drive = -np.abs(place - 5.5)
+    >>> print(level_at_corner(2.0 * np.maximum(drive + 5.5, 0) ** 2, drive, np.array([5]), sign=1,
+    ...     noise=0, rests=False))
+    [60.5]
     """
     offset = _offset_of_corner(moved, extreme_at, sign=sign, noise=noise, rests=rests)
     reading = sign * take_samples(values, extreme_at)
@@ -344,7 +357,10 @@ def level_at_corner(
     def led_to(series: Floats, at: Integers, offset: Floats) -> Floats:
         before = at - (offset < 0)
         approach = series[before] - series[before - 1]
-        return series[before] + approach * np.where(offset < 0, 1 + offset, offset)
+        bend = approach - series[before - 1] + series[np.maximum(before - 2, 0)]
+        bend = np.where(bend > _BENDS * own_noise, bend, 0.0)
+        on = np.where(offset < 0, 1 + offset, offset)
+        return series[before] + (approach + bend * (1 + on) / 2) * on
 
     # what creeps while its channel rests is farthest where that leaves: the same, backward in time
     backward = moved.size - 1 - extreme_at
