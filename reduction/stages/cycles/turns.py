@@ -360,7 +360,7 @@ def level_at_corner(
         bend = approach - series[before - 1] + series[np.maximum(before - 2, 0)]
         bend = np.where(bend > _BENDS * own_noise, bend, 0.0)
         on = np.where(offset < 0, 1 + offset, offset)
-        return series[before] + (approach + bend * (1 + on) / 2) * on
+        return np.asarray(series[before] + (approach + bend * (1 + on) / 2) * on)
 
     # what creeps while its channel rests is farthest where that leaves: the same, backward in time
     backward = moved.size - 1 - extreme_at
