@@ -492,6 +492,15 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "note",
         "{n_cycles} transition cycles between two amplitudes are not counted, first at {time:g} s",
     ),
+    "cycles-of-other-length": (
+        "note",
+        lambda n_cycles, time: (
+            f"{n_cycles} cycle{'s' * (n_cycles > 1)} within the row"
+            f" last{'s' * (n_cycles == 1)} otherwise than the others, first at {time:g} s, and"
+            f" {'is' if n_cycles == 1 else 'are'} left out: the machine waited there, or its"
+            " function generator was started again"
+        ),
+    ),
     "cycles-of-starting-machine": (
         "note",
         lambda n_first, n_last: (

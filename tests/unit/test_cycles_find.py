@@ -169,6 +169,22 @@ def test_cycles_of_a_machine_that_starts_are_not_counted_and_said():
     assert one.numbers == {"n_first": 2, "n_last": 0}
 
 
+@pytest.mark.parametrize("waveform", ["triangular", "sinusoidal"])
+def test_a_cycle_in_which_a_generator_starts_again_is_left_out_and_counted(waveform):
+    time = np.arange(0, 200.0, 0.1)
+    # a third of a cycle on, within the tenth
+    phase = time / 10 + np.where(time > 93, 0.35, 0.0)
+    ramps = 1 - np.abs(2 * (phase % 1) - 1)
+    wave = ramps if waveform == "triangular" else (1 - np.cos(2 * np.pi * phase)) / 2
+    cycles = find(time, 4 + wave, waveform=waveform)
+    lengths = time[cycles.last] - time[cycles.first]
+    np.testing.assert_allclose(lengths, 10.0, atol=0.25)
+    # the machine ran on: its number is that of the cycle
+    assert np.setdiff1d(np.arange(1, cycles.number[-1] + 1), cycles.number).size == 1
+    assert any("1 cycle within the row lasts otherwise than the others" in str(note)
+               for note in cycles.notes)  # fmt: skip
+
+
 def test_a_level_that_is_another_is_counted():
     time, position = path(back([*LEAD, *strokes(50, 20)]))
     low = np.where(time < 70, 0.6, 1.0)

@@ -988,6 +988,39 @@ def _steady_span(values: Floats, branch_first: Indices, branch_last: Indices) ->
     return slice(n_off(is_off), n_cycles - n_off(is_off[::-1]))
 
 
+_MOST_ODD = 0.1  # of the cycles, and no more than so many of a few
+
+_FEW = 3
+
+
+def _odd_cycles(time: Floats, first: Indices, last: Indices) -> Bools:
+    """Cycles within a row that last otherwise than all others: the machine jumped or waited there.
+
+    A function generator that starts again goes on at another phase.
+
+    Examples
+    --------
+    >>> turns = np.append(np.arange(0, 60, 10), np.arange(67, 130, 10))
+    >>> print(np.flatnonzero(_odd_cycles(np.arange(130.0), turns[:-1], turns[1:])))
+    [5]
+    """
+    length = take_samples(time, last) - take_samples(time, first)
+    is_odd = np.zeros(length.size, dtype=np.bool_)
+    if length.size < _LEFT_STEADY + _MOST_STARTING:
+        return is_odd
+    middle = float(np.median(length))
+    sample = length / np.maximum(last - first, 1)
+    limit = np.maximum(
+        _OTHER_LENGTH * middle + 2 * sample, 6 * 1.5 * np.median(abs(length - middle))
+    )
+    is_odd[1:-1] = (np.abs(length - middle) > limit)[1:-1]
+    # two that last as long as two others have the turn between them at the wrong place
+    beside = is_odd[1:] & is_odd[:-1] & (np.abs(length[1:] + length[:-1] - 2 * middle) < limit[1:])
+    is_odd[1:][beside] = is_odd[:-1][beside] = False
+    n_odd = np.count_nonzero(is_odd)
+    return is_odd if n_odd <= min(_FEW, _MOST_ODD * length.size) else np.zeros_like(is_odd)
+
+
 def _labels(first: Indices, last: Indices, values: NDArray[Any], time: Floats) -> NDArray[Any]:
     """Value of the interval of each sample, 0 outside; a shared sample is the later one's."""
     end = last + 1
@@ -1079,6 +1112,7 @@ def find_cycles(
     time, position, _ = as_same_shape(time=time, position=position, tension=tension[0])
     values = control_channel(position, tension, settings)
     made: tuple[str, ...] = ()
+    odd = np.zeros(0, dtype=np.bool_)
     counter, counted = cycle_counter, None
     if counter is not None and not _changes_of_count(counter).size:
         counter = None
@@ -1113,6 +1147,12 @@ def find_cycles(
             )  # fmt: skip
         branch_first, branch_last = branch_first[steady], branch_last[steady]
         first, last = first[steady], last[steady]
+        odd = _odd_cycles(time, first, last)
+        if odd.any():
+            notes.append(note("cycles-of-other-length", n_cycles=int(odd.sum()),
+                              time=float(time[first[odd][0]])))  # fmt: skip
+            branch_first, branch_last = branch_first[~odd], branch_last[~odd]
+            first, last = first[~odd], last[~odd]
         if left_out.size:
             begins = float(time[left_out[0]])
             notes.append(note("cycles-of-two-amplitudes", n_cycles=left_out.size, time=begins))
@@ -1138,9 +1178,11 @@ def find_cycles(
         if count is not None:
             n_hidden = int(count[-1]) - count.size
             notes.append(note("cycles-in-gaps", n_cycles=first.size, n_hidden=n_hidden))
+        elif odd.any():
+            count, is_sure = np.flatnonzero(~odd) + 1, True
     if first.size == 1:
         notes.append(note("one-cycle"))
-    n_made = first.size + (n_unsteady if counted_by == "reversals" else 0)
+    n_made = first.size + (n_unsteady + np.count_nonzero(odd) if counted_by == "reversals" else 0)
     if settings.expected_cycles is not None and settings.expected_cycles != n_made:
         # each end that is left out takes a cycle with it at most
         is_ends = 0 < settings.expected_cycles - n_made <= found.n_ends_left_out
