@@ -26,7 +26,7 @@ UNITS_AT = EDGES  # pint stands at the edges only
 # numpy everywhere; scipy where the mathematics is
 BELOW_THE_EDGE = {"numpy", "scipy", "reduction"}
 STANDARD = {
-    "__future__", "collections", "dataclasses", "enum", "functools", "json", "math", "re",
+    "__future__", "collections", "dataclasses", "enum", "functools", "json", "math", "re", "types",
     "typing", "pathlib", "itertools", "operator",
 }  # fmt: skip
 # the statistics of one regression; imported where one is fitted, for it takes half a second
