@@ -224,10 +224,10 @@ def parts_of_cycles(
         alike = np.where(late > 0, both, 0.0)
     amplitude = summarise_amplitude(loops, area=area, break_in_cycles=break_in, turns_alike=alike)
     loops.release_pages()
-    if np.isnan(area).any():
-        # a rope without a diameter has spring constants alone
-        return {"loops": loops, "amplitude": amplitude}
     trend = fit_peak_trend(loops, area=area, break_in_cycles=break_in, cycles=cycles)
+    if np.isnan(area).any():
+        # a rope without a diameter has spring constants, and creeps, but has no modulus
+        return {"loops": loops, "amplitude": amplitude, "trend": trend}
     curves = _curves_of_cycles(
         strain, tension, cycles, loops, trend, names=record.specimens, area=area, settings=settings
     )

@@ -473,6 +473,21 @@ def test_a_grip_that_slips_under_a_rope_without_a_diameter_is_told(tmp_path):
     assert "after cycle 20" in result.tests[0].message or "cycle 19" in result.tests[0].message
 
 
+def test_a_rope_without_a_diameter_creeps_with_its_cycles(tmp_path):
+    cycle = np.arange(0, 40, 0.025)
+    load = 3e4 - 1e4 * np.cos(2 * np.pi * cycle)
+    # in the middle of the nth cycle .0003 log10 n
+    strain = load / 1e6 + 3e-4 * np.log10(np.maximum(cycle + 0.5, 0.5))
+    rows = np.column_stack([12 * cycle, 10 * strain, load, strain])
+    np.savetxt(tmp_path / "creeps.csv", rows, fmt="%.8g", delimiter=",", header="t_s,x_m,F_N,e",
+               comments="")  # fmt: skip
+    result = run(tmp_path, made.single("creeps", "cyclic", 'waveform = "sinusoidal"'))
+    found = row(result, "creeps", "trend").rename(lambda name: name.partition(" [")[0])
+    near(found, "mean_strain_per_decade", 3e-4)
+    assert found["mean_strain_per_decade"] == pytest.approx(3e-4, rel=0.02)
+    assert np.isnan(found["dynamic_modulus_per_decade"])
+
+
 @pytest.mark.parametrize("channel", ["crosshead_position", "the extensometer of R-1"])
 def test_a_length_that_is_set_to_zero_again_under_load_is_told(tmp_path, channel):
     """Held at 30 kN, where the stroke, or the strain, is set back; cycles before and after it."""
