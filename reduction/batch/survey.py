@@ -30,7 +30,7 @@ from reduction.record.errors import (
 from reduction.record.measurement import Floats, Record, Source, Specimen, StepReadings
 from reduction.record.notes import Note, note
 from reduction.record.row_account import account_rows
-from reduction.record.samples import finite_extremes
+from reduction.record.samples import finite_extremes, step_of_codes
 from reduction.stages.load_at_slack import (
     load_at_slack,
     notes_on_zero,
@@ -267,6 +267,7 @@ def _find_zero_strain(survey: Survey, located: Located, campaign: Campaign, plan
         located.standstills,
         position_is_length=is_length,
         length_at_slack=length_at_slack(layouts),
+        code_step=step_of_codes(located.position),
     )
     for name, tension in zip(plan.specimens, located.tension, strict=True):
         reference = campaign.specimens[name].reference_tension or tension_of_layout

@@ -297,6 +297,10 @@ def rests(positions, is_rest):
 def test_zero_strain_is_at_the_first_rest():
     stands = rests([0.5, 0.1, 0.2], [False, True, True])
     assert zero_at_slack(stands, position_is_length=True).position == 0.1
+    # a position in steps of a millimetre stands anywhere within one: half of it over root three
+    coarse = zero_at_slack(stands, position_is_length=True, code_step=1e-3)
+    assert coarse.position == 0.1
+    assert coarse.standard_uncertainty == pytest.approx(0.5e-3 / np.sqrt(3))
 
 
 def test_without_a_rest_only_a_displacement_has_a_zero():

@@ -46,9 +46,15 @@ class ZeroStrain:
 
 
 def zero_at_slack(
-    standstills: Standstills, *, position_is_length: bool, length_at_slack: float | None = None
+    standstills: Standstills,
+    *,
+    position_is_length: bool,
+    length_at_slack: float | None = None,
+    code_step: float = 0.0,
 ) -> ZeroStrain:
     """Position of the first rest, else that at which the layout says that the specimen is slack.
+
+    A position that is written in coarse codes stands anywhere within one of them.
 
     Examples
     --------
@@ -59,7 +65,7 @@ def zero_at_slack(
     """
     rests = standstills.mean_position[standstills.is_rest]
     if rests.size:
-        return ZeroStrain(float(rests[0]), is_logged=True)
+        return ZeroStrain(float(rests[0]), code_step / float(np.sqrt(12)), is_logged=True)
     return ZeroStrain(length_at_slack if position_is_length else 0.0)
 
 
