@@ -488,6 +488,11 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "gaps in the record longer than 30 % of a half cycle: {n_gaps}, first near {time:g} s; no"
         " cycle extends across a gap",
     ),
+    "cycles-by-turns": (
+        "warning",
+        "of some {n_moves} cycles only {n_cycles}, until {time:g} s, are logged without gaps, and"
+        " all results are of these: none of cycles of which the log has peaks and valleys alone",
+    ),
     "cycles-of-two-amplitudes": (
         "note",
         "{n_cycles} transition cycles between two amplitudes are not counted, first at {time:g} s",

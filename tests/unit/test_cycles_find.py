@@ -285,6 +285,17 @@ def test_a_gap_of_the_record_ends_a_run_and_cycles_across_it_are_not_counted(twe
     assert find(time, missing).n_cycles == 17
 
 
+@pytest.mark.parametrize(("n_close", "is_told"), [(4, True), (14, False)])
+def test_cycles_of_which_the_log_has_the_turns_alone_are_told(n_close, is_told):
+    time, position = path([*LEAD, *strokes(50, 20)], noise=0.0)
+    close, turns = time < 50 + 10 * n_close, np.isclose(time % 5, 0, atol=0.01)
+    cycles = find(time[close | turns], position[close | turns])
+    assert cycles.n_cycles == n_close
+    told = [str(one) for one in cycles.notes if one.code == "cycles-by-turns"]
+    assert bool(told) == is_told
+    assert not told or (f"only {n_close}, until 90 s" in told[0] and "some 2" in told[0])
+
+
 def test_a_short_gap_does_not_end_a_run(twenty):
     time, position = twenty
     kept = (time < 103) | (time > 104)

@@ -940,6 +940,8 @@ _MOST_STARTING = 3
 
 _LEFT_STEADY = 5
 
+_READ_CLOSELY = 0.5  # of the cycles: fewer of a log that goes on with readings at the turns alone
+
 
 def _steady_span(values: Floats, branch_first: Indices, branch_last: Indices) -> slice:
     """Cycles but for those at either end in which the machine starts or stops.
@@ -1147,6 +1149,11 @@ def find_cycles(
             )  # fmt: skip
         branch_first, branch_last = branch_first[steady], branch_last[steady]
         first, last = first[steady], last[steady]
+        n_moves = reversals.size // 2
+        has_gaps = any(one.code == "gaps-end-runs" for one in notes)
+        if counted is None and has_gaps and 0 < first.size < _READ_CLOSELY * n_moves:
+            ends = float(time[last[-1]])
+            notes.append(note("cycles-by-turns", n_cycles=first.size, n_moves=n_moves, time=ends))
         odd = _odd_cycles(time, first, last)
         if odd.any():
             notes.append(note("cycles-of-other-length", n_cycles=int(odd.sum()),
