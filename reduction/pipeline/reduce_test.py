@@ -60,6 +60,7 @@ from reduction.record.samples import (
     thinned,
 )
 from reduction.record.settings import CycleSettings, ReductionSettings
+from reduction.stages.channel_lag import delay_of_extensometer
 from reduction.stages.cycles.cycle_product import Cycles, Loops
 from reduction.stages.cycles.cycle_search import control_channel, label_phases
 from reduction.stages.cycles.loop_sense import notes_of_loops, waveform_of_log
@@ -381,9 +382,41 @@ def _with_late_readings(
     record: Record, instruments: Sequence[InstrumentErrors]
 ) -> tuple[InstrumentErrors, ...]:
     """Errors with the lag of a channel whose new readings come some time within a row."""
-    steps = [one.numbers["step"] for one in record.notes if one.code == "read-less-often"]
+    steps = [
+        one.numbers["step"]
+        for one in record.notes
+        if one.code in ("read-less-often", "extensometer-late")
+    ]
     own = float(np.hypot.reduce(steps)) / np.sqrt(3) if steps else 0.0
     return tuple(replace(errors, lag=float(np.hypot(errors.lag, own))) for errors in instruments)
+
+
+def _late_extensometers(
+    located: Located,
+    models: Sequence[StrainModel],
+    strain: Floats,
+    instruments: Sequence[InstrumentErrors],
+) -> list[Note]:
+    """Extensometers that are logged later than the crosshead, by more than is stated."""
+    if located.cycles is None:
+        return []
+    stated = [one.lag for one in instruments] or [0.0] * len(models)
+    delays = [
+        delay_of_extensometer(
+            located.record.time, located.position, one, load, located.cycles.cycle_number
+        )
+        if model.method == "extensometer"
+        else 0.0
+        for model, one, load in zip(models, strain, located.tension, strict=True)
+    ]
+    return [
+        note("extensometer-late", model.specimen, step=delay)
+        for model, delay, own in zip(models, delays, stated, strict=True)
+        if delay > _BEYOND_LAG * own
+    ]
+
+
+_BEYOND_LAG = 2.0  # stated standard uncertainties
 
 
 def _with_drift_of_zero(
@@ -944,6 +977,9 @@ def reduce_test(
     settings = _with_waveform_of_log(settings, located)
     phase = label_phases(record.time, standstills=standstills, cycles=cycles)
     strain = strain_of_record(record, position, tension, models)
+    late = _late_extensometers(located, models, strain, instruments)
+    record = replace(record, notes=(*record.notes, *late))
+    located = replace(located, record=record)
     instruments = _with_late_readings(record, _with_drift_of_zero(located, instruments))
     readings = _readings_of(record, instruments)
     stated = replace(located, record=_with_readings(record, readings))

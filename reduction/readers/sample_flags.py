@@ -854,10 +854,15 @@ def flag_record(
         for name, load in zip(record.specimens, record.tension, strict=True)
         if _never_falls(position, load)
     ]
-    strains = () if record.measured_strain is None else record.measured_strain
-    for name, strain in zip(record.specimens, strains, strict=False):
+    strains = None if record.measured_strain is None else copied(record.measured_strain)
+    for name, strain in zip(record.specimens, () if strains is None else strains, strict=False):
+        lost = _spikes(strain, settings)
+        if n_samples := count_samples(lost):
+            strain[lost] = np.nan
+            found.append(note("extensometer-drops-out", name, n_samples=n_samples))
         if n_samples := count_samples(_find_saturated(strain, position)):
             found.append(note("extensometer-ends", name, n_samples=n_samples))
+    flagged = replace(flagged, measured_strain=strains)
     found += _lone_steps(flagged, settings)
     found += notes_on_rows(flagged)
     return replace(flagged, notes=tuple(found))

@@ -1431,6 +1431,17 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         " resolution or the range of the amplifier is too coarse, or the log was rounded. This"
         " limits the accuracy of moduli and energies",
     ),
+    "extensometer-drops-out": (
+        "note",
+        "{n_samples} readings of the extensometer jump away and back at once: they are not used. A"
+        " value that it writes where it reads none belongs in the missing marks of the layout",
+    ),
+    "extensometer-late": (
+        "warning",
+        "the extensometer follows the crosshead {step:.3g} s late, as a camera does, and more than"
+        " the damping of the specimen explains: loops are too wide by that. It is in the interval"
+        " as a lag; correct the time stamps of the channel (time_column)",
+    ),
     "extensometer-ends": (
         "warning",
         "the measured strain stays at its greatest value for {n_samples} samples while the"
@@ -1746,7 +1757,7 @@ CAUSES = (
     "stretched-diameters-apart",
     "cycles-in-other-kind", "rate-not-as-stated", "level-not-as-stated",
     "load-never-falls", "load-zero-drifts", "load-zero-wrong", "load-negative",
-    "load-falls-with-stretch", "extensometer-ends", "load-in-steps",
+    "load-falls-with-stretch", "extensometer-late", "extensometer-ends", "load-in-steps",
     "tape-off-crosshead", "marks-alike", "loops-run-backward",
     "extensometer-against-stroke", "gauge-against-length",
     "modulus-outside-band", "strength-outside-band", "tension-above-strength", "stiffness-jumps",

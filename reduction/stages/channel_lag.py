@@ -31,9 +31,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from reduction.quantities.flags import LAG_REFUSALS
 from reduction.record.errors import DataError
@@ -87,6 +88,88 @@ class LagEstimate:
     standard_uncertainty: Floats
     n_turns: Integers
     refusal: Integers
+
+
+def delay_of_extensometer(
+    time: Floats, position: Floats, strain: Floats, tension: Floats, inside: NDArray[Any]
+) -> float:
+    r"""By how much later than the crosshead an extensometer was logged; 0 where damping may do it.
+
+    .. math:: \varepsilon(t) = f(x) - \tau f'(x) \dot x, \qquad T(t) = g(\varepsilon)
+              + t_\delta \, g'(\varepsilon) \dot\varepsilon
+
+    Parameters
+    ----------
+    time, position, strain, tension : ndarray, shape (n_samples,)
+        Of one specimen. [s], [m], [1], [N]
+    inside : ndarray of int, shape (n_samples,)
+        Above zero within cycles. [1]
+
+    Returns
+    -------
+    delay : float
+        [s]
+
+    Raises
+    ------
+    ValueError
+        If the arrays differ in length.
+
+    Notes
+    -----
+    Both are lengths, of which one drives the other: they move together, but for what else is
+    stretched between the pins.  That follows tension, which leads strain by :math:`t_\delta`, and
+    puts strain behind the crosshead by its share of it.  A delay is one that is more than half.
+
+    Examples
+    --------
+    >>> time = np.arange(0, 60, 0.02)
+    >>> wave = [np.sin(2 * np.pi * 0.5 * (time - late)) for late in (0, 0.03, -0.02)]
+    >>> given = time, 0.5 + 0.1 * wave[0], 0.2 * wave[1], 50 * wave[2], np.ones(time.size)
+    >>> print(round(delay_of_extensometer(*given), 3))
+    0.03
+    """
+    rows = np.flatnonzero(inside[1:-1] > 0)[:_MOST_ROWS] + 1
+    if rows.size < _FEWEST_ROWS:
+        return 0.0
+    gone = take_samples(time, rows + 1) - take_samples(time, rows - 1)
+
+    def late(driver: Floats, answer: Floats, some: Integers) -> float:
+        """Delay of the answer in seconds, by its curve over the driver and its rate."""
+        x, y = take_samples(driver, rows[some]), take_samples(answer, rows[some])
+        rate = (take_samples(driver, rows + 1) - take_samples(driver, rows - 1))[some] / gone[some]
+        known = np.isfinite(x) & np.isfinite(y) & np.isfinite(rate) & (gone[some] > 0)
+        x, y, rate = x[known], y[known], rate[known]
+        if x.size < _FEWEST_ROWS // _PARTS or not np.ptp(x) > 0:
+            return np.nan
+        curve = np.polynomial.Polynomial.fit(x, y, _DEGREE)
+        far = np.abs(y - curve(x))
+        near = far < _OUTLYING * np.median(far)  # what drops out is no delay
+        x, y, rate = x[near], y[near], rate[near]
+        curve = np.polynomial.Polynomial.fit(x, y, _DEGREE)
+        terms = np.column_stack([((x - x.mean()) / np.ptp(x))[:, None] ** np.arange(_DEGREE + 1),
+                                 curve.deriv()(x) * rate])  # fmt: skip
+        return -float(np.linalg.lstsq(terms, y)[0][-1])
+
+    parts = np.array_split(np.arange(rows.size), _PARTS)
+    of_strain = np.array([late(position, strain, one) for one in parts])
+    delay, own = float(np.mean(of_strain)), float(np.std(of_strain, ddof=1)) / np.sqrt(_PARTS)
+    lead = max(-float(np.mean([late(strain, tension, one) for one in parts])), 0.0)
+    is_sure = delay > max(_BEYOND * own, _OF_LEAD * lead)
+    return delay if is_sure and delay > _OF_STEP * median_step(time) else 0.0
+
+
+_MOST_ROWS, _FEWEST_ROWS = 50_000, 200
+
+_PARTS = 5  # of the log, whose scatter says how well a delay is known
+
+_DEGREE = 5
+
+_OUTLYING = 8.0  # median distances from the curve
+
+_BEYOND = 4.0  # standard uncertainties
+
+_OF_LEAD, _OF_STEP = 0.4, 0.5
 
 
 def lag_by_turns(

@@ -62,6 +62,15 @@ def test_a_buffer_that_a_logger_writes_twice_or_late_is_put_in_order():
         assert words in str(found.notes[0])
 
 
+def test_an_extensometer_that_drops_out_is_not_read_there():
+    strain = 0.01 * WAVE + RANDOM.normal(0, 1e-5, TIME.size)
+    lost = np.r_[350:354, 755:762]
+    strain[lost] = 0.0
+    found = flagged(record(measured_strain=strain[np.newaxis]))
+    assert np.flatnonzero(np.isnan(found.measured_strain[0])).tolist() == lost.tolist()
+    assert "11 readings of the extensometer jump away" in str(found.notes[0])
+
+
 @pytest.mark.parametrize("slip", [0.15, 0.3])
 def test_a_clock_that_slips_back_is_flagged_and_not_sorted(slip):
     time = TIME.copy()

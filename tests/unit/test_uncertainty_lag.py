@@ -7,7 +7,7 @@ from scipy.signal import lfilter
 from reduction.quantities.flags import LAG_REFUSALS
 from reduction.record.errors import DataError
 from reduction.stages import channel_lag as lag_module
-from reduction.stages.channel_lag import lag_by_turns
+from reduction.stages.channel_lag import delay_of_extensometer, lag_by_turns
 
 FINE, HALF, LAST = 0.002, 5.0, 118.0
 TURNS = np.arange(HALF, LAST, HALF)
@@ -148,3 +148,36 @@ def test_a_turn_beside_a_gap_of_days_is_left_out():
     whole = estimate(*log("elastic", lag=0.02))
     assert found.lag == pytest.approx(whole.lag, abs=5e-4)
     assert found.n_turns[0] < whole.n_turns[0]
+
+
+def stretch_with_extensometer(*, late=0.0, strop=0.0, shape="sine", lost=0, seed=3):
+    """A viscous specimen, and what else is stretched between the pins; one is truly late."""
+    time = np.arange(0, 120, 0.02)
+
+    def wave(at):
+        phase = 0.4 * at % 1
+        return np.sin(2 * np.pi * phase) if shape == "sine" else 1 - 4 * np.abs(phase - 0.5)
+
+    noise = np.random.default_rng(seed).normal(0, 1, (3, time.size))
+    strain = 0.5 + 0.2 * wave(time - late) + 1e-4 * noise[0]
+    before = 0.5 + 0.2 * wave(time)
+    tension = 100 * before + 40 * before**2 + 140 * 0.02 * np.gradient(before, time)
+    position = before + strop * tension / 140 + 1e-4 * noise[1]
+    strain[100 : 100 + lost] = 0.0
+    return delay_of_extensometer(
+        time, position, strain, tension + 0.2 * noise[2], np.ones(time.size)
+    )
+
+
+@pytest.mark.parametrize("shape", ["sine", "ramps"])
+def test_a_camera_that_is_late_is_told_from_damping(shape):
+    assert stretch_with_extensometer(late=0.03, shape=shape) == pytest.approx(0.03, rel=0.1)
+    assert stretch_with_extensometer(late=0.03, shape=shape, lost=11) == pytest.approx(
+        0.03, rel=0.1
+    )
+
+
+@pytest.mark.parametrize("shape", ["sine", "ramps"])
+@pytest.mark.parametrize("strop", [0.0, 0.3])
+def test_a_strop_in_series_makes_no_extensometer_late(strop, shape):
+    assert stretch_with_extensometer(strop=strop, shape=shape) == 0.0
