@@ -49,6 +49,7 @@ from reduction.stages.strain.zero_strain import (
     jumps_of_length,
     zero_at_slack,
     zero_at_tension,
+    zero_of_bent,
 )
 from reduction.stages.test_levels import TestLevels, levels_of_test
 from reduction.stages.three_parameter_line.rope_programme import tensile_pull
@@ -272,7 +273,12 @@ def _find_zero_strain(survey: Survey, located: Located, campaign: Campaign, plan
     for name, tension in zip(plan.specimens, located.tension, strict=True):
         reference = campaign.specimens[name].reference_tension or tension_of_layout
         if not reference:
-            survey.zero_strain[name] = at_slack
+            gauge = campaign.specimens[name].gauge_length
+            survey.zero_strain[name] = (
+                zero_of_bent(at_slack, located.position, tension, gauge_length=gauge)
+                if is_length and gauge
+                else at_slack
+            )
             continue
         survey.zero_strain[name] = zero_at_tension(
             located.position,

@@ -376,6 +376,12 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             )
         ),
     ),
+    "bent-at-rest": (
+        "note",
+        "in the first rest the pins are {length:.4g} m apart, closer than the gauge length, and the"
+        " specimen pulls from about that length on: it hangs bent there, and strain is zero at the"
+        " gauge length of {gauge:.4g} m",
+    ),
     "strain-from-tension": (
         "note",
         "strain is zero at the reference tension of {tension:.4g} N, for which the gauge length is"

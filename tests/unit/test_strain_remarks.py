@@ -6,13 +6,14 @@ import numpy as np
 import pytest
 
 from reduction.record.errors import DataError
-from reduction.record.measurement import SpliceMarks
+from reduction.record.measurement import Specimen, SpliceMarks
 from reduction.stages.strain.impossible_strain import (
     note_on_strain_below_zero,
     refuse_impossible_strain,
 )
-from reduction.stages.strain.strain_fit import _on_reading_time, _remarks_on
+from reduction.stages.strain.strain_fit import _on_reading_time, _remarks_on, _without_marks
 from reduction.stages.strain.strain_model import StrainModel
+from reduction.stages.strain.zero_strain import ZeroStrain, zero_of_bent
 
 L0 = 2.55
 READING = 0.00124  # sqrt(3) of it over 2.55 m is 0.084 points
@@ -149,3 +150,18 @@ def test_a_specimen_that_was_pushed_pulls_before_it_has_its_length_again(push, s
     tension = np.r_[-push + 100 * way[::-1], 20 + 100 * way]
     found = note_on_strain_below_zero(strain, tension, specimen="h", reference_tension=2.0)
     assert bool(found) is said
+
+
+@pytest.mark.parametrize(("begins", "zero"), [(0.5, 0.5), (0.45, 0.45)])
+def test_a_specimen_that_hangs_bent_at_rest_is_told_from_a_gauge_length_that_is_wrong(begins, zero):
+    # soft at first: 0.2 N/mm of 1.6 kN/m at the end
+    place = np.r_[np.full(300, 0.45), np.linspace(0.45, 0.8, 700)]
+    stretch = np.clip(place - begins, 0, None)
+    noise = np.random.default_rng(6).normal(0, 1, (2, place.size))
+    load = 200 * stretch + 2000 * stretch**2 + 0.1 * noise[0]
+    rest = ZeroStrain(0.45, is_logged=True)
+    found = zero_of_bent(rest, place + 1e-5 * noise[1], load, gauge_length=0.5)
+    assert found.position == zero
+    specimen = Specimen(name="t", kind="rubber tether", gauge_length=0.5)
+    said = [one.code for one in _without_marks(specimen, "gauge-length", found, None).notes]
+    assert ("bent-at-rest" in said) is (begins == 0.5)

@@ -1468,6 +1468,8 @@ def _without_marks(
     notes = [note("gauge-length-exact")] if spread is None else []
     if specimen.gauge_length is None:
         notes.append(note("gauge-length-from-reference", specimen.name, length=gauge))
+    if zero.bent_at is not None:
+        notes.append(note("bent-at-rest", specimen.name, length=zero.bent_at, gauge=gauge))
     if zero.reference_tension:
         notes.append(note("strain-from-tension", specimen.name, tension=zero.reference_tension))
         notes += _on_stated_zero(specimen.name, zero, gauge)

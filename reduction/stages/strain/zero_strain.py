@@ -18,8 +18,8 @@ import numpy as np
 
 from reduction.record.errors import DataError
 from reduction.record.measurement import Bools, Floats
-from reduction.record.samples import first_sample, last_sample, step_of_codes
-from reduction.stages.standstills import Standstills, noise_range
+from reduction.record.samples import finite_extremes, first_sample, last_sample, step_of_codes
+from reduction.stages.standstills import Standstills, estimate_noise, noise_range
 
 # of the reference tension to either side of it: a rope's curve is straight there
 _BAND = 0.2
@@ -35,6 +35,7 @@ class ZeroStrain:
     it from the log, ``compliance`` [m/N] how far it moves with the tension that it stands for,
     ``is_logged`` whether it is a position of the log itself, ``reference_tension`` [N] the
     tension there, zero at slack, and ``stated_position`` [m] where the layout has that tension.
+    ``bent_at`` [m] is the first rest of a specimen that is longer than it, and hangs bent.
     """
 
     position: float | None = None
@@ -43,6 +44,7 @@ class ZeroStrain:
     is_logged: bool = False
     reference_tension: float = 0.0
     stated_position: float | None = None
+    bent_at: float | None = None
 
 
 def zero_at_slack(
@@ -67,6 +69,44 @@ def zero_at_slack(
     if rests.size:
         return ZeroStrain(float(rests[0]), code_step / float(np.sqrt(12)), is_logged=True)
     return ZeroStrain(length_at_slack if position_is_length else 0.0)
+
+
+def zero_of_bent(
+    zero: ZeroStrain, position: Floats, tension: Floats, *, gauge_length: float
+) -> ZeroStrain:
+    """Zero at the gauge length where a specimen hangs bent in the first rest, with closer pins.
+
+    It pulls from about its own length on; one that is shorter than stated pulls as soon as it
+    leaves the rest.
+
+    Examples
+    --------
+    >>> place = np.linspace(0.45, 0.6, 500)
+    >>> rest = ZeroStrain(0.45, is_logged=True)
+    >>> for begins in (0.5, 0.45):
+    ...     pull = 900 * np.clip(place - begins, 0, None)
+    ...     print(zero_of_bent(rest, place, pull, gauge_length=0.5).position)
+    0.5
+    0.45
+    """
+    if not zero.is_logged or zero.position is None or not zero.position < gauge_length:
+        return zero
+    noise, step = estimate_noise(tension)
+    least = max(_PULLS * noise, 2 * step, _LEAST_PULL * finite_extremes(tension)[1])
+
+    def is_pull(part: slice) -> Bools:
+        return (tension[part] > least) & np.isfinite(position[part])
+
+    begins = first_sample(is_pull, 0, tension.size, tension, position)
+    taut = zero.position + _NEARER * (gauge_length - zero.position)
+    if begins is None or not position[begins] > taut:
+        return zero
+    return ZeroStrain(gauge_length, bent_at=zero.position)
+
+
+_PULLS, _LEAST_PULL = 6.0, 0.002  # noise of a reading; of the greatest load
+
+_NEARER = 0.7  # of the way from the rest to the gauge length
 
 
 def half_band_of(reference_tension: float, tension: Floats) -> float:
