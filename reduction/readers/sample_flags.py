@@ -799,7 +799,7 @@ def flag_record(
     _set(position_flag, _missing("crosshead_position", position), Quality.MISSING)
     _set(position_flag, timing.gap, Quality.GAP)
     _set(position_flag, timing.backward, Quality.REPEATED_OR_BACKWARD_TIME)
-    _set(position_flag, _spikes(position, settings), Quality.SPIKE)
+    _set(position_flag, _spikes(position, settings, record.time), Quality.SPIKE)
     if record.position_is_length:
         _set(position_flag, _no_length(position, position_flag), Quality.SPIKE)
     if "crosshead_position" in resampled:
@@ -812,7 +812,7 @@ def flag_record(
         stuck = _find_stuck(load, position, samples=settings.stuck_samples)
         _set(flags, stuck, Quality.STUCK)
         _set(flags, saturated, Quality.SATURATED, instead_of=Quality.STUCK)
-        _set(flags, _spikes(load, settings), Quality.SPIKE)
+        _set(flags, _spikes(load, settings, record.time), Quality.SPIKE)
         if f"tension.{index + 1}" in resampled:
             _set_all(flags, Quality.RESAMPLED)
 
@@ -856,7 +856,7 @@ def flag_record(
     ]
     strains = None if record.measured_strain is None else copied(record.measured_strain)
     for name, strain in zip(record.specimens, () if strains is None else strains, strict=False):
-        lost = _spikes(strain, settings)
+        lost = _spikes(strain, settings, record.time)
         if n_samples := count_samples(lost):
             strain[lost] = np.nan
             found.append(note("extensometer-drops-out", name, n_samples=n_samples))
@@ -908,9 +908,21 @@ def _missing(name: str, values: Floats) -> Bools:
     return missing
 
 
-def _spikes(values: Floats, settings: QualitySettings) -> Bools:
+def _spikes(values: Floats, settings: QualitySettings, time: Floats) -> Bools:
+    """Spikes, but for steps of a signal where a log goes on at another rate."""
     noise, _ = _noise_of(values)
-    return _find_spikes(values, noise=noise, factor=settings.spike_factor)
+    found = _find_spikes(values, noise=noise, factor=settings.spike_factor)
+    if count_samples(found):
+        rows = np.flatnonzero(found)
+        beside = rows[:, np.newaxis] + np.arange(-2 * _NEIGHBOURS, 2 * _NEIGHBOURS + 1)
+        stamps = take_samples(time, np.clip(beside, 0, time.size - 1))
+        # two of each: one long step alone is a gap
+        steps = np.sort(np.diff(stamps, axis=1), axis=1)
+        found[rows[steps[:, -2] > _OTHER_RATE * steps[:, 1]]] = False
+    return found
+
+
+_OTHER_RATE = 2.0
 
 
 def _lone_steps(record: Record, settings: QualitySettings) -> list[Note]:

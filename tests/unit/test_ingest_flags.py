@@ -62,6 +62,20 @@ def test_a_buffer_that_a_logger_writes_twice_or_late_is_put_in_order():
         assert words in str(found.notes[0])
 
 
+def test_no_spike_is_where_a_log_goes_on_at_another_rate():
+    # every tenth cycle of 2 s at 100 Hz and the others at 2 Hz
+    fine = np.arange(0, 200, 0.01)
+    time = fine[(fine % 20 < 2) | (np.arange(fine.size) % 50 == 0)]
+    place = -np.cos(np.pi * time) + RANDOM.normal(0, 1e-4, time.size)
+    load = 100 * np.exp(2 * place)
+    found = flagged(record(time=time, position=6 + place, load=load))
+    assert not where(found.quality_flag[0], Quality.SPIKE)
+    load = load.copy()
+    load[300] += 2000.0  # within a burst
+    found = flagged(record(time=time, position=6 + place, load=load))
+    assert where(found.quality_flag[0], Quality.SPIKE) == [300]
+
+
 def test_an_extensometer_that_drops_out_is_not_read_there():
     strain = 0.01 * WAVE + RANDOM.normal(0, 1e-5, TIME.size)
     lost = np.r_[350:354, 755:762]
