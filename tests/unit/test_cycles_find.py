@@ -185,6 +185,13 @@ def test_a_cycle_in_which_a_generator_starts_again_is_left_out_and_counted(wavef
                for note in cycles.notes)  # fmt: skip
 
 
+def test_a_file_of_peaks_and_valleys_is_called_so():
+    time = np.arange(0, 200.0)
+    with pytest.raises(DataError, match="greatest and least value of each cycle") as refused:
+        find(time, 4.2 + 0.1 * (-1) ** time)
+    assert "saturated" not in str(refused.value)
+
+
 def test_a_level_that_is_another_is_counted():
     time, position = path(back([*LEAD, *strokes(50, 20)]))
     low = np.where(time < 70, 0.6, 1.0)

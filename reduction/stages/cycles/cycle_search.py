@@ -790,10 +790,17 @@ _CUT_OFF = 0.03  # of the samples, at the top of the range: a sine has 2 % of th
 
 _AT_TOP = 1e-3  # of the range
 
+_AT_TURNS = 0.9  # of the readings
+
 
 def _hint(time: Floats, values: Floats) -> str:
     """What to look at where no cycle is found; a log may be too coarse, or cut off at a value."""
     step = median_step(time)
+    if values.size > FEWEST_SAMPLES and _turning_points(values).size > _AT_TURNS * values.size:
+        return (
+            "Nearly every reading is a turn: the log holds the greatest and least value of each"
+            " cycle. Loops and moduli need the readings between: take the log that was not thinned."
+        )
     top = float(np.nanmax(values))
     share = float(np.mean(values > top - _AT_TOP * (top - float(np.nanmin(values)))))
     cut_off = (
