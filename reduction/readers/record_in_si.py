@@ -371,15 +371,23 @@ def _check_slip(piece: _Piece, last: int, top: float) -> None:
     if after.size <= _RESTART_SAMPLES or after[-1] >= top or not np.all(np.diff(after) > 0):
         return
     place = piece.place_of(last + 1, "time")
+    step = float(after[1] - after[0])
+    wraps = [one for one in _WRAPS if 0 <= one - time[last] < 2 * step and 0 <= after[0] < 2 * step]
     raise DataError(
         "the log has two time bases: time starts again",
         found=f"{after[0]:g} s after {time[last]:g} s"
         + ("" if place else f" at {piece.row_of(last + 1)}"),
         needed="one time that goes on",
-        hint="Split the log, and give each part a test of its own.",
+        hint=f"Its clock begins again every {wraps[0]:g} s: add that much to the time of all later "
+        "rows, each time that it does."
+        if wraps
+        else "Split the log, and give each part a test of its own.",
         **place,
     )
 
+
+# a minute, an hour, and counters of 16 bits in ms, of 32 bits in us and ms
+_WRAPS = (60.0, 65.536, 3600.0, 4294.967296, 4294967.296)
 
 _WORKERS = 4
 

@@ -330,6 +330,12 @@ def test_pieces_with_other_channels_are_refused():
         convert((log(), layout()), (later, layout(channels(cycle_counter={}))))
 
 
+def test_a_counter_that_wraps_is_told_from_two_time_bases():
+    wraps = np.arange(TIME.size) * 0.5 % 65.536
+    with pytest.raises(DataError, match=r"begins again every 65\.536 s: add that much"):
+        convert((log({"time": wraps}), layout()))
+
+
 def test_time_that_starts_again_is_two_time_bases():
     again = np.concatenate([TIME[:150], TIME[:50]])
     with pytest.raises(
