@@ -12,7 +12,7 @@ import re
 import tempfile
 import tomllib
 import zipfile
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from xml.etree import ElementTree
 
 import h5py
@@ -53,6 +53,14 @@ class Reading:
     gauge_length: float | None
     marks: tuple[tuple[str, float, float, float], ...] = ()
     results: tuple[float, ...] = ()
+
+    def in_order(self):
+        """Rows by their time, each that stands there twice once."""
+        rows = np.array([self.time, self.position, self.tension]).T
+        rows = rows[np.argsort(rows[:, 0], kind="stable")]
+        is_new = np.append(True, np.any(rows[1:] != rows[:-1], axis=1))
+        time, position, tension = rows[is_new].T
+        return replace(self, time=time, position=position, tension=tension)
 
 
 def factor_of(unit):

@@ -722,7 +722,7 @@ def _in_order(record: Record) -> tuple[Record, Integers | None]:
     if not steps.size or steps.min() < _EVEN * np.median(steps):
         return record, None
     n_moved = int(np.count_nonzero(np.diff(rows) < 0))
-    said = note("rows-sorted", n_twice=time.size - rows.size, n_moved=n_moved)
+    said = note("rows-sorted", n_rows=time.size, n_twice=time.size - rows.size, n_moved=n_moved)
     at_rows = _at_rows(record, rows) | {
         "crosshead_position": take_samples(record.crosshead_position, rows),
         "tension": take_samples(record.tension, rows),

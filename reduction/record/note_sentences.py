@@ -121,8 +121,11 @@ _OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "rows-sorted": (
         "note",
-        lambda n_twice, n_moved: (
-            "the rows of the log are not in order of time: "
+        lambda n_rows, n_twice, n_moved: (
+            "the log was written newest first, so that its time falls: its rows are taken from the"
+            " last to the first"
+            if n_moved == n_rows - n_twice - 1
+            else "the rows of the log are not in order of time: "
             + ", ".join(
                 [f"{n_twice} that it has twice are left out"] * bool(n_twice)
                 + [f"they are sorted (time goes back at {n_moved} of them)"] * bool(n_moved)

@@ -229,11 +229,13 @@ def test_the_uncertainty_of_the_length_scales_every_strain_of_a_comparison(run):
     )
     measured = of_test.comparison.measured
     # what the layout says of a reading of 0.02 in or 5 lbf is no error that samples share
-    assert [one.source for one in measured.component] == ["strain_calibration"]
-    assert [one.of for one in measured.component] == ["hose-64, gauge-length"]
-    # a length that is 0.05 in of 96 in too great makes every strain too small
-    (error,) = measured.strain_error
-    np.testing.assert_allclose(np.abs(error), 0.05 / 96 * measured.strain, rtol=1e-6, atol=1e-12)
+    assert [one.source for one in measured.component] == ["strain_calibration"] * 2
+    assert {one.of for one in measured.component} == {"hose-64, gauge-length"}
+    # a length that is 0.05 in of 96 in too great makes every strain too small, and a zero that is
+    # logged to 0.001 in shifts them all
+    shift, scale = sorted(np.abs(measured.strain_error), key=lambda one: one[-1])
+    np.testing.assert_allclose(scale, 0.05 / 96 * measured.strain, rtol=1e-6, atol=1e-12)
+    np.testing.assert_allclose(shift, 0.001 / np.sqrt(12) / 96, rtol=1e-6)
 
 
 @pytest.mark.nightly

@@ -216,9 +216,8 @@ _LEAST_JUMP, _CODES = 0.002, 3.5  # of the range of length, and steps in which i
 
 _IN_STEP = 3.5  # usual steps of time: in a longer gap a line may creep as far
 
-_ANSWER = (
-    0.1  # share of a jump that the load may answer: a line that is stretched answers all of it
-)
+# share of a jump that the load may answer: a line that is stretched answers all of it
+_ANSWER = 0.1
 
 
 def jumps_of_length(
@@ -264,20 +263,23 @@ def jumps_of_length(
     t, x, load = time[known], length[known], tension[known]
     reach, pull = float(np.ptp(x)), float(np.ptp(load))
     step = np.diff(x)
-    far = np.flatnonzero(np.abs(step) > max(_LEAST_JUMP * reach, _CODES * step_of_codes(x)))
+    size_of_step = np.abs(step)
+    far = np.flatnonzero(size_of_step > max(_LEAST_JUMP * reach, _CODES * step_of_codes(x)))
+    far = far[(far >= _BESIDE_JUMP) & (far < step.size - _BESIDE_JUMP)]
+    for beside in range(1, _BESIDE_JUMP):  # the nearest first: next to none of many are left
+        for way in (-beside, beside):
+            far = far[size_of_step[far] > _JUMP * size_of_step[far + way]]
     found = []
-    for place in far[(far >= _BESIDE_JUMP) & (far < step.size - _BESIDE_JUMP)].tolist():
+    for place in far.tolist():
         before, after = (
             slice(place + 1 - _BESIDE_JUMP, place + 1),
             slice(place + 1, place + 1 + _BESIDE_JUMP),
         )
         size = float(np.median(x[after]) - np.median(x[before]))
-        others = np.abs(np.delete(step[before.start : after.stop - 1], _BESIDE_JUMP - 1))
         waits = np.diff(t[before.start : after.stop])
         answered = abs(float(np.median(load[after]) - np.median(load[before])))
         if (
-            abs(step[place]) > _JUMP * others.max()
-            and waits[_BESIDE_JUMP - 1] <= _IN_STEP * np.median(waits)
+            waits[_BESIDE_JUMP - 1] <= _IN_STEP * np.median(waits)
             and abs(size - step[place]) < abs(step[place]) / 2
             and answered < _ANSWER * pull * abs(size) / reach
             and min(load[before].min(), load[after].min()) > slack_tension
