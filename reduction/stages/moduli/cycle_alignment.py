@@ -13,8 +13,8 @@ References
 from __future__ import annotations
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.ndimage import maximum_filter1d
 
 from reduction.record.errors import DataError
 from reduction.record.measurement import Floats
@@ -138,7 +138,9 @@ def jump_of_mean(
         return None
     found = [
         _one_jump(place, change, lasts, rate)
-        for place in np.flatnonzero(rate == maximum_filter1d(rate, 2 * _BESIDE_JUMP + 1)).tolist()
+        for place in np.flatnonzero(
+            rate == scipy.ndimage.maximum_filter1d(rate, 2 * _BESIDE_JUMP + 1)
+        ).tolist()
         if _AROUND_JUMP <= place < rate.size - _AROUND_JUMP
     ]
     if not found:
