@@ -382,7 +382,8 @@ def _of_length(
     if not survey.extremes.position_is_length:
         length = survey.reference_length or np.nan
     gauge = model.coefficients.get("gauge_length", np.nan)
-    is_bent = survey.zero_strain[name].bent_at is not None if name in survey.zero_strain else False
+    zero = survey.zero_strain.get(name)
+    is_bent = zero is not None and zero.bent_at is not None
     if model.method == "gauge-length" and survey.extremes.position_is_length and not is_bent:
         is_hose = campaign.specimens[name].kind == "stretch hose"  # measured from flange to flange
         if gauge > _LONGER * length or gauge < (_OF_HOSE if is_hose else 1 / 3) * length:

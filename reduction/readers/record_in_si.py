@@ -378,8 +378,8 @@ def _check_slip(piece: _Piece, last: int, top: float) -> None:
         found=f"{after[0]:g} s after {time[last]:g} s"
         + ("" if place else f" at {piece.row_of(last + 1)}"),
         needed="one time that goes on",
-        hint=f"Its clock begins again every {wraps[0]:g} s: add that much to the time of all later "
-        "rows, each time that it does."
+        hint=f"The clock restarts every {wraps[0]:g} s: at each restart, add that much to the time "
+        "of all later rows."
         if wraps
         else "Split the log, and give each part a test of its own.",
         **place,

@@ -362,8 +362,8 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "warning",
         lambda what, size, unit, time: (
             f"{what} jumps by {100 * size if unit == '%' else size:+.3g} {unit} at {time:g} s, and"
-            " the tension does not follow: it was set to zero again, or slipped. Strain after it is"
-            " off by as much; amplitudes and EA are not. Take the jump out of the log"
+            " the tension does not follow: it was reset, or something slipped. Strain after the"
+            " jump is off by that much; amplitudes and EA are not affected. Remove it from the log"
         ),
     ),
     "strain-below-zero": (
@@ -381,9 +381,9 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "bent-at-rest": (
         "note",
-        "in the first rest the pins are {length:.4g} m apart, closer than the gauge length, and the"
-        " specimen pulls from about that length on: it hangs bent there, and strain is zero at the"
-        " gauge length of {gauge:.4g} m",
+        "at the first rest the pins are {length:.4g} m apart, less than the gauge length, and the"
+        " specimen begins to pull near that: it hangs slack and bent at the rest, and strain is"
+        " zero at the gauge length of {gauge:.4g} m",
     ),
     "strain-from-tension": (
         "note",
@@ -499,8 +499,8 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "cycles-by-turns": (
         "warning",
-        "of some {n_moves} cycles only {n_cycles}, until {time:g} s, are logged without gaps, and"
-        " all results are of these: none of cycles of which the log has peaks and valleys alone",
+        "only {n_cycles} of about {n_moves} cycles, up to {time:g} s, are logged without gaps. All"
+        " results are from these; cycles logged only by their peaks and valleys are not used",
     ),
     "cycles-of-two-amplitudes": (
         "note",
@@ -509,10 +509,9 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "cycles-of-other-length": (
         "note",
         lambda n_cycles, time: (
-            f"{n_cycles} cycle{'s' * (n_cycles > 1)} within the row"
-            f" last{'s' * (n_cycles == 1)} otherwise than the others, first at {time:g} s, and"
-            f" {'is' if n_cycles == 1 else 'are'} left out: the machine waited there, or its"
-            " function generator was started again"
+            f"{n_cycles} cycle{'s' * (n_cycles > 1)} differ{'s' * (n_cycles == 1)} in length from"
+            f" the others, first at {time:g} s, and {'is' if n_cycles == 1 else 'are'} left out:"
+            " the machine paused there, or its function generator was restarted"
         ),
     ),
     "cycles-of-starting-machine": (
@@ -654,8 +653,8 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "pushed-in-cycles": (
         "warning",
         "the specimen is pushed in the cycles (down to {least:.4g} N, median): amplitudes and"
-        ' energies include that part. A specimen that bears it is of kind "other"; in one that'
-        " cannot push the zero of the load is wrong",
+        ' energies include that part. If it can carry compression, state kind = "other"; if it'
+        " cannot, the zero of the load is wrong",
     ),
     "no-snap-loads": (
         "note",
@@ -1442,14 +1441,15 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "extensometer-drops-out": (
         "note",
-        "{n_samples} readings of the extensometer jump away and back at once: they are not used. A"
-        " value that it writes where it reads none belongs in the missing marks of the layout",
+        "{n_samples} readings of the extensometer jump away and back at once and are not used. If"
+        " it writes a fixed value where it loses its target, declare that as a missing mark in the"
+        " layout",
     ),
     "extensometer-late": (
         "warning",
-        "the extensometer follows the crosshead {step:.3g} s late, as a camera does, and more than"
-        " the damping of the specimen explains: loops are too wide by that. It is in the interval"
-        " as a lag; correct the time stamps of the channel (time_column)",
+        "the extensometer lags the crosshead by {step:.3g} s, as a camera does, more than the"
+        " damping of the specimen explains: it widens the loops. The interval includes it as a lag;"
+        " correct the time stamps of the channel (time_column)",
     ),
     "extensometer-ends": (
         "warning",

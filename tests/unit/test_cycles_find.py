@@ -181,7 +181,7 @@ def test_a_cycle_in_which_a_generator_starts_again_is_left_out_and_counted(wavef
     np.testing.assert_allclose(lengths, 10.0, atol=0.25)
     # the machine ran on: its number is that of the cycle
     assert np.setdiff1d(np.arange(1, cycles.number[-1] + 1), cycles.number).size == 1
-    assert any("1 cycle within the row lasts otherwise than the others" in str(note)
+    assert any("1 cycle differs in length from the others" in str(note)
                for note in cycles.notes)  # fmt: skip
 
 
@@ -300,7 +300,7 @@ def test_cycles_of_which_the_log_has_the_turns_alone_are_told(n_close, is_told):
     assert cycles.n_cycles == n_close
     told = [str(one) for one in cycles.notes if one.code == "cycles-by-turns"]
     assert bool(told) == is_told
-    assert not told or (f"only {n_close}, until 90 s" in told[0] and "some 2" in told[0])
+    assert not told or (f"only {n_close} of about 2" in told[0] and "up to 90 s" in told[0])
 
 
 def test_a_short_gap_does_not_end_a_run(twenty):
