@@ -257,10 +257,11 @@ def jumps_of_length(
     >>> print([(float(when), round(size, 4)) for when, size in found])
     [(120.0, -0.02)]
     """
-    known = np.flatnonzero(np.isfinite(length) & np.isfinite(tension))
-    if known.size < 4 * _BESIDE_JUMP:
+    known = np.isfinite(length) & np.isfinite(tension)
+    if np.count_nonzero(known) < 4 * _BESIDE_JUMP:
         return []
-    t, x, load = time[known], length[known], tension[known]
+    # most records lack none, and need no copy
+    t, x, load = (one if known.all() else one[known] for one in (time, length, tension))
     reach, pull = float(np.ptp(x)), float(np.ptp(load))
     step = np.diff(x)
     size_of_step = np.abs(step)
