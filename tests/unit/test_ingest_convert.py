@@ -332,7 +332,9 @@ def test_pieces_with_other_channels_are_refused():
 
 def test_a_counter_that_wraps_is_told_from_two_time_bases():
     wraps = np.arange(TIME.size) * 0.5 % 65.536
-    with pytest.raises(DataError, match=r"restarts every 65\.536 s: at each restart, add that much"):
+    with pytest.raises(
+        DataError, match=r"restarts every 65\.536 s: at each restart, add that much"
+    ):
         convert((log({"time": wraps}), layout()))
 
 
