@@ -241,6 +241,7 @@ class CampaignPage:
         paths = sorted(archives_of_tests(processed), key=lambda path: natural_order(path.stem))
         self._keys = {path: f"test-{index}" for index, path in enumerate(paths)}
         self._tests: list[TestView] = []
+        self._known: dict[str, str] = {}
         self._starts: dict[str, float] = {}
         self._rendered: dict[str, RenderedSection] = {}
         self._scratch = ScratchTexts()
@@ -262,7 +263,7 @@ class CampaignPage:
                 self._sections[view.key] = section
             self._starts[view.key] = view.start_time
             view = view.without_samples()
-            self._tests.append(view.of_campaign() if self._details is None else view)
+            self._tests.append(view.of_campaign(self._known) if self._details is None else view)
         except ArchiveError as error:
             # the page is the same wherever the archives lie
             self._not_shown[path.name] = str(error).replace(str(path), path.name)

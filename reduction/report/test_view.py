@@ -266,8 +266,11 @@ class TestView:
         ]
         return replace(self, data=in_memory(self.data.drop_vars(left_out)))
 
-    def of_campaign(self) -> TestView:
-        """Return the same test without what its own section alone shows: most of its numbers."""
+    def of_campaign(self, known: dict[str, str]) -> TestView:
+        """Return the same test without what its own section alone shows: most of its numbers.
+
+        Texts that tests before it have, which ``known`` holds, are not kept once more.
+        """
         left_out = _OF_SECTION + (_OF_CYCLES if self.n_cycles else ())
         left_out += () if self.has_rope else _OF_HOLDS
         own = [
@@ -276,7 +279,7 @@ class TestView:
             # numbers of a whole test are those of a run of an experiment
             if not name.startswith("test_") and any(one in name for one in left_out)
         ]
-        return replace(self, data=_one_row_a_source(self.data.drop_vars(own)))
+        return replace(self, data=_shared(_one_row_a_source(self.data.drop_vars(own)), known))
 
     def at_cycles(self, name: str, places: Integers) -> TestView:
         """Return one number of some cycles, counted from 0, with what its uncertainty rests on."""
@@ -308,6 +311,27 @@ def _one_row_a_source(data: xr.Dataset) -> xr.Dataset:
             sums = np.sqrt(np.add.reduceat(variable.values**2, first))
             found[name].values[is_sum] = sums[is_sum]
     return xr.Dataset(found, attrs=data.attrs)
+
+
+def _shared(data: xr.Dataset, known: dict[str, str]) -> xr.Dataset:
+    """Return an archive whose texts are those of ``known``, where another test had them before.
+
+    Of attributes it keeps those that pages read.
+    """
+    found = {}
+    for name, variable in data.variables.items():
+        values = variable.values
+        if values.dtype.kind == "O":
+            values = values.copy()
+            values.flat = [known.setdefault(one, one) for one in values.flat]
+        attributes = {
+            key: known.setdefault(value, value) if isinstance(value, str) else value
+            for key, value in variable.attrs.items()
+            if key == "units" or str(key).startswith("flag_")
+        }
+        found[name] = xr.Variable(variable.dims, values, attributes or None, fastpath=True)
+    texts = {name: known.setdefault(one, one) for name, one in data.attrs.items()}
+    return xr.Dataset(found, attrs=texts)
 
 
 def all_specimens(tests: Sequence[TestView]) -> list[str]:

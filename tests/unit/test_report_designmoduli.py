@@ -219,7 +219,7 @@ def pulled(kind="quasi-static", *, of="rubber tether", **more):
 
 
 def test_a_pull_has_its_end_and_the_stiffness_half_way_there():
-    table = pull_table([pulled().without_samples().of_campaign()])
+    table = pull_table([pulled().without_samples().of_campaign({})])
     assert table.columns[3:7] == (
         "strain [%]", "load [N]", "EA at half the strain [N]", "modulus there [MPa]",
     )  # fmt: skip

@@ -186,7 +186,7 @@ def test_figures_draw_what_has_a_number(ropes):
 
 
 def test_what_a_page_keeps_of_a_test_is_enough_for_the_figures_and_tables_of_its_rope(ropes):
-    kept = {name: view.of_campaign() for name, view in views().items()}
+    kept = {name: view.of_campaign({}) for name, view in views().items()}
     (of_kept, _) = view_ropes(dataset(), kept, "si")
     for draw in (draw_stiffness, draw_held_pairs, draw_creep):
         assert repr([one.data for one in draw(of_kept)]) == repr(
