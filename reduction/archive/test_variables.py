@@ -645,6 +645,7 @@ def stepwise_values(result: StepwiseResult) -> Values:
     flags = {
         "length_and_elongation_disagree": result.is_inconsistent,
         "creep": result.is_creep,
+        "off_its_neighbours": result.is_odd,
     }
     shape, reading = result.strain.shape, result.length_standard_uncertainty
     return {

@@ -716,7 +716,7 @@ def load_campaign(path: Path, *, allow_remote: bool = False, text: str | None = 
     Parameters
     ----------
     path : pathlib.Path
-        The campaign.toml.
+        The campaign.toml, or its folder.
     allow_remote : bool
         Whether the log of a test may be an address on the net. Nothing is fetched here:
         `reduction.campaign.load.staged_campaign` does.
@@ -736,6 +736,8 @@ def load_campaign(path: Path, *, allow_remote: bool = False, text: str | None = 
     LogError
         If a file that it names is missing or cannot be read.
     """
+    if path.is_dir():
+        path /= "campaign.toml"
     with noting_small_files() as digests:
         campaign = _load(path, allow_remote=allow_remote, text=text)
     folder = path.parent.resolve()

@@ -104,6 +104,7 @@ def _steps(dataset: xr.Dataset, random: Floats) -> StepwiseResult:
         gauge_length_standard_uncertainty=number("relaxed_gauge_length_standard_uncertainty"),
         is_inconsistent=(flags & STEP_MASKS["length_and_elongation_disagree"]) > 0,
         is_creep=(flags & STEP_MASKS["creep"]) > 0,
+        is_odd=(flags & STEP_MASKS["off_its_neighbours"]) > 0,
         interval_strain=series("interval_strain"),
         interval_modulus=series("interval_modulus"),
         interval_modulus_standard_uncertainty=series("interval_modulus_standard_uncertainty"),

@@ -400,7 +400,7 @@ def piece_of_steps(
     --------
     See `tests/unit/test_lookup_staticpiece.py`, which reads Table 4 of [2]_.
     """
-    kept = (steps.branch == BRANCH_VALUES[branch]) & ~steps.is_inconsistent
+    kept = (steps.branch == BRANCH_VALUES[branch]) & ~steps.is_inconsistent & ~steps.is_odd
     with np.errstate(invalid="ignore", divide="ignore"):
         share = steps.secant_modulus_standard_uncertainty / steps.secant_modulus
     order = np.flatnonzero(kept & (steps.strain > 0) & (steps.tension > 0))

@@ -41,7 +41,7 @@ LINE_REFUSALS = {
 
 LINE_METHODS = {"not_given": 0, "linear": 1, "monte_carlo": 2}
 
-STEP_MASKS = {"length_and_elongation_disagree": 1, "creep": 2}
+STEP_MASKS = {"length_and_elongation_disagree": 1, "creep": 2, "off_its_neighbours": 4}
 
 HOSE_STATES = {"slack": 1, "broken": 2, "jammed": 4, "bore_too_small": 8}
 

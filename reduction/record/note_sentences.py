@@ -882,6 +882,30 @@ _OF_MODULI: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             f" {1e3 * growth:+.1f} mm: this is creep, not elastic strain"
         ),
     ),
+    "reading-again": (
+        "note",
+        lambda elapsed, growth: (
+            f"read again after {elapsed / 60:.0f} min under the same weight: {1e3 * growth:+.1f} mm"
+        ),
+    ),
+    "reading-of-odd-weight": (
+        "warning",
+        "a weight of {weight:.5g} N is far from those before and after it, while the length goes on"
+        " as without it; the row gives no modulus. Check the weight",
+    ),
+    "reading-of-odd-length": (
+        "warning",
+        lambda length, expected: (
+            f"a length of {1e3 * length:.1f} mm is {abs(1e3 * (length - expected)):.0f} mm"
+            f" {'more' if length > expected else 'less'} than the readings beside it lead to; the"
+            " row gives no modulus. Check the weight and the length"
+        ),
+    ),
+    "one-slope-of-weights": (
+        "refusal",
+        "no modulus given: one slope between two readings says nothing of the modulus at a strain."
+        " Read the length under at least three weights",
+    ),
 }  # fmt: skip
 
 _OF_HOLDS: dict[str, tuple[Severity, str | Callable[..., str]]] = {

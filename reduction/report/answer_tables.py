@@ -352,8 +352,12 @@ def _rise(view: TestView, place: int) -> tuple[Floats, _Series, _Series, bool] |
     weights, middles = series("interval_modulus"), view.array("interval_strain")
     if weights is not None and middles is not None:
         rising = view.array_like("interval_branch", middles) == 1
-        strains, loads = (view.array_like(key, np.zeros(0)) for key in ("strain", "tension"))
-        top = np.nanargmax(loads)
+        strains, loads, secants = (
+            view.array_like(key, np.zeros(0)) for key in ("strain", "tension", "secant_modulus")
+        )
+        # a reading without a secant is one that others contradict
+        is_sound = np.isfinite(secants) if np.isfinite(secants).any() else np.isfinite(loads)
+        top = np.argmax(np.where(is_sound, loads, -np.inf))
         at = np.append(middles[rising], strains[top])
         load = np.append(np.full(at.size - 1, np.nan), loads[top])
         slope = (

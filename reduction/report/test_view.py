@@ -322,16 +322,16 @@ def _shared(data: xr.Dataset, known: dict[str, str]) -> xr.Dataset:
     for name, variable in data.variables.items():
         values = variable.values
         if values.dtype.kind == "O":
-            values = values.copy()
-            values.flat = [known.setdefault(one, one) for one in values.flat]
+            texts = [known.setdefault(one, one) for one in values.ravel()]
+            values = np.array(texts, dtype=object).reshape(values.shape)
         attributes = {
             key: known.setdefault(value, value) if isinstance(value, str) else value
             for key, value in variable.attrs.items()
             if key == "units" or str(key).startswith("flag_")
         }
         found[name] = xr.Variable(variable.dims, values, attributes or None, fastpath=True)
-    texts = {name: known.setdefault(one, one) for name, one in data.attrs.items()}
-    return xr.Dataset(found, attrs=texts)
+    about = {name: known.setdefault(one, one) for name, one in data.attrs.items()}
+    return xr.Dataset(found, attrs=about)
 
 
 def all_specimens(tests: Sequence[TestView]) -> list[str]:

@@ -559,6 +559,7 @@ def stepwise_test():
             gauge_length_standard_uncertainty=0.0002,
             is_inconsistent=np.array([False, True, False]),
             is_creep=np.array([False, True, True]),
+            is_odd=np.array([False, False, True]),
             interval_strain=np.array([0.12, 0.17]),
             interval_modulus=np.array([np.nan, 8e5]),
             interval_modulus_standard_uncertainty=array(rng, 2),

@@ -56,6 +56,12 @@ def test_defaults_fill_what_a_test_leaves_out(folder):
     assert campaign.specimens["a"].mean_diameter == pytest.approx(1.1 * 0.0254)
 
 
+def test_a_folder_stands_for_its_campaign(folder):
+    load(folder, BASE + TEST)
+    assert load_campaign(folder).path == folder / "campaign.toml"
+    assert list(load_campaign(folder).tests) == ["T"]
+
+
 def test_reference_tension_may_be_a_share_of_the_specimen_s_own_strength(folder):
     stated = 'gauge_length = "2 m"\nreference_tension = "2 %RBS"\n'
     strong = BASE.replace("[layouts.l]", stated + 'rated_break_strength = "30 kN"\n[layouts.l]')

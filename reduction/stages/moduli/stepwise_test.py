@@ -30,6 +30,17 @@ _ASCENDING, _DESCENDING = 1, 2
 # robust standard deviations beyond which a row disagrees with the others
 _INCONSISTENT = 5.0
 
+# steps of weight by which a weight is beyond both neighbours that was not hung
+_FAR_BEYOND = 2.0
+
+# a curvature that is extrapolated by half an interval may be this much more
+_AT_ENDS = 2.0
+
+# by which the slopes at a reading differ more than those beside them where it is odd
+_ODD_SLOPES = 2.0
+
+_FEWEST = 5  # readings: four slopes
+
 _MAD_TO_DEVIATION = 1.4826
 
 _MEDIAN_TO_MEAN = sqrt(pi / 2)
@@ -152,6 +163,100 @@ def _interval_slopes(
     return (elongation[:-1] + elongation[1:]) / 2, modulus, uncertainty
 
 
+def _curvature_error(
+    strain: Floats, width: Floats, modulus: Floats, branch: Integers
+) -> tuple[Floats, bool]:
+    r"""How far slopes between readings may be from those at the middles, and whether that is known.
+
+    .. math:: E_\mathrm{chord} - E(\bar\varepsilon) = \frac{E''}{24} (\Delta\varepsilon)^2
+
+    Notes
+    -----
+    The largest :math:`E''` is taken that three slopes in a row show of the branch, and twice that
+    at its ends; that of the other branch where it has fewer.  Where neither has three,
+    :math:`E'' \Delta\varepsilon = 2 E'`, which a modulus has that doubles within an interval.  A
+    single slope says nothing of a curve.
+
+    Examples
+    --------
+    Stress as the cube of strain: :math:`E'' = 6`.
+
+    >>> ends = np.array([0.0, 0.2, 0.4, 0.6])
+    >>> error, _ = _curvature_error(ends[:-1] + 0.1, np.diff(ends), np.diff(ends**3) / 0.2,
+    ...     np.ones(3, dtype=int))
+    >>> print(error.round(6))
+    [0.02 0.01 0.02]
+    """
+    second, rough = np.full(strain.shape, np.nan), [0.0]
+    is_known = False
+    for way in (_ASCENDING, _DESCENDING):
+        own = np.flatnonzero((branch == way) & np.isfinite(modulus))
+        own = own[np.unique(strain[own], return_index=True)[1]]
+        if own.size < 2:
+            continue
+        is_known = True
+        slope = np.diff(modulus[own]) / np.diff(strain[own])
+        rough.append(float(np.abs(2 * slope / np.diff(strain[own])).max()))
+        bend = 2 * np.abs(np.diff(slope)) / (strain[own[2:]] - strain[own[:-2]])
+        for place in range(3):
+            of_three = own[place : place + bend.size]
+            second[of_three] = np.fmax(second[of_three], bend)
+        second[own[[0, -1]]] *= _AT_ENDS
+    known = second[np.isfinite(second)]
+    of_others = known.max() if known.size else max(rough)
+    return np.where(np.isfinite(second), second, of_others) * width**2 / 24, is_known
+
+
+def _find_odd_weights(tension: Floats, length: Floats) -> Bools:
+    """Weights far beyond both neighbours while the length goes on as without them.
+
+    Examples
+    --------
+    1250 in place of 125 lb:
+
+    >>> print(_find_odd_weights(np.array([75.0, 100, 1250, 150]), np.array([1.2, 1.4, 1.6, 1.8])))
+    [False False  True False]
+    """
+    between = np.sort([tension[:-2], tension[2:]], axis=0)
+    step, growth = np.diff(between, axis=0)[0], np.diff(length)
+    beyond = np.maximum(tension[1:-1] - between[1], between[0] - tension[1:-1])
+    goes_on = (growth[1:] * growth[:-1] > 0) & (
+        (tension[2:] - tension[:-2]) * (growth[1:] + growth[:-1]) > 0
+    )
+    return np.concatenate([[False], goes_on & (beyond > _FAR_BEYOND * step), [False]])
+
+
+def _find_odd_lengths(tension: Floats, length: Floats, branch: Integers) -> Bools:
+    """Lengths that make the slope before them less, and that after them more, than all around.
+
+    A curve that stiffens or softens has the slopes at a reading between those beside them.
+
+    Examples
+    --------
+    The fourth length is half a step too long:
+
+    >>> weight, length = np.arange(6.0), np.array([1.0, 1.2, 1.4, 1.7, 1.8, 2.0])
+    >>> print(_find_odd_lengths(weight, length, np.ones(6, dtype=int)))
+    [False False False  True False False]
+    """
+    is_odd = np.zeros(length.shape, dtype=bool)
+    if length.size < _FEWEST:
+        return is_odd
+    with np.errstate(divide="ignore", invalid="ignore"):
+        slope = np.diff(tension) / np.diff(length)
+    four = np.lib.stride_tricks.sliding_window_view(slope, 4)
+    outer, inner = np.sort(four[:, [0, 3]]), np.sort(four[:, [1, 2]])
+    is_one_branch = np.ptp(np.lib.stride_tricks.sliding_window_view(branch, 5), axis=1) == 0
+    is_odd[2:-2] = (
+        is_one_branch
+        & (np.isfinite(four) & (four > 0)).all(axis=1)
+        & (inner[:, 0] < outer[:, 0])
+        & (inner[:, 1] > outer[:, 1])
+        & (inner[:, 1] * outer[:, 0] > _ODD_SLOPES * outer[:, 1] * inner[:, 0])
+    )
+    return is_odd
+
+
 @dataclass(frozen=True)
 @read_only_arrays
 class StepwiseResult:
@@ -180,10 +285,13 @@ class StepwiseResult:
         Recorded elongation and length disagree by more than reading error.
     is_creep : ndarray of bool
         Length grew while tension fell, shrank while it rose, or changed at one weight.
+    is_odd : ndarray of bool
+        Weight or length is far from where the readings before and after it lead.
     interval_strain, interval_modulus, interval_modulus_standard_uncertainty : ndarray, (n_steps-1,)
         Middle of each interval between readings [1] and its slope [Pa]; NaN where
-        an end is inconsistent, the length creeps against the weight, or the
-        weights turn. Uncertainty of the readings alone; neighbours share one.
+        an end is inconsistent or odd, the length creeps against the weight, the weights
+        turn, or the slope is the only one. Uncertainty of the readings, of which neighbours
+        share one, and of the slope as the modulus at the middle.
     interval_branch : ndarray of int, shape (n_steps-1,)
         1 ascending, 2 descending, 0 where the weights turn.
     secant_modulus, secant_modulus_standard_uncertainty : ndarray
@@ -209,6 +317,7 @@ class StepwiseResult:
     gauge_length_standard_uncertainty: float
     is_inconsistent: Bools
     is_creep: Bools
+    is_odd: Bools
     interval_strain: Floats
     interval_modulus: Floats
     interval_modulus_standard_uncertainty: Floats
@@ -272,6 +381,36 @@ def _inconsistency_note(
         speaks_for=speaks_for,
         beside=[float(modulus[i]) for i in (row - 1, row) if 0 <= i < modulus.size],
     )
+
+
+def _odd_readings(
+    readings: StepReadings, gauge: float, is_inconsistent: Bools
+) -> tuple[Integers, Bools, list[Note]]:
+    """Branches of the readings, those that are odd, and what is said of them."""
+    is_odd = _find_odd_weights(readings.tension, readings.length)
+    notes = [
+        note("reading-of-odd-weight", readings.clock[row], weight=float(readings.tension[row]))
+        for row in np.flatnonzero(is_odd)
+    ]
+    order = np.arange(is_odd.size)
+    hung = np.interp(order, order[~is_odd], readings.tension[~is_odd])
+    branch = _step_branches(hung)
+    sound = np.flatnonzero(~(is_inconsistent | is_odd))
+    for row in sound[_find_odd_lengths(hung[sound], readings.length[sound], branch[sound])]:
+        is_odd[row] = True
+        # by the straight line between the readings on both sides
+        beside = sound[np.searchsorted(sound, row) + np.array([-1, 1])]
+        order = beside[np.argsort(hung[beside])]
+        length = float(np.interp(hung[row], hung[order], readings.length[order]))
+        notes.append(
+            note(
+                "reading-of-odd-length",
+                readings.clock[row],
+                length=float(readings.length[row]),
+                expected=length,
+            )
+        )
+    return branch, is_odd, notes
 
 
 def _gauge(readings: StepReadings, stated: float | None) -> tuple[float, float, Bools]:
@@ -351,8 +490,8 @@ def reduce_stepwise(
 
     Notes
     -----
-    A flagged row is kept as it was read, with its flag.  An inconsistent row gives
-    no modulus, and a note says what it would give if the recorded elongation is
+    A flagged row is kept as it was read, with its flag.  An inconsistent or odd row
+    gives no modulus, and a note says what it would give if the recorded elongation is
     right.  Where the length moved against the weight the interval is creep and
     gives none; its later end is a sound reading, and the next interval stands.
 
@@ -374,13 +513,16 @@ def reduce_stepwise(
             "a stepwise test needs two steps", found=f"{length.size}", needed="two or more"
         )
     as_positive("area", area)
-    branch = _step_branches(readings.tension)
     gauge, gauge_uncertainty, is_inconsistent = _gauge(readings, stated_gauge_length)
+    notes = _gauge_notes(gauge, readings, stated_gauge_length)
+    branch, is_odd, of_odd = _odd_readings(readings, gauge, is_inconsistent)
+    notes += of_odd
     strain = length / gauge - 1
     growth, weight_change = np.diff(length), np.diff(readings.tension)
     against = (growth * weight_change < 0) | ((weight_change == 0) & (growth != 0))
-    is_creep = np.concatenate([[False], against & ~(is_inconsistent[:-1] | is_inconsistent[1:])])
-    notes = _gauge_notes(gauge, readings, stated_gauge_length)
+    is_doubted = is_inconsistent | is_odd
+    at_doubted = is_doubted[:-1] | is_doubted[1:]
+    is_creep = np.concatenate([[False], against & ~at_doubted])
 
     reading = readings.length_standard_uncertainty
     if not np.isfinite(reading):
@@ -397,21 +539,29 @@ def reduce_stepwise(
         strain_uncertainty=reading / gauge,
     )
     turns = branch[:-1] != branch[1:]
-    unusable = turns | against | (weight_change == 0) | is_inconsistent[:-1] | is_inconsistent[1:]
+    interval_branch = np.where(turns, 0, branch[1:])
+    modulus[turns | against | (weight_change == 0) | at_doubted] = np.nan
+    of_curve, is_known = _curvature_error(
+        interval_strain, np.abs(np.diff(strain)), modulus, interval_branch
+    )
+    if not is_known and np.isfinite(modulus).any():
+        modulus[:] = np.nan
+        notes.append(note("one-slope-of-weights"))
+    uncertainty = np.where(np.isfinite(modulus), np.hypot(uncertainty, of_curve), np.nan)
     for row in np.flatnonzero(is_inconsistent):
         notes.append(_inconsistency_note(int(row), readings, gauge, area, is_inconsistent))
     for row in np.flatnonzero(is_creep):
         notes.append(
             note(
-                "reading-of-creep",
+                "reading-of-creep" if weight_change[row - 1] else "reading-again",
                 readings.clock[row],
                 elapsed=float(readings.time[row] - readings.time[row - 1]),
-                weight=float(weight_change[row - 1]),
+                **({"weight": float(weight_change[row - 1])} if weight_change[row - 1] else {}),
                 growth=float(growth[row - 1]),
             )
         )
     with np.errstate(divide="ignore", invalid="ignore"):
-        secant = np.where(is_inconsistent | (strain <= 0), np.nan, readings.tension / area / strain)
+        secant = np.where(is_doubted | (strain <= 0), np.nan, readings.tension / area / strain)
         of_weight = (weight if np.isfinite(weight) else 0.0) / (area * strain)
         secant_uncertainty = np.where(
             np.isfinite(secant), np.hypot(of_weight, secant * reading / gauge / strain), np.nan
@@ -429,10 +579,11 @@ def reduce_stepwise(
         gauge_length_standard_uncertainty=gauge_uncertainty,
         is_inconsistent=is_inconsistent,
         is_creep=is_creep,
+        is_odd=is_odd,
         interval_strain=interval_strain,
-        interval_modulus=np.where(unusable, np.nan, modulus),
-        interval_modulus_standard_uncertainty=np.where(unusable, np.nan, uncertainty),
-        interval_branch=np.where(turns, 0, branch[1:]),
+        interval_modulus=modulus,
+        interval_modulus_standard_uncertainty=uncertainty,
+        interval_branch=interval_branch,
         secant_modulus=secant,
         secant_modulus_standard_uncertainty=secant_uncertainty,
         notes=(*readings.notes, *notes),
