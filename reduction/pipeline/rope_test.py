@@ -174,8 +174,10 @@ _NAMES = {
     "tensile": "tensile strength",
 }
 
+_PULLS = ("tensile", "quasi-static")
+
 # asked for by name, and so of any specimen; the others are a programme with a rope alone
-_OF_ALL = ("bedding-in", "fatigue", "snap", "tensile")
+_OF_ALL = ("bedding-in", "fatigue", "snap", *_PULLS)
 
 # a drift over the cycles that count is told where it passes this share of the stiffness
 _DRIFT_NOTED = 0.01
@@ -218,7 +220,7 @@ def rope_step(
     )
     names = located.record.specimens
     step = RopeStep(_NAMES[kind])
-    if kind in ("creep", "quasi-static"):
+    if is_rope and kind in ("creep", "quasi-static"):
         step = replace(step, creep=_creep(holds, names, strength))
     notes: list[Note] = []
     if kind in ("cyclic", "bedding-in") and loops is not None:
@@ -237,7 +239,7 @@ def rope_step(
             for name, how in zip(names, lasted.how, strict=True)
         ]
         step = replace(step, lasted=lasted)
-    if kind == "quasi-static":
+    if is_rope and kind == "quasi-static":
         pairs = held_pairs(
             located.record.time, located.position, tension, strain, located.standstills,
             specimens=names, rated_break_strength=strength,
@@ -245,15 +247,18 @@ def rope_step(
         )  # fmt: skip
         notes += _of_pairs(pairs)
         step = replace(step, held=pairs)
-    if kind == "tensile":
+    if kind in _PULLS:
         pull = tensile_pull(
             located.position, tension, strain, rated_break_strength=strength, broke=failed
         )
-        notes += _of_pull(pull, names)
+        if kind == "tensile":  # a slow pull need not end in a break
+            notes += _of_pull(pull, names)
         step = replace(step, tensile=pull)
     if step == RopeStep(step.name):
         return None
-    if np.isnan(strength).any():
+    if np.isnan(strength).any() and (
+        is_rope or kind in ("bedding-in", "fatigue", "snap", "tensile")
+    ):
         notes += [
             note("no-break-strength", name)
             for name, one in zip(names, strength, strict=True)

@@ -45,6 +45,20 @@ def comparisons(run):
     return pd.read_csv(run.processed / "tables" / "comparisons.csv").set_index("comparison")
 
 
+@pytest.mark.parametrize(("test", "hose"), [("S-64", "hose-64"), ("S-68", "hose-68")])
+def test_a_slow_pull_states_the_load_and_strain_that_it_reached(run, truth, test, hose):
+    row = pd.read_csv(run.processed / "tables" / "tensile.csv").set_index("test").loc[test]
+    made = truth.loc[hose]
+    for name, value in (
+        ("pull_peak_tension [N]", made["working_tension_lbf"] * LBF),
+        ("pull_peak_strain [1]", made["working_strain"]),
+    ):
+        spread = row[name.replace(" [", "_standard_uncertainty [")]
+        # the greatest of readings with noise reads high
+        assert abs(row[name] - value) < 3 * spread
+    assert row["pull_is_break"] == "no"
+
+
 def built(truth, name):
     """What the hose of a comparison was generated with, in SI."""
     row = truth.loc[f"hose-{name[1:3]}"]

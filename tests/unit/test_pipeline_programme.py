@@ -67,8 +67,9 @@ def test_the_kind_says_which_step_it_is():
     life = step_of(one, "fatigue")
     assert life.lasted.cycles == 12 and life.dynamic is None
     assert step_of(one, "relaxation") is None
-    # a quasi-static test without holds is a slow pull alone
-    assert step_of(one, "quasi-static") is None
+    # a quasi-static test without holds is a slow pull alone, which has a peak
+    pulled = step_of(one, "quasi-static")
+    assert pulled.held == () and pulled.tensile.peak_tension == np.nanmax(one.tension)
 
 
 def test_cycles_of_a_tether_are_no_programme_but_its_life_is():
