@@ -157,8 +157,13 @@ def _curves_of_cycles(
     )
 
 
+# cycles on each side of a jump of which the stiffness is compared, and what is another one: a slip
+# leaves the amplitudes as they are
+_BESIDE, _OTHER_STIFFNESS = 10, 0.05
+
+
 def notes_on_jumps(loops: Loops, names: Sequence[str], *, break_in: int) -> list[Note]:
-    """Say where something has slipped, or a load cell has been knocked, between two cycles."""
+    """Say where something slipped or parted, or a load cell was knocked, between two cycles."""
     found = []
     for index, name in enumerate(names):
         time, strain, tension, slope, of_strain, of_tension = (
@@ -178,8 +183,16 @@ def notes_on_jumps(loops: Loops, names: Sequence[str], *, break_in: int) -> list
         ):
             if jump is not None:
                 number, size = jump
+                beside = slope[max(number - _BESIDE, 0) : number], slope[number : number + _BESIDE]
+                change = float(np.nanmedian(beside[1]) / np.nanmedian(beside[0]) - 1)
+                number += break_in
+                if abs(change) > _OTHER_STIFFNESS:
+                    found.append(
+                        note("stiffness-changes-at-cycle", name, change=change, number=number)
+                    )
+                    break
                 share = abs(size) / float(np.median(amplitude))
-                found.append(note(code, name, size=size, number=number + break_in, effect=share))
+                found.append(note(code, name, size=size, number=number, effect=share))
     return found
 
 

@@ -27,6 +27,8 @@ from reduction.record.samples import (
     copied,
     empty_like,
     finite_extremes,
+    first_sample,
+    last_sample,
     over_intervals,
     release_pages,
     sample_blocks,
@@ -58,6 +60,16 @@ HELD = ("relaxation", "creep")
 
 _REPEATS = Quality.SATURATED | Quality.STUCK
 
+# of the greatest load: below the first a specimen is slack, above the second taut
+_SLACK, _TAUT = 0.05, 0.25
+
+_FEWEST_SLACK = 3  # readings
+
+# of the travel, while a load falls from the one to the other: of any log, and of few readings
+_GIVEN_BACK, _MOST_BACK = 0.05, 0.15
+
+_TOP_SHARE = 0.02  # of the travel, in which a position counts as the greatest
+
 _FEW_STEPS = 5  # of the clock: what is flagged for the repeats of a load lasts longer
 
 
@@ -67,7 +79,8 @@ class Located:
 
     ``position`` (n_samples,) [m] and ``tension`` (n_specimens, n_samples) [N] are those of
     the record, NaN where they are not usable; ``load_at_slack`` is what each load cell reads at
-    the slack rests of its log, by specimen, empty where nobody looked.
+    the slack rests of its log, by specimen, empty where nobody looked; ``parted`` is the sample
+    from which a specimen is slack for good, by specimen, -1 where it is not.
     """
 
     record: Record
@@ -76,6 +89,7 @@ class Located:
     standstills: Standstills
     cycles: Cycles | None
     load_at_slack: tuple[LoadAtSlack | None, ...] = ()
+    parted: tuple[int, ...] = ()
 
 
 def locate(
@@ -106,6 +120,21 @@ def locate(
         standstills = find_standstills(
             record.time, position, tension, settings=settings.phases, is_held=kind in HELD
         )
+    parted: tuple[int, ...] = ()
+    if kind in (*CYCLIC, "tensile"):
+        parted = tuple(_parted_at(position, load) for load in tension)
+        if min(parted) > 0:  # where all of them broke no rest is a slack length
+            before = standstills.first < max(parted)
+            standstills = replace(
+                standstills,
+                **{
+                    name: getattr(standstills, name)[..., before]
+                    for name in ("first", "last", "start_time", "end_time", "mean_position",
+                                 "mean_tension", "is_rest")
+                },
+            )  # fmt: skip
+        if kind in CYCLIC and max(parted) > 0:
+            record, tension = _without_parted(record, tension, parted, kind=kind)
     cycles = None
     if kind in CYCLIC:
         cycles = find_cycles(
@@ -117,7 +146,7 @@ def locate(
             cycle_counter=record.cycle_counter,
         )
     if specimens is None or record.load_train == LoadTrain():
-        return Located(record, position, tension, standstills, cycles)
+        return Located(record, position, tension, standstills, cycles, parted=parted)
     on_tension = standstills.tension_tolerance is not None
     crosshead = position
     record, position, tension = without_load_train(
@@ -130,7 +159,60 @@ def locate(
         )
     given = (record.load_train.machine_compliance or 0.0) * standstills.mean_tension.sum(axis=0)
     standstills = replace(standstills, mean_position=standstills.mean_position - given)
-    return Located(record, position, tension, standstills, cycles)
+    return Located(record, position, tension, standstills, cycles, parted=parted)
+
+
+def _parted_at(position: Floats, load: Floats) -> int:
+    """First sample from which a specimen is slack for good, where it was always taut before; or -1.
+
+    One that is unloaded is slack because the crosshead went back.
+    """
+    peak = finite_extremes(load)[1]
+    if not peak > 0:
+        return -1
+    n_samples = load.size
+    # a taut sample near the end, as most logs have it, ends the search in its first block
+    last = last_sample(lambda part: load[part] > _SLACK * peak, 0, n_samples, load)
+    if last is None or n_samples - 1 - last < _FEWEST_SLACK:
+        return -1
+    after = np.sort(position[last + 1 :][np.isfinite(load[last + 1 :])])
+    after = after[np.isfinite(after)]
+    low, high = finite_extremes(position[: last + 1])
+    taut = last_sample(lambda part: load[part] > _TAUT * peak, 0, last + 1, load)
+    if after.size < _FEWEST_SLACK or taut is None:
+        return -1
+    # a line that is let slack goes back first, the more so one that stays longer; one that breaks
+    # on the way back does so by a reading
+    travel = high - low
+    reading = abs(float(position[taut] - position[taut - 1])) if taut > 0 else 0.0
+    allowed = max(_GIVEN_BACK * travel, min(1.5 * reading, _MOST_BACK * travel))
+    if not position[taut] - position[last + 1] < allowed:
+        return -1
+    least = min(after[-_FEWEST_SLACK], high - _TOP_SHARE * (high - low))
+    is_slack_there = first_sample(
+        lambda part: (position[part] >= least) & (load[part] < _TAUT * peak), 0, last + 1,
+        position, load,
+    )  # fmt: skip
+    was_there = first_sample(lambda part: position[part] >= least, 0, last + 1, position)
+    if was_there is None:
+        return -1
+    # the load falls over some readings, of which the first may still be above
+    fell_over = is_slack_there is not None and last + 1 - is_slack_there <= _FEWEST_SLACK
+    return last + 1 if is_slack_there is None or fell_over else -1
+
+
+def _without_parted(
+    record: Record, tension: Floats, parted: Sequence[int], *, kind: str
+) -> tuple[Record, Floats]:
+    """Leave out what a load cell reads once its specimen parted, and say so."""
+    tension = copied(tension)
+    code = "specimen-parted" if kind in ("cyclic", "bedding-in") else "specimen-parted-as-meant"
+    told = []
+    for row, (name, sample) in enumerate(zip(record.specimens, parted, strict=True)):
+        if sample > 0:
+            tension[row, sample:] = np.nan
+            told.append(note(code, name, time=float(record.time[sample])))
+    return replace(record, notes=(*record.notes, *told)), tension
 
 
 def slips_of(located: Located, settings: ReductionSettings) -> Slips | None:

@@ -366,6 +366,15 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             " jump is off by that much; amplitudes and EA are not affected. Remove it from the log"
         ),
     ),
+    "specimen-parted": (
+        "warning",
+        "the load falls to zero at {time:g} s where the specimen was taut before, and does not come"
+        " back: it parted, or came loose. What follows is left out",
+    ),
+    "specimen-parted-as-meant": (
+        "note",
+        "parted at {time:g} s; what follows is left out",
+    ),
     "strain-below-zero": (
         "warning",
         lambda least, tension, reference, rises: (
@@ -728,6 +737,12 @@ _OF_MODULI: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "the mean strain of the cycles drifts by {drift:+.3%} from first to last ({effect:.0%} of"
         " the range of a cycle; {per_decade:+.3%} per decade of cycles): the cycles are shifted to"
         " a mean strain of {reference:.3%} before their curves are averaged",
+    ),
+    "stiffness-changes-at-cycle": (
+        "warning",
+        "the stiffness changes by {change:+.1%} from cycle {number} to the next, and the mean with"
+        " it: part of the specimen may have parted (a strand, a layer of cords). The means are over"
+        " both states",
     ),
     "strain-jumps": (
         "warning",

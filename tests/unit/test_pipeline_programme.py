@@ -174,3 +174,76 @@ def test_a_pull_without_strain_has_a_strength_alone():
     assert tuple(map(str, found.notes)) == (
         "line: strain at failure not given: the strain at the peak is not known",
     )
+
+
+def of_two(first, second, position):
+    """Two lines side by side, each with its own load cell."""
+    one, other = (record(load, position=position) for load in (first, second))
+    return replace(
+        one,
+        specimens=("line", "other"),
+        tension=np.concatenate([one.tension, other.tension]),
+        quality_flag=np.concatenate([one.quality_flag, other.quality_flag]),
+    )
+
+
+@pytest.mark.parametrize("kind", ["fatigue", "cyclic"])
+def test_what_follows_a_break_is_left_out_and_its_rest_is_no_slack_length(kind):
+    whole = cycles(12)
+    load = whole.copy()
+    place = 10 + whole / 200
+    broke = 20 + 8 * 20 + 7  # on the way up in the ninth cycle, and the ram runs on to its stop
+    load[broke:], place[broke:] = 0.0, 12.5
+    located = locate(
+        record(load, position=place), kind=kind,
+        settings=ReductionSettings(cycles=CycleSettings(control="load")),
+    )  # fmt: skip
+    assert located.parted == (broke,)
+    assert np.isnan(located.tension[0, broke:]).all()
+    assert np.isfinite(located.tension[0, :broke]).all()
+    assert not (located.standstills.first > broke).any()
+    (said,) = [one for one in located.record.notes if one.code.startswith("specimen-parted")]
+    assert said.numbers["time"] == pytest.approx(broke / 2)
+    assert said.severity == ("note" if kind == "fatigue" else "warning")
+
+
+def test_one_that_comes_loose_beside_another_leaves_the_other_as_it_is():
+    whole = cycles(12)
+    load = whole.copy()
+    load[100:] = 0.0
+    located = locate(
+        of_two(load, whole, 10 + whole / 200), kind="cyclic", settings=ReductionSettings()
+    )
+    assert located.parted == (100, -1)
+    assert np.isfinite(located.tension[1]).all()
+
+
+@pytest.mark.parametrize("low", [0.0, 100.0])
+def test_a_line_that_is_let_slack_at_the_end_has_not_parted(low):
+    whole = cycles(12, low=low, start=low)
+    home = np.concatenate([whole, np.linspace(low, -60.0, 40), np.full(40, -60.0)])
+    load = np.maximum(home, 0.0)
+    # a rubber that stays longer is slack earlier on the way back than it was on the way out
+    load[-80:] = np.maximum(load[-80:] - 20.0, 0.0)
+    located = locate(
+        record(load, position=10 + home / 200), kind="cyclic", settings=ReductionSettings()
+    )
+    assert located.parted == (-1,)
+
+
+def test_a_rope_that_stays_longer_than_the_first_pull_has_not_parted_when_it_is_unloaded():
+    # the first pull passes the length that is left with two thirds of the load, the cycles never
+    # come below it, and the ram goes back to the reference tension at the end
+    first = np.linspace(4.0, 100.0, 40)
+    worked = np.concatenate([np.interp(np.arange(241), 10 * np.arange(25), [100, 60] * 12 + [100])])
+    back = np.linspace(100.0, 4.0, 40)
+    load = np.concatenate([np.full(10, 4.0), first, worked, back, np.full(60, 4.0)])
+    place = np.concatenate(
+        [np.full(10, 10.0), 10 + 0.01 * first, 10.8 + 0.002 * worked, 10.8 + 0.002 * back,
+         np.full(60, 10.808)]
+    )  # fmt: skip
+    located = locate(
+        record(load, position=place), kind="bedding-in",
+        settings=ReductionSettings(cycles=CycleSettings(control="load")),
+    )  # fmt: skip
+    assert located.parted == (-1,)
