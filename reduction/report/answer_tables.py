@@ -249,7 +249,7 @@ def pull_table(tests: Sequence[TestView]) -> PageTable | None:
     found = [row for view in own for row in _pull_rows(view, is_of_lines=is_of_lines)]
     if not found:
         return None
-    has_cubic = any(_PULLED in view.data for view in own)
+    has_cubic = any(view.is_rope and _PULLED in view.data for view in own)
     force, stress = (shown(kind, own[0].units) for kind in ("tension", "stress"))
     columns = [
         "specimen", "test", "ends at", shown("strain", own[0].units).label("strain"),
@@ -346,7 +346,8 @@ def _rise(view: TestView, place: int) -> tuple[Floats, _Series, _Series, bool] |
         return _Series(values[own], spread.half[own], spread.factor[own])
 
     pulled, strain = series(_PULLED, place), series("quasi_static_strain", place)
-    if pulled is not None and strain is not None and np.isfinite(pulled.values).any():
+    # a cubic is the law of ropes; the curve of a rubber bends twice
+    if view.is_rope and pulled is not None and strain is not None and np.isfinite(pulled.values).any():
         load = np.asarray(view.array("tension_grid"))
         return strain.values, _Series.known(load), pulled, False
     weights, middles = series("interval_modulus"), view.array("interval_strain")

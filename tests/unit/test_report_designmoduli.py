@@ -251,6 +251,9 @@ def test_a_slow_pull_of_a_rope_has_k_0_half_way():
     }
     (row,) = texts(pull_table([pulled(of="rope", **more)]))
     assert row[3:6] == ["10.00", "300.0", "4,000 ± 200"]
+    # a rubber stiffens at both ends of its curve, which no cubic of load does
+    (row,) = texts(pull_table([pulled(of="elastomer", **more)]))
+    assert row[3:6] == ["40.00", "500.0 ± 2.0", "1,000.0 ± 9.8"]
 
 
 def test_a_pull_that_begins_under_a_load_has_k_0_in_its_middle():
