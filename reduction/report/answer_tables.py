@@ -347,7 +347,12 @@ def _rise(view: TestView, place: int) -> tuple[Floats, _Series, _Series, bool] |
 
     pulled, strain = series(_PULLED, place), series("quasi_static_strain", place)
     # a cubic is the law of ropes; the curve of a rubber bends twice
-    if view.is_rope and pulled is not None and strain is not None and np.isfinite(pulled.values).any():
+    if (
+        view.is_rope
+        and pulled is not None
+        and strain is not None
+        and np.isfinite(pulled.values).any()
+    ):
         load = np.asarray(view.array("tension_grid"))
         return strain.values, _Series.known(load), pulled, False
     weights, middles = series("interval_modulus"), view.array("interval_strain")
