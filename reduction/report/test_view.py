@@ -15,6 +15,7 @@ from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 from numpy.typing import ArrayLike
 
@@ -322,14 +323,19 @@ def _shared(data: xr.Dataset, known: dict[str, str]) -> xr.Dataset:
     for name, variable in data.variables.items():
         values = variable.values
         if values.dtype.kind == "O":
-            texts = [known.setdefault(one, one) for one in values.ravel()]
+            texts = [known.setdefault(text, text) for text in values.ravel()]
             values = np.array(texts, dtype=object).reshape(values.shape)
         attributes = {
             key: known.setdefault(value, value) if isinstance(value, str) else value
             for key, value in variable.attrs.items()
             if key == "units" or str(key).startswith("flag_")
         }
-        found[name] = xr.Variable(variable.dims, values, attributes or None, fastpath=True)
+        # an index of pandas is taken as it is; of an array xarray asks Dask
+        found[name] = (
+            xr.IndexVariable(variable.dims, pd.Index(values, dtype=values.dtype), attributes)  # type: ignore[no-untyped-call]
+            if name in data.dims
+            else xr.Variable(variable.dims, values, attributes or None, fastpath=True)
+        )
     about = {name: known.setdefault(one, one) for name, one in data.attrs.items()}
     return xr.Dataset(found, attrs=about)
 
