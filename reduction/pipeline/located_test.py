@@ -120,21 +120,19 @@ def locate(
         standstills = find_standstills(
             record.time, position, tension, settings=settings.phases, is_held=kind in HELD
         )
-    parted: tuple[int, ...] = ()
-    if kind in (*CYCLIC, "tensile"):
-        parted = tuple(_parted_at(position, load) for load in tension)
-        if min(parted) > 0:  # where all of them broke no rest is a slack length
-            before = standstills.first < max(parted)
-            standstills = replace(
-                standstills,
-                **{
-                    name: getattr(standstills, name)[..., before]
-                    for name in ("first", "last", "start_time", "end_time", "mean_position",
-                                 "mean_tension", "is_rest")
-                },
-            )  # fmt: skip
-        if kind in CYCLIC and max(parted) > 0:
-            record, tension = _without_parted(record, tension, parted, kind=kind)
+    parted = tuple(_parted_at(position, load) for load in tension)
+    if min(parted) > 0:  # where all of them broke no rest is a slack length
+        before = standstills.first < max(parted)
+        standstills = replace(
+            standstills,
+            **{
+                name: getattr(standstills, name)[..., before]
+                for name in ("first", "last", "start_time", "end_time", "mean_position",
+                             "mean_tension", "is_rest")
+            },
+        )  # fmt: skip
+    if kind in CYCLIC and max(parted) > 0:
+        record, tension = _without_parted(record, tension, parted, kind=kind)
     cycles = None
     if kind in CYCLIC:
         cycles = find_cycles(

@@ -247,3 +247,13 @@ def test_a_rope_that_stays_longer_than_the_first_pull_has_not_parted_when_it_is_
         settings=ReductionSettings(cycles=CycleSettings(control="load")),
     )  # fmt: skip
     assert located.parted == (-1,)
+
+
+def test_the_stop_after_a_creep_rupture_is_no_slack_length():
+    load = np.concatenate([np.linspace(50.0, 300.0, 40), np.full(400, 300.0), np.zeros(80)])
+    place = 10 + load / 200 + 0.02 * np.log1p(np.arange(load.size) / 40)
+    place[440:] = 13.0
+    located = locate(record(load, position=place), kind="creep", settings=ReductionSettings())
+    assert located.parted == (440,)
+    assert not located.standstills.is_rest.any()
+    assert located.standstills.n_standstills == 1
