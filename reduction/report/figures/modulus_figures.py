@@ -279,7 +279,10 @@ def _parameters(view: TestView, fit: int) -> dict[str, float]:
     return {names[place]: float(values[place]) for place in np.flatnonzero(belongs == fit)}
 
 
-OF_STEPS = "scatter of the readings of length, and of weight where that is stated"
+OF_STEPS = (
+    "scatter of the readings of length, and of weight where that is stated, and the curve between"
+    " two readings"
+)
 """What a number of a stepwise test has for itself: there are readings and no cycles."""
 
 _TINTS = {"ascending": COLOURS[0], "descending": COLOURS[1]}
