@@ -54,6 +54,7 @@ from reduction.batch.survey import Survey
 from reduction.batch.test_history import instruments_of
 from reduction.batch.workers import Workers
 from reduction.campaign.plan import Campaign
+from reduction.experiments.outcome_groups import odd_outcomes
 from reduction.quantities.units import UnitSystem
 from reduction.readers.raw_log import hash_source
 from reduction.record.contributions import Component, InstrumentErrors
@@ -242,6 +243,7 @@ def results_found(campaign: Campaign) -> dict[str, Any] | None:
             quantity: {use: count[use] for use in ("value", "lower_bound", "excluded")}
             for quantity, count in uses.items()
         },
+        "notes": [str(one) for one in odd_outcomes(campaign.outcomes)],
     }
 
 

@@ -401,6 +401,8 @@ def check_campaign(campaign: Campaign, *, tests: tuple[str, ...], output: Comman
         output.show(lines)
     results = results_found(campaign)
     _say_results(output, results)
+    for note in (results or {}).get("notes", ()):  # a run has them among what to check
+        output.say(f"  {note}")
     experiments = experiments_found(campaign, statuses)
     _say_experiments(output, experiments)
     for comparison in campaign.comparisons.values():

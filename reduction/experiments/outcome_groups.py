@@ -27,7 +27,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import exp, isfinite, isnan, nan
+from math import exp, isfinite, isnan, log, nan
 
 import numpy as np
 
@@ -58,6 +58,8 @@ from reduction.experiments.strength_statistics import (
 )
 from reduction.record.errors import DataError, FitError
 from reduction.record.measurement import Bools, Floats, Integers, Specimen, read_only_arrays
+from reduction.record.notes import Note, note
+from reduction.stages.plausible_bands import words_of_ratio
 
 _USE = {"value": VALUE, "lower_bound": LOWER_BOUND, "excluded": EXCLUDED}
 
@@ -703,6 +705,55 @@ def _levels_of(grouped: _Grouped, place: int) -> list[Integers]:
             parts += [rows[has][level == number] for number in range(int(level.max()) + 1)]
     rest = rows[~has_ratio & ~has_force]
     return [*parts, rest] if rest.size else parts
+
+
+# times, by which a value differs from every other of its group where it is odd: breaks of one line
+# scatter by a tenth, lives at one load by a factor of three or so
+_ODD: dict[OutcomeQuantity, float] = {
+    "tensile_strength": 2.0, "strain_at_failure": 2.5,
+    "cycles_to_failure": 80.0, "abrasion_cycles": 80.0,
+}  # fmt: skip
+
+_FEWEST_OTHERS = 2
+
+
+def odd_outcomes(outcomes: Iterable[Outcome]) -> list[Note]:
+    """Values that are far from the others of their group, and of their level of load.
+
+    Examples
+    --------
+    >>> rows = [Outcome("tensile_strength", value) for value in (28e3, 2.9e3, 27e3, 29e3)]
+    >>> (found,) = odd_outcomes(rows)
+    >>> print(found.code, round(found.numbers["ratio"], 2), found.numbers["like"])
+    outcome-far-off 0.1 a factor of 0.1
+    """
+    listed = tuple(outcomes)
+    found = []
+    for quantity, most in _ODD.items():
+        grouped = _group_outcomes(listed, quantity)
+        for place in range(len(grouped.groups)):
+            parts = (
+                _levels_of(grouped, place)
+                if quantity == "cycles_to_failure"
+                else [np.flatnonzero(grouped.group == place)]
+            )
+            for part in parts:
+                used = part[grouped.use[part] == VALUE]
+                for row in used:
+                    others = grouped.value[used[used != row]]
+                    if others.size < _FEWEST_OTHERS:
+                        continue
+                    ratio = float(grouped.value[row] / np.median(others))
+                    if np.abs(np.log(grouped.value[row] / others)).min() > log(most):
+                        one = grouped.outcomes[row]
+                        found.append(
+                            note(
+                                "outcome-far-off", one.test or one.specimen,
+                                quantity=quantity.replace("_", " "), row=one.row, ratio=ratio,
+                                n_others=int(others.size), like=words_of_ratio(ratio),
+                            )
+                        )  # fmt: skip
+    return found
 
 
 def fatigue_rows(

@@ -738,6 +738,14 @@ _OF_MODULI: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         " the range of a cycle; {per_decade:+.3%} per decade of cycles): the cycles are shifted to"
         " a mean strain of {reference:.3%} before their curves are averaged",
     ),
+    "outcome-far-off": (
+        "warning",
+        lambda quantity, row, ratio, n_others, like: (
+            f"row {row}: its {quantity} is {ratio:.3g} times the median of the {n_others} others of"
+            f" its group{f' (as {like})' if like else ''}. Check the value and its unit, or state"
+            " valid = no"
+        ),
+    ),
     "stiffness-changes-at-cycle": (
         "warning",
         "the stiffness changes by {change:+.1%} from cycle {number} to the next, and the mean with"

@@ -12,6 +12,7 @@ import xarray as xr
 
 from reduction.archive.open import Opener, in_memory, reading
 from reduction.experiments.fit_results import FIT_REASONS, ResponseSurfaces
+from reduction.experiments.outcome_groups import odd_outcomes
 from reduction.quantities.units import UnitSystem
 from reduction.record.errors import ArchiveError
 from reduction.record.notes import Note, urgency
@@ -417,6 +418,14 @@ def _identified(view: ComparisonView) -> list[str]:
     ]
 
 
+def _outcome_findings(view: OutcomeView) -> list[SummaryFinding]:
+    """Return which outcomes are unlike the others of their group."""
+    return [
+        SummaryFinding(one.severity, ("outcomes",), str(one), urgency(one))
+        for one in odd_outcomes(view.outcomes)
+    ]
+
+
 def _make_outcome_section(view: OutcomeView) -> TestSection:
     """Return the section; parts with nothing in them are left out."""
     parts = [
@@ -536,6 +545,7 @@ class CampaignView:
         """What a reader must know first."""
         found = [SummaryFinding("warning", (name,), _STRAY) for name in self.stray]
         found += [one for view, _ in self.experiments for one in experiment_findings(view)]
+        found += [one for view, _ in self.outcomes for one in _outcome_findings(view)]
         found += [one for view, _ in self.compared for one in _comparison_findings(view)]
         return found + [one for view, _ in self.hoses for one in _hose_findings(view)]
 
