@@ -253,12 +253,12 @@ def pull_table(tests: Sequence[TestView]) -> PageTable | None:
     force, stress = (shown(kind, own[0].units) for kind in ("tension", "stress"))
     columns = [
         "specimen", "test", "ends at", shown("strain", own[0].units).label("strain"),
-        force.label("load"), force.label("EA at half the strain"),
+        force.label("load"), force.label("EA at half that strain"),
         *([] if is_of_lines else [stress.label("modulus there")]), "status",
     ]  # fmt: skip
     return make_table(
-        "Pulls and weights. EA: slope of load against strain on the first loading, at half the"
-        " strain reached, or in the middle of a pull that begins above it.",
+        "Pulls and weights. Strain: where the load is greatest. EA: slope of load against strain on"
+        " the first loading, at half that strain, or in the middle of a pull that begins above it.",
         columns, found, is_compact=True, is_tall=len(found) > _MOST_ROWS,
         remarks=[
             *_about_spread(
@@ -283,7 +283,8 @@ def _pull_rows(view: TestView, *, is_of_lines: bool) -> Iterator[list[TableCell]
         if curve is None:
             continue
         strain, load, stiffness, is_modulus = curve
-        at_end = int(np.flatnonzero(np.isfinite(load.values))[-1])
+        at_end = int(np.nanargmax(load.values))
+        reached = strain[at_end]
         ends: list[TableCell] = []
         for peak, unit, of_curve in (
             ("pull_peak_strain", strain_unit, _Series.known(strain)),
@@ -294,15 +295,16 @@ def _pull_rows(view: TestView, *, is_of_lines: bool) -> Iterator[list[TableCell]
                 half = expanded_of(view, peak, known)
                 ends.append(measured(known[place], half.half[place], unit,
                                      factor=half.factor[place]))  # fmt: skip
+                reached = known[place] if peak == "pull_peak_strain" else reached
             else:
                 ends.append(of_curve.cell(at_end, unit))
         usable = np.flatnonzero(np.isfinite(stiffness.values))
         area = float("nan") if areas is None else float(np.ravel(areas)[place])
         if usable.size:
-            half = strain[at_end] / 2
-            if strain[usable[0]] > half:  # the pull begins under a load
-                half = (strain[usable[0]] + strain[at_end]) / 2
-            middle = int(usable[np.argmin(np.abs(strain[usable] - half))])
+            half_way = reached / 2
+            if strain[usable[0]] > half_way:  # the pull begins under a load
+                half_way = (strain[usable[0]] + reached) / 2
+            middle = int(usable[np.argmin(np.abs(strain[usable] - half_way))])
             line = stiffness.cell(middle, force, area if is_modulus else 1.0)
             material = stiffness.cell(middle, stress, 1.0 if is_modulus else 1.0 / area)
         else:
@@ -346,15 +348,20 @@ def _rise(view: TestView, place: int) -> tuple[Floats, _Series, _Series, bool] |
         return _Series(values[own], spread.half[own], spread.factor[own])
 
     pulled, strain = series(_PULLED, place), series("quasi_static_strain", place)
-    # a cubic is the law of ropes; the curve of a rubber bends twice
-    if (
-        view.is_rope
-        and pulled is not None
-        and strain is not None
-        and np.isfinite(pulled.values).any()
-    ):
-        load = np.asarray(view.array("tension_grid"))
-        return strain.values, _Series.known(load), pulled, False
+    cubic = None
+    if pulled is not None and strain is not None and np.isfinite(pulled.values).any():
+        load = _Series.known(np.asarray(view.array("tension_grid")))
+        cubic = strain.values, load, pulled, False
+        if view.is_rope:  # of which it is the law; the curve of a rubber bends twice
+            return cubic
+        if any(
+            one.code == "pull-misfit"
+            and one.severity == "note"
+            and _is_of(one, view.specimens[place])
+            for one in view.notes
+        ):
+            unknown = np.full(load.values.shape, np.nan)
+            cubic = (unknown, load, _Series.known(unknown), False)
     weights, middles = series("interval_modulus"), view.array("interval_strain")
     if weights is not None and middles is not None:
         rising = view.array_like("interval_branch", middles) == 1
@@ -365,19 +372,19 @@ def _rise(view: TestView, place: int) -> tuple[Floats, _Series, _Series, bool] |
         is_sound = np.isfinite(secants) if np.isfinite(secants).any() else np.isfinite(loads)
         top = np.argmax(np.where(is_sound, loads, -np.inf))
         at = np.append(middles[rising], strains[top])
-        load = np.append(np.full(at.size - 1, np.nan), loads[top])
+        hung = np.append(np.full(at.size - 1, np.nan), loads[top])
         slope = (
             np.append(np.asarray(one)[rising], np.nan)
             for one in (weights.values, weights.half, weights.factor)
         )
-        return at, _Series.known(load), _Series(*slope), True
+        return at, _Series.known(hung), _Series(*slope), True
     branch = (view.texts("branch_name") or BRANCH_NAMES).index(BRANCH_NAMES[0])
     tangent = series(_FIRST_RISE, place, branch)
     tension = series("branch_tension_first_loading", place, branch)
     bins = view.array("first_loading_strain_bin")
-    if tangent is None or tension is None or bins is None or not np.isfinite(tension.values).any():
-        return None
-    return bins, tension, tangent, True
+    if tangent is not None and tension is not None and np.isfinite(tension.values).any():
+        return np.asarray(bins), tension, tangent, True
+    return cubic
 
 
 def hold_table(tests: Sequence[TestView]) -> PageTable | None:

@@ -221,7 +221,7 @@ def pulled(kind="quasi-static", *, of="rubber tether", **more):
 def test_a_pull_has_its_end_and_the_stiffness_half_way_there():
     table = pull_table([pulled().without_samples().of_campaign({})])
     assert table.columns[3:7] == (
-        "strain [%]", "load [N]", "EA at half the strain [N]", "modulus there [MPa]",
+        "strain [%]", "load [N]", "EA at half that strain [N]", "modulus there [MPa]",
     )  # fmt: skip
     # 2 MPa at 20 %, over 500 mm2
     assert texts(table) == [
@@ -254,6 +254,33 @@ def test_a_slow_pull_of_a_rope_has_k_0_half_way():
     # a rubber stiffens at both ends of its curve, which no cubic of load does
     (row,) = texts(pull_table([pulled(of="elastomer", **more)]))
     assert row[3:6] == ["40.00", "500.0 ± 2.0", "1,000.0 ± 9.8"]
+
+
+MISSED = {
+    "note": ("note", ["new: a cubic misses the load-strain curve by 2.9% of its strain"]),
+    "note_stage": ("note", ["test"]), "note_code": ("note", ["pull-misfit"]),
+    "note_severity": ("note", ["note"]), "note_effect": ("note", [NAN]),
+    "tension_grid": ("tension_grid", [100.0, 200.0, 300.0]),
+    "quasi_static_strain": ((S, "tension_grid"), [[0.02, 0.05, 0.10]]),
+    "quasi_static_spring_constant": ((S, "tension_grid"), [[3e3, 4e3, 5e3]]),
+}  # fmt: skip
+
+
+def test_a_curve_that_a_cubic_misses_answers_at_its_own_strains():
+    # a coupon that yields: the cubic has half the strain at the wrong load
+    (row,) = texts(pull_table([pulled(of="other", **MISSED)]))
+    assert row[3:6] == ["40.00", "500.0 ± 2.0", "1,000.0 ± 9.8"]
+    # without a first rise, as where the log begins under a load, there is no strain to go by
+    view = pulled(of="other", **MISSED)
+    (row,) = texts(pull_table([replace(view, data=view.data.drop_dims("branch_name"))]))
+    assert row[3:6] == [NOT_GIVEN, "300.0", NOT_GIVEN]
+
+
+def test_ea_is_at_half_the_strain_of_the_greatest_load_not_of_the_end():
+    # necking goes on to 40 % behind the greatest load at 20 %: 1 MPa at 10 %, over 500 mm2
+    more = {"pull_is_break": (S, [1]), "pull_peak_strain": (S, [0.2])}
+    (row,) = texts(pull_table([pulled("tensile", of="other", **more)]))
+    assert row[3] == "20.00" and row[5] == "500.0 ± 9.8"
 
 
 def test_a_pull_that_begins_under_a_load_has_k_0_in_its_middle():
