@@ -178,7 +178,7 @@ def random_freedom(archive: xr.Dataset, name: str) -> Floats:
         # what stands behind the specimen: branches, segments and the like
         behind = [1] * (len(own) - 1)
         count = count.reshape(-1, *behind) if own[:1] == ("specimen",) else count.min()
-    return np.asarray(np.maximum(count - fitted, 1.0))
+    return np.where(count == 1, np.inf, np.maximum(count - fitted, 1.0))
 
 
 def effective_freedom(archive: xr.Dataset, name: str) -> Floats:

@@ -20,6 +20,19 @@ def test_differences_of_neighbours_are_worth_fewer_than_cycles(n_cycles):
     assert found < n_cycles - 1
 
 
+def test_the_uncertainty_of_a_single_cycle_is_that_of_its_readings_not_of_a_scatter():
+    # one pull and return: nothing scatters, and its readings are as many as those of a slow pull
+    archive = xr.Dataset(
+        {
+            "tension_amplitude": (("specimen", "cycle"), [[100.0]]),
+            "test_apparent_spring_constant": ("specimen", [1e6]),
+            "test_apparent_spring_constant_standard_uncertainty": ("specimen", [1e4]),
+        }
+    )
+    freedom = effective_freedom(archive, "test_apparent_spring_constant")
+    assert coverage_factor(freedom) == pytest.approx([1.96], abs=1e-3)
+
+
 def test_a_mean_is_of_the_cycles_after_the_break_in_that_have_a_number():
     # of twelve cycles two are break-in, and of the second specimen six more have no tension
     amplitude = np.full((2, 12), 100.0)
