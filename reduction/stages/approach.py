@@ -179,6 +179,8 @@ def find_approach(
             return None
     rate = float(travelled / duration)
     chord = min(noise_range / (2 * SLOW_SHARE * rate), _LONGEST_CHORD * motion.reach / rate)
+    # in far less than a step of the log, a row beside another, an encoder does not advance either
+    chord = max(chord, float(np.median(np.diff(time[far : first + 1]))) / 2)
     # so long what is left within the near band may take at more than the slow rate
     latest = min(time[first] + near / (SLOW_SHARE * rate) + chord, time[last])
     stop = int(np.searchsorted(time[: last + 1], latest + chord, side="right")) + 1

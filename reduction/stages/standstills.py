@@ -552,9 +552,9 @@ def _held_intervals(
     low, high = finite_extremes(series)
     tolerance = max(tolerance, _FINEST_SHARE * (high - low))
     found: list[tuple[int, int]] = []
-    work = [(0, series.size, max(tolerance, NEAR_SHARE * (high - low)))]
+    work = [(0, series.size, max(tolerance, NEAR_SHARE * (high - low)), 0)]
     while work:
-        begin, stop, width = work.pop()
+        begin, stop, width, origin = work.pop()
         if stop - begin < FEWEST_SAMPLES:
             continue
         firsts, lasts = _still_intervals(
@@ -562,14 +562,19 @@ def _held_intervals(
             tolerance=width, minimum_duration=minimum_duration,
         )  # fmt: skip
         for first, last in zip((begin + firsts).tolist(), (begin + lasts).tolist(), strict=True):
-            if width <= tolerance or _stays_slow(clock, series, begin, first, last, noise=noise):
+            # the approach to a hold begins at the one before, also out of what is looked through
+            if width <= tolerance or any(
+                _stays_slow(clock, series, since, first, last, noise=noise)
+                for since in {begin, origin}
+            ):
                 found.append((first, last))
             else:
-                work.append((first, last + 1, max(tolerance, width / 4)))
+                work.append((first, last + 1, max(tolerance, width / 4), origin))
+            origin = last
         if width > tolerance:  # between them are holds that are one at this width, or none
             starts, stops = [begin, *(begin + lasts + 1).tolist()], [*(begin + firsts), stop]
             work += [
-                (start, int(end), max(tolerance, width / 4))
+                (start, int(end), max(tolerance, width / 4), start)
                 for start, end in zip(starts, stops, strict=True)
             ]
     both = np.array(sorted(found), dtype=np.intp).reshape(-1, 2)

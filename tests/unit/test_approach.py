@@ -297,3 +297,33 @@ def test_a_ramp_that_slows_within_its_last_step_is_no_corner(duration):
     hold = hold_of(fine[logged], way[logged], tension[logged])
     drop = 1 - tension[-20] / tension[np.searchsorted(fine, 5 + duration)]
     assert abs(hold.relaxation_drop - drop) < 3 * hold.relaxation_drop_standard_uncertainty
+
+
+def test_steps_of_a_slow_log_whose_holds_drift_are_one_hold_each():
+    # synthetic: four steps of 2 mm in 120 s, a row in 2.4 s, each held for 180 s with a row in 6 s
+    time, place, begin = [], [], 0.0
+    for step in range(4):
+        ramp, hold = np.arange(0, 120, 2.4), np.arange(120, 300.1, 6.0)
+        time += [begin + ramp, begin + hold]
+        # codes of 8 nm; it settles to within .6 um and wanders back and on over .7 um
+        wanders = np.interp(hold, [120, 160, 180, 300], [-0.6e-6, -0.3e-6, -0.8e-6, -0.1e-6])
+        place += [2e-3 * (step + ramp / 120), 2e-3 * (step + 1) + wanders]
+        begin += 304.4
+    time, place = np.concatenate(time), np.concatenate(place)
+    place = np.round(place / 8e-9) * 8e-9
+    found = find_standstills(time, place, [1e3 * place], settings=PhaseSettings(), is_held=True)
+    held = found.start_time > 100
+    assert found.start_time[held] == pytest.approx(120 + 304.4 * np.arange(4), abs=5)
+    assert found.end_time[held] == pytest.approx(300 + 304.4 * np.arange(4), abs=0.1)
+
+
+def test_two_rows_at_once_do_not_end_a_ramp_that_runs_over():
+    # synthetic: a machine logs its change of control at 7.206 and 7.208 s, between the tenths, runs
+    # over by 2.5 um and settles back in steps of .2 um for two seconds, the last after nine
+    time = np.sort(np.concatenate([np.arange(0, 187.0, 0.1), [7.206, 7.208]]))
+    ramp = np.minimum(time / 7.206, 1.0) * 600e-6
+    over = np.interp(time, [7.208, 7.3, 7.9, 9.4, 16.3, 16.31], [0, 2.5, 2.5, 0.4, 0.4, 0.2])
+    place = np.round((ramp + 1e-6 * over * (time > 7.208)) / 0.2e-6) * 0.2e-6
+    found = find_standstills(time, place, [1e3 * place], settings=PhaseSettings(), is_held=True)
+    assert found.n_standstills == 1
+    assert found.start_time[0] == pytest.approx(7.25, abs=0.06) and found.end_time[0] > 186.8
