@@ -11,7 +11,7 @@ from reduction.pipeline.located_test import Located
 from reduction.record.errors import DataError
 from reduction.record.notes import Note, note
 from reduction.stages.cycles.cycle_search import control_channel
-from reduction.stages.cycles.levels import Level, find_levels, spread_of_cycles
+from reduction.stages.cycles.levels import Level, are_unlike, find_levels, spread_of_cycles
 from reduction.stages.standstills import median_step
 
 FOUND = {"step_origin": "found in the record, where campaign.toml states no steps"}
@@ -20,8 +20,6 @@ FOUND = {"step_origin": "found in the record, where campaign.toml states no step
 _CUT = ("cyclic",)  # the cycles of a fatigue test are counted to the failure, over its levels
 
 _LOOKED_AT = (*_CUT, "fatigue")
-
-_UNLIKE = 0.5  # of the range of a cycle; of the ratio of ranges, less one
 
 
 @dataclass(frozen=True)
@@ -53,7 +51,7 @@ def find_steps(plan: TestPlan, located: Located | None, campaign: Campaign) -> _
         found = note("levels-found", n_levels=len(levels), steps=steps, n_left_out=left_out)
         return _FoundSteps(_as_steps(plan, ranges), found)
     mean, ratio = spread_of_cycles(time, control, cycles)
-    if levels or mean > _UNLIKE or ratio > 1 + _UNLIKE:
+    if levels or are_unlike(mean, ratio):
         return _FoundSteps(remark=note("cycles-unlike", mean=mean, ratio=ratio, steps=steps))
     return _FoundSteps()
 

@@ -1,5 +1,7 @@
 """Levels of a record are found where there are some, and nothing else is cut."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -100,4 +102,16 @@ def test_what_is_no_step_is_not_cut(cycles):
 def test_a_spectrum_is_not_cut():
     blocks = [wave(10 + 4 * (place % 2), 2, 5) for place in range(30)]
     *_, levels = levels_of(ramp(0, 8), *blocks)
+    assert levels == ()
+
+
+def test_a_programme_of_growing_cycles_is_no_level_beside_its_steady_beginning():
+    # synthetic, after seismic programmes: a greater cycle, then some of three quarters of it, ...;
+    # its later parts have too few cycles for levels of their own, and are unlike as one
+    turns = [0.0]
+    for peak, n_cycles in zip([1, 1.5, 2.2, 2.7, 3.2, 4.0], [4, 4, 4, 2, 2, 2], strict=True):
+        turns += [peak, -1.1 * peak, *([0.78 * peak, -0.86 * peak] * n_cycles)]
+    share = (1 - np.cos(np.pi * np.arange(PER // 2) / (PER // 2))) / 2
+    strokes = [one + (other - one) * share for one, other in pairwise(turns)]
+    *_, levels = levels_of(*strokes, noise=0.002)
     assert levels == ()

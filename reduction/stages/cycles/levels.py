@@ -35,6 +35,8 @@ _BESIDE = 5  # cycles on either side of a step that say how steady its levels ar
 
 _MOST = 20  # levels; a record with more is a spectrum
 
+_UNLIKE = 0.5  # of the range of a cycle; of the ratio of ranges, less one
+
 _SAME_PERIOD = 0.25  # by which the first cycle after a ramp may differ from the next
 
 
@@ -69,8 +71,8 @@ def find_levels(time: ArrayLike, control: ArrayLike, cycles: Cycles) -> tuple[Le
     Returns
     -------
     levels : tuple of Level
-        Empty where the record is of one level, of more than 20, or where the level goes on
-        from cycle to cycle.
+        Empty where the record is of one level, of more than 20, where the level goes on from
+        cycle to cycle, or where the cycles between two steps are unlike each other.
 
     Raises
     ------
@@ -132,6 +134,8 @@ def find_levels(time: ArrayLike, control: ArrayLike, cycles: Cycles) -> tuple[Le
         else:
             runs.append((first, last))
     if not 2 <= len(runs) <= _MOST:
+        return ()
+    if any(are_unlike(*_spread(read[:, first : last + 1])) for first, last in runs):
         return ()
     stops = [-1, *(int(cycles.last[last]) for _, last in runs)]
     mean, half, period = read[0], np.exp(read[1]), np.exp(read[2])
@@ -216,7 +220,15 @@ def spread_of_cycles(time: Floats, control: Floats, cycles: Cycles) -> tuple[flo
     >>> print(round(mean, 3), round(ratio, 3))
     0.0 2.0
     """
-    read = _of_cycles(time, control, cycles)
+    return _spread(_of_cycles(time, control, cycles))
+
+
+def are_unlike(mean: float, ratio: float) -> bool:
+    """Whether a mean over cycles of such a spread represents none of them."""
+    return mean > _UNLIKE or ratio > 1 + _UNLIKE
+
+
+def _spread(read: Floats) -> tuple[float, float]:
     low, high = np.quantile(read[:2], [0.05, 0.95], axis=1)
     of_range = 2 * np.exp(np.median(read[1]))
     return float((high[0] - low[0]) / of_range), float(np.exp(high[1] - low[1]))
