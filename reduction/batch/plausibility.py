@@ -406,7 +406,10 @@ def _of_columns(campaign: Campaign, survey: Survey) -> Iterator[Note]:
     for number, name in enumerate(plan.specimens, start=1):
         channel = layout.channels.get(f"tension.{number}")
         column = str(channel.column).lower() if channel is not None else ""
-        words = re.split(r"[\W_]+", column)
+        words = set(re.split(r"[\W_]+", column))
+        for key, beside in layout.channels.items():  # what stands before every column is no name
+            if not key.startswith("tension"):
+                words -= set(re.split(r"[\W_]+", str(beside.column).lower()))
         others = [
             one for one in campaign.specimens
             if one != name and one.lower() in words and name.lower() not in words
@@ -416,10 +419,11 @@ def _of_columns(campaign: Campaign, survey: Survey) -> Iterator[Note]:
 
 
 def _load_columns(layout: Layout) -> tuple[str, ...]:
-    """Columns of a log that its loads are read from."""
-    return tuple(
+    """Where in a log its loads are: sheet, group or matrix, and columns."""
+    columns = (
         str(channel.column) for key, channel in layout.channels.items() if key.startswith("tension")
     )
+    return (str(layout.sheet), str(layout.group), str(layout.matrix), *columns)
 
 
 def _of_pairs(

@@ -1,0 +1,47 @@
+"""Warnings of columns and files that are named twice, or of another specimen."""
+
+from types import SimpleNamespace
+
+import pytest
+
+from reduction.batch.plausibility import _of_columns, _of_pairs
+from reduction.readers.layout import Layout
+
+
+def layout(load, *, position="Position", time="Time", sheet=1):
+    channels = {
+        "time": {"column": time, "unit": "s"},
+        "crosshead_position": {"column": position, "unit": "mm", "datum": "pin-to-pin"},
+        "tension.1": {"column": load, "unit": "kN"},
+    }
+    return Layout.model_validate({"format": "spreadsheet", "sheet": sheet, "channels": channels})
+
+
+def survey(name, layout="log", specimen="b", digest="0" * 64):
+    plan = SimpleNamespace(
+        id=name, log=name, files=((None, layout),), specimens=(specimen,), failed=False,
+        step_place=None,
+    )  # fmt: skip
+    return SimpleNamespace(plan=plan, sources=(SimpleNamespace(sha256=digest),), levels=None)
+
+
+@pytest.mark.parametrize(
+    ("columns", "n_notes"),
+    [
+        # every column of a machine begins with the number of its station
+        ({"load": "C_1_Force[kN]", "position": "C_1_Way[mm]", "time": "C_1_Time[s]"}, 0),
+        ({"load": "Force C", "position": "Way", "time": "Time"}, 1),
+    ],
+)
+def test_what_stands_before_every_column_is_no_name_of_a_specimen(columns, n_notes):
+    campaign = SimpleNamespace(layouts={"log": layout(**columns)}, specimens={"b": None, "c": None})
+    assert len(list(_of_columns(campaign, survey("T-1")))) == n_notes
+
+
+def test_two_sheets_of_a_workbook_are_two_logs_and_one_sheet_twice_is_one():
+    sheets = {"one": layout("Force", sheet="9 mm"), "two": layout("Force", sheet="7 mm")}
+    campaign = SimpleNamespace(layouts=sheets)
+    apart = [survey("T-1", "one"), survey("T-2", "two")]
+    assert list(_of_pairs(campaign, apart, {})) == []
+    ((test, found),) = _of_pairs(campaign, [survey("T-1", "one"), survey("T-2", "one")], {})
+    assert test == "T-2" and found.code == "log-used-twice"
