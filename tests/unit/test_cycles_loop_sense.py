@@ -66,6 +66,20 @@ def test_a_slope_that_neither_mean_explains_blames_no_channel():
     assert "inertia of moving parts" in str(note)
 
 
+def test_friction_that_falls_with_stretch_is_no_channel_that_runs_backward():
+    # 100 degrees ahead: it takes up 5.7 times what the slope gives; 120 degrees may be inertia
+    loops = loops_of(np.radians(100))
+    assert notes(loops) == ()
+    kept = without_backward_loops(loops)
+    # pi times the amplitudes of 180 N and 0.2, times the sine of the angle
+    energy = np.pi * 180 * 0.2 * np.sin(np.radians(100))
+    assert kept.hysteresis_energy[0] == pytest.approx(energy, rel=1e-3)
+    assert kept.apparent_spring_constant[0] == pytest.approx(900, rel=1e-3)
+    assert np.isnan(kept.loss_factor).all()
+    (note,) = notes(loops_of(np.radians(120)))
+    assert note.code == "loops-run-backward"
+
+
 @pytest.mark.parametrize(("lag", "cause"), [(0.05, "lag"), (0.01, "driven"), (0.0, "driven")])
 def test_work_that_is_given_out_is_held_against_the_stated_lag(lag, cause):
     # 0.2 rad at 0.5 Hz are 63.7 ms, 3.2 samples of 20 ms

@@ -38,6 +38,8 @@ _BEYOND_SCATTER = 3.0
 
 _DRIFT_TOLD = 0.02  # of the energy
 
+_FRICTION = 2.0  # loss over the fall of tension with stretch: less may be damping beside inertia
+
 _PLACED = 0.5  # of what is not known of the work of a drift whose cycles tell nothing of its place
 
 
@@ -53,7 +55,8 @@ def without_backward_loops(loops: Loops) -> Loops:
     -------
     loops : Loops
         With NaN for stiffness, energy and loss of such specimens; means, amplitudes, frequency and
-        the fundamental over time are what was logged, and stay.
+        the fundamental over time are what was logged, and stay. Of friction that falls with stretch
+        the loss factor alone is left out.
 
     Raises
     ------
@@ -68,15 +71,18 @@ def without_backward_loops(loops: Loops) -> Loops:
     [[nan nan]]
     """
     backward = _runs_backward(loops)
-    if not backward.any():
+    falls = np.array([_median(row) < 0 for row in loops.storage_over_time], dtype=bool)
+    if not falls.any():
         return loops
-    kept = ~backward[:, None]
+    kept = {
+        name: ~(falls if name == "loss_factor" else backward)[:, None] for name in _OF_A_SPECIMEN
+    }
     return replace(
         loops,
-        **{name: np.where(kept, getattr(loops, name), np.nan) for name in _OF_A_SPECIMEN},
+        **{name: np.where(kept[name], getattr(loops, name), np.nan) for name in _OF_A_SPECIMEN},
         uncertainty=loops.uncertainty
         | {
-            name: np.where(kept, loops.uncertainty[name], np.nan)
+            name: np.where(kept[name], loops.uncertainty[name], np.nan)
             for name in _OF_A_SPECIMEN
             if name in loops.uncertainty
         },
@@ -317,8 +323,14 @@ def notes_of_loops(
 
 
 def _runs_backward(loops: Loops) -> Bools:
-    """Specimens whose tension falls with stretch in most cycles."""
-    return np.array([_median(row) < 0 for row in loops.storage_over_time], dtype=bool)
+    """Specimens whose tension falls with stretch in most cycles, and not by friction that does.
+
+    A reversed channel turns the loop round as well: what takes up energy, and much more of it than
+    its slope stores, is friction.
+    """
+    pairs = zip(loops.storage_over_time, loops.loss_over_time, strict=True)
+    middle = np.array([[_median(store), _median(loss)] for store, loss in pairs]).reshape(-1, 2)
+    return np.asarray(middle[:, 0] < -np.fmax(middle[:, 1], 0) / _FRICTION)
 
 
 def _channel_that_runs_backward(tension: float, strain: float) -> str:
