@@ -27,7 +27,7 @@ _NOT_MEASURED = (
 )
 
 _ELONGATION = (  # a position where it is stated in a unit of length, else a strain
-    r"elongation|allongement|alargamiento|allungamento|verlängerung|伸长|伸び|伸長|удлинение"
+    r"elongation|allongement|alargamiento|allungamento|verlängerung|dehnung|伸长|伸び|伸長|удлинение"
 )
 
 _FORCE = (
@@ -67,7 +67,7 @@ _NAMES: dict[str, tuple[Dimension, tuple[str, ...], str]] = {
     ),
     "strain": (
         "strain",
-        (r"strain|dehnung|extensometer|d[eé]formation|deformaci[oó]n|应变|應變|ひずみ|歪|변형률|"
+        (r"strain|extensometer|d[eé]formation|deformaci[oó]n|应变|應變|ひずみ|歪|변형률|"
          r"деформация|" + _ELONGATION,),
         _NOT_MEASURED + "|true",
     ),
@@ -232,6 +232,8 @@ def _candidates(key: str, columns: Sequence[SeenColumn]) -> list[tuple[SeenColum
                 found.append((rank, column, unit))
     if any(unit != UNKNOWN for _, _, unit in found):  # what states something that is no unit
         found = [one for one in found if one[2] != UNKNOWN or not _stated_units(one[1])]
+    # a machine's own coordinate is far from any specimen, its travel begins with the test
+    found.sort(key=lambda one: "absol" in _plain(one[1].name))
     best: dict[int, tuple[SeenColumn, str]] = {}
     for _, column, unit in found:
         best.setdefault(column.number, (column, unit))

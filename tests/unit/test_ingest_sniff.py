@@ -485,3 +485,31 @@ def test_a_binary_file_without_columns_is_refused(tmp_path):
 def test_a_short_word_for_displacement_is_a_position(tmp_path, name):
     path = write(tmp_path, f"Time (s),{name},Load (N)\n0,1,2\n1,2,3\n2,3,4\n")
     assert columns(proposed(path))["crosshead_position"] == (name, "mm")
+
+
+@pytest.mark.parametrize(
+    ("names", "units", "position"),
+    [
+        # the machine's own coordinate is some 0.8 m from any specimen
+        ("Temps,Traverse absolue,Force standard,Course standard", "s,mm,N,mm", "Course standard"),
+        ("Time,Crosshead absolute,Standard force,Standard travel", "s,mm,N,mm", "Standard travel"),
+        # an elongation in a unit of length, not a strain
+        ("Prüfzeit,Standardkraft,Dehnung", "s,N,mm", "Dehnung"),
+    ],
+)
+def test_the_travel_of_the_test_is_the_position(tmp_path, names, units, position):
+    # synthetic: a pull of 3 mm
+    travel = np.linspace(0, 3, 60)
+    own = {"mm": travel, "s": 10 * travel, "N": 5 * travel}
+    columns = [
+        own[unit] - (794.864 if "absol" in name else 0)
+        for name, unit in zip(names.split(","), units.split(","), strict=True)
+    ]
+    path = tmp_path / "log.csv"
+    rows = "\n".join(
+        ",".join(f"{value:.3f}" for value in row) for row in zip(*columns, strict=True)
+    )
+    path.write_text(f"{names}\n{units}\n{rows}\n", encoding="utf-8")
+    found = proposed(path)["channels"]
+    assert found["crosshead_position"]["column"] == position
+    assert "strain.1" not in found and found["tension"]["1"]["unit"] == "N"
