@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from reduction.record.measurement import Bools, Floats, Integers, read_only_arrays
-from reduction.record.samples import finite_extremes, take_samples
+from reduction.record.samples import finite_extremes, first_sample, take_samples
 from reduction.stages.cycles.cycle_product import Cycles
 from reduction.stages.cycles.cycle_search import find_reversals
 from reduction.stages.cycles.loop_sense import waveform_of_log
@@ -368,8 +368,23 @@ def _n_strokes(position: Floats, *, least: float) -> int:
     return max(find_reversals(known, band=max(np.ptp(known) / 4, least)).size - 1, 0)
 
 
+def _position_at(position: Floats, load: Floats, level: float) -> float:
+    """Position at which a load first reaches a level."""
+    place = first_sample(lambda part: load[part] >= level, 0, load.size, load)
+    return np.nan if place is None else float(position[place])
+
+
+_RISE = np.array([0.1, 0.5])  # of the greatest load, between which a pull has not yielded
+
+_UNLOADED = 0.5  # of the stretch to the greatest load
+
+
 def _final_share(position: Floats, tension: Floats) -> Floats:
-    """Tension of the last twentieth over the greatest, while the crosshead stays out; else NaN."""
+    """Tension of the last twentieth over the greatest, while the crosshead stays out; else NaN.
+
+    It does not where it comes back by half of the elastic stretch to that load: what yields stays
+    long when it is unloaded.
+    """
     n_last = max(position.size // 20, 1)
     low, high = finite_extremes(position)
     lowest = finite_extremes(position[-n_last:])[0]
@@ -381,4 +396,10 @@ def _final_share(position: Floats, tension: Floats) -> Floats:
         known = load[np.isfinite(load)]
         if known.size and greatest[index] > 0:
             found[index] = float(np.median(known)) / greatest[index]
+            foot, middle = (
+                _position_at(position, tension[index], one) for one in _RISE * greatest[index]
+            )
+            elastic = (middle - foot) / (_RISE[1] - _RISE[0])
+            if high - lowest > _UNLOADED * elastic > 0:
+                found[index] = np.nan
     return found

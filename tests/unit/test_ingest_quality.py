@@ -200,3 +200,16 @@ def test_every_row_is_accounted_for_by_mask_and_channel():
         "tension of new": {"spike": 2, "resampled": 1},
         "tension of used": {},
     }
+
+
+def test_an_encoder_that_is_printed_finer_than_it_counts_has_no_spikes():
+    # synthetic: codes of .2 um, of which one flickers on a slow ramp, and a drift of a tenth of one
+    rng, count = np.random.default_rng(5), np.arange(3000.0)
+    counted = np.floor(0.15 * count + 0.1 * rng.standard_normal(3000))
+    printed = np.round(0.1997 * counted + 0.02 * np.sin(count / 40), 2)
+    noise, _ = _noise_of(printed)
+    assert noise * 12 < 0.15  # less than a code
+    assert not _find_spikes(printed, noise=noise, factor=12.0).any()
+    # what is five codes off is one
+    printed[1500] += 1.0
+    assert np.flatnonzero(_find_spikes(printed, noise=noise, factor=12.0)).tolist() == [1500]

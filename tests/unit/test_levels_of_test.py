@@ -166,3 +166,29 @@ def test_a_mean_that_rises_with_the_amplitude_is_of_growing_cycles_and_no_lost_l
         grows=74.2 if grows else 0.0,
     )  # fmt: skip
     assert words in str(told)
+
+
+@pytest.mark.parametrize(
+    ("out", "load", "share"),
+    [
+        # synthetic: a coupon that yields at 400 N after 2 mm, and is let back along its slope
+        (
+            [0, 10.0, 8.0],
+            lambda way, back: np.minimum(np.minimum(200 * way, 400), 400 - 200 * back),
+            np.nan,
+        ),
+        # a line that breaks at 10 mm, of which the crosshead comes back by 2
+        ([0, 10.0, 8.0], lambda way, back: np.where(back > 0, 0.0, 40 * way), 0.0),
+    ],
+)
+def test_a_coupon_that_is_let_back_has_not_broken(out, load, share):
+    position = 1e-3 * np.interp(np.arange(500), [0, 400, 499], out)
+    way = 1e3 * position
+    tension = load(way, np.maximum.accumulate(way) - way)
+    stands = find_standstills(
+        np.arange(500.0), position, tension[None], settings=PhaseSettings(minimum_duration=600.0)
+    )
+    found = levels_of_test(
+        np.arange(500.0), position, tension[None], None, stands, None, control="position"
+    )
+    assert found.final_share == pytest.approx([share], abs=0.01, nan_ok=True)
