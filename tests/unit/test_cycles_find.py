@@ -474,6 +474,18 @@ def test_movements_that_never_repeat_are_refused():
         find(*path(points))
 
 
+def test_what_is_let_back_to_no_load_is_a_cycle_of_load_and_the_message_says_so():
+    # synthetic: a foil is pulled by 50 mm and let back to no load, where it is 9 mm longer
+    time = np.arange(0, 9.01, 0.1)
+    position = 1e-3 * np.interp(time, [0, 5, 9], [0, 50, 9])
+    tension = 1e-3 * np.interp(time, [0, 2, 5, 9], [0, 450, 700, 0])[None]
+    stands = find_standstills(time, position, tension, settings=PhaseSettings())
+    with pytest.raises(DataError, match='no whole cycle.* with control = "load"'):
+        find_cycles(time, position, tension, stands, settings=CycleSettings())
+    settings = CycleSettings(control="load")
+    assert find_cycles(time, position, tension, stands, settings=settings).n_cycles == 1
+
+
 def test_the_counter_of_the_machine_numbers_the_cycles(twenty):
     time, position = twenty
     counter = np.where((time >= 50) & (time < 250), ((time - 50 + 1e-6) // 10 + 1), 0).astype(int)

@@ -793,6 +793,20 @@ _AT_TOP = 1e-3  # of the range
 _AT_TURNS = 0.9  # of the readings
 
 
+_NO_LOAD = 0.1  # of the greatest
+
+
+def _let_back(tension: Floats, settings: CycleSettings) -> str:
+    """What to state where a specimen is let back to no load, and is longer there than it was."""
+    ends, most = tension[:, [0, -1]], np.nanmax(tension)
+    if settings.control == "load" or not bool((ends < _NO_LOAD * most).all()):
+        return ""
+    return (
+        "The load begins and ends near zero: of a specimen that is longer when it is let back to no"
+        ' load the cycle is found with control = "load". '
+    )
+
+
 def _hint(time: Floats, values: Floats) -> str:
     """What to look at where no cycle is found; a log may be too coarse, or cut off at a value."""
     step = median_step(time)
@@ -1183,7 +1197,7 @@ def find_cycles(
             found=f"{reversals.size - 1} movements of {band:.4g} or more, none followed by one "
             "of similar range without a standstill or a gap between",
             needed="an ascending and a descending half cycle of similar range",
-            hint=_hint(time, values),
+            hint=_let_back(tension, settings) + _hint(time, values),
         )
     notes += _refuse_coarse(time, first, branch_first[:, 1], last)
     is_sure = count is not None and bool(np.all(np.diff(count) > 0))  # it may begin again with 1
