@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import scipy.signal
 
 from reduction.record.errors import DataError
 from reduction.record.settings import ModulusSettings
@@ -108,3 +109,35 @@ def test_given_bins_and_window_are_used():
 def test_series_that_do_not_pair_up_are_refused():
     with pytest.raises(DataError, match="strain, tension and area do not pair up"):
         curves_of(np.ones((2, 5)), np.ones((2, 5)))
+
+
+def noise_of(kind, rng, n):
+    """White, or of a first-order filter that leaves neighbours correlated by .87."""
+    white = rng.standard_normal(n)
+    if kind == "white":
+        return white
+    return scipy.signal.lfilter([np.sqrt(1 - 0.87**2)], [1, -0.87], white)
+
+
+@pytest.mark.parametrize(("kind", "least"), [("white", 0.92), ("filtered", 0.75)])
+def test_a_break_behind_it_widens_no_interval_of_the_rise(kind, least):
+    # synthetic: a coupon that yields, and at .85 of the stretch parts within a two-hundredth of it
+    strain, rng = np.linspace(0, 0.1, 4000), np.random.default_rng(7)
+    load = 6000 * np.tanh(strain / 0.01) + 8000 * strain
+    parts = strain > 0.085
+    load[parts] = 6680 * np.exp(-(strain[parts] - 0.085) / 5e-4)
+    deviations, spreads = [], []
+    for _ in range(6):
+        measured = load + 3 * noise_of(kind, rng, strain.size)
+        found = first_loading_curves(
+            strain[None], measured[None], area=[1.0], settings=ModulusSettings()
+        )
+        at = found.strain_bin
+        before = (at > 0.002) & (at < 0.08)
+        true = 6e5 / np.cosh(at[before] / 0.01) ** 2 + 8000
+        spread = found.tangent_modulus_standard_uncertainty[0, 0, before]
+        deviations.append((found.tangent_modulus[0, 0, before] - true) / spread)
+        spreads.append(spread)
+    assert np.mean(np.abs(deviations) < 1.96) > least
+    # of a straight line through a window of 100 readings of 3 N: 3 sqrt(12 / 100) / .0025
+    assert np.median(spreads) < 4 * 3 * np.sqrt(12 / 100) / 0.0025

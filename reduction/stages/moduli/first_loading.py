@@ -18,6 +18,7 @@ References
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -32,6 +33,7 @@ from reduction.record.samples import (
     take_samples,
 )
 from reduction.record.settings import ModulusSettings
+from reduction.stages.moduli.least_squares import lag_one_inflation
 from reduction.stages.moduli.local_regression import (
     LocalFits,
     RunningStatistics,
@@ -204,7 +206,32 @@ def _fit_rise(
         grid=grid,
         tension_reference=float(tension.mean()) if tension.size else 0.0,
     )
-    return fit_windows(moments, minimum_count=minimum_count)
+    fits = fit_windows(moments, minimum_count=minimum_count, is_alone=True)
+    inflation = _inflation(strain, tension, rise, fits, grid)
+    return replace(
+        fits,
+        slope_variance=inflation * fits.slope_variance,
+        tension_variance=inflation * fits.tension_variance,
+    )
+
+
+def _inflation(
+    strain: Floats, tension: Floats, rise: _Rise, fits: LocalFits, grid: StrainGrid
+) -> float:
+    """Factor of the variances by the correlation of neighbouring residuals, each over its scatter.
+
+    A filter, or hum that the log reads at its own beat, moves neighbours alike.
+    """
+    bins = np.clip(((strain - grid.low) / grid.width).astype(np.intp), 0, grid.n_bins - 1)
+    off = tension - fits.tension[rise.piece, bins]
+    off -= fits.slope[rise.piece, bins] * (strain - grid.centres[bins])
+    variance = fits.tension_variance[rise.piece, bins]
+    share = off / np.sqrt(np.where(variance > 0, variance, np.nan))
+    share = share[np.isfinite(share)]
+    return lag_one_inflation(share) if share.size >= _FEWEST_CORRELATED else 1.0
+
+
+_FEWEST_CORRELATED = 100
 
 
 def first_loading_curves(

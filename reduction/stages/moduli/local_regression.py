@@ -425,7 +425,10 @@ def _window_sums(sums: Floats, n_window: int) -> Floats:
     return windows
 
 
-def fit_windows(moments: BranchMoments, *, minimum_count: int) -> LocalFits:
+_ALONE = 12  # degrees of freedom of a window that knows its own scatter
+
+
+def fit_windows(moments: BranchMoments, *, minimum_count: int, is_alone: bool = False) -> LocalFits:
     r"""Slope and value of tension against strain at every bin centre.
 
     In each window tension is regressed on strain with a quadratic; the slope at
@@ -444,6 +447,8 @@ def fit_windows(moments: BranchMoments, *, minimum_count: int) -> LocalFits:
         Sums of each curve and bin. [SI]
     minimum_count : int
         Fewest samples in a window that give a slope. [1]
+    is_alone : bool
+        Of curves that no other repeats. [1]
 
     Returns
     -------
@@ -468,7 +473,9 @@ def fit_windows(moments: BranchMoments, *, minimum_count: int) -> LocalFits:
     NaN where fewer than ``minimum_count`` samples are in the window, where they
     cluster (their variance is below a quarter of an even spread), or where their
     mean lies further than an eighth of the window from the bin centre, as it does
-    at the end of a branch. Residual variance is pooled over the windows of a curve.
+    at the end of a branch. Residual variance is pooled over the windows of a curve, or, with
+    ``is_alone``, that of each window where it has twelve degrees of freedom: a knee or a break
+    elsewhere on a single curve says nothing of it.
 
     Strain noise does not flatten the slope where samples lie closer than the noise,
     since the window is cut on the strain that was read; where they lie further
@@ -524,6 +531,8 @@ def fit_windows(moments: BranchMoments, *, minimum_count: int) -> LocalFits:
         total_freedom = freedom.sum(axis=-1, keepdims=True)
         variance = np.maximum(squares.sum(axis=-1, keepdims=True), 0.0) / total_freedom
         variance = np.where(total_freedom > 0, variance, np.nan)
+        if is_alone:
+            variance = np.where(freedom >= _ALONE, np.maximum(squares, 0.0) / freedom, variance)
         slope = straight + bend * tilt
         slope_variance = variance * (per_s2 + tilt * tilt * per_bend)
         tension = level + straight * offset + bend * arc + moments.tension_reference
