@@ -44,3 +44,15 @@ def test_a_square_wave_is_no_row_of_jumps_and_back():
 def test_fewer_than_four_reversals_are_returned_as_they_are():
     values = np.r_[np.arange(50.0), np.arange(50.0, 0, -1)]
     assert _drop_jumps(values, np.array([0, 50, 99]))[0].tolist() == [0, 50, 99]
+
+
+def test_a_preload_before_the_channel_is_set_to_zero_is_no_part_of_the_first_cycle():
+    # synthetic: 8 samples of preload to 120, set back to 100 as the strokes begin
+    values = np.concatenate([100 + 2.5 * np.arange(9.0), stroke()])
+    reversals, jumps = _drop_jumps(values, find_reversals(values, band=10))
+    assert reversals.tolist() == (9 + find_reversals(stroke(), band=10)).tolist()
+    assert jumps.tolist() == [8]
+    # a drop-out at the same place comes back, and the first stroke goes on
+    values = stroke()
+    values[12:14] = 0
+    assert _drop_jumps(values, find_reversals(values, band=10))[0][0] == 0

@@ -304,7 +304,8 @@ def _drop_jumps(values: Floats, reversals: Indices) -> tuple[Indices, Indices]:
     each way, one of which is nothing but the jump.  A half cycle is a jump where a
     single step at its begin or end makes 80 % of its range, while it lasts at most a
     quarter as long as the half cycle of median length, and that has at least 8 steps.
-    The samples themselves are left as they are.
+    The samples themselves are left as they are. A channel that is set to zero after a short
+    preload does not come back: what is before that is no part of the first cycle.
 
     Examples
     --------
@@ -338,6 +339,10 @@ def _drop_jumps(values: Floats, reversals: Indices) -> tuple[Indices, Indices]:
     rows = rows[place % 2 == 0]
     stays = np.ones(reversals.size, dtype=bool)
     stays[rows] = stays[rows + 1] = False
+    if rows[0] == 1 and steps[0] <= _LONGEST * typical:
+        after = values[reversals[2] : reversals[2] + int(_LONGEST * typical) + 2]
+        if not np.nanmax(np.abs(np.diff(after))) >= _JUMP_SHARE / 2 * size[1]:
+            stays[[0, 2]] = False, True
     return reversals[stays], reversals[rows]
 
 
