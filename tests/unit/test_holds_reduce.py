@@ -386,6 +386,19 @@ def test_between_two_readings_of_a_slow_log_a_fall_may_bend(interval, late):
     assert (error < 2 * spread[known]).all()
 
 
+def test_a_relaxation_that_bends_over_the_logarithm_of_time_is_read_where_it_is():
+    # synthetic: a power of time, 20 readings a second; a line of +-10 % would read 5e-5 too much
+    elapsed = np.arange(0.05, 1800, 0.05)
+    true = 2.0 * np.array([60.0, 600.0]) ** -0.15
+    off = []
+    for seed in range(20):
+        noise = 7e-4 * np.random.default_rng(seed).standard_normal(elapsed.size)
+        value, spread = _value_at_times(elapsed, 2.0 * elapsed**-0.15 + noise, [60.0, 600.0])
+        off.append((value - true) / spread)
+    assert np.abs(np.mean(off, axis=0)).max() < 0.7
+    assert np.sqrt(np.mean(np.square(off))) == pytest.approx(1.0, abs=0.4)
+
+
 def test_a_converter_in_coarse_steps_leaves_no_value_without_uncertainty():
     rng = np.random.default_rng(3)
     elapsed = np.arange(0.0, 600, 0.1)

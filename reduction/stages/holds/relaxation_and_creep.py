@@ -492,9 +492,9 @@ def _rate_per_decade(blocks: _LogBlocks, *, ramp_duration: float) -> _Rate:
 def _value_at_times(
     elapsed: ArrayLike, values: ArrayLike, times: ArrayLike, *, begin_uncertainty: float = 0.0
 ) -> tuple[Floats, Floats]:
-    """Series at stated times, each from a line through the samples within a tenth of it.
+    """Series at stated times, each from a parabola through the samples within a tenth of it.
 
-    The line is over the logarithm of time, on which a relaxation bends least.  What the series
+    It is over the logarithm of time, on which a relaxation bends least.  What the series
     changes by within the uncertainty of the time at which it begins [s] is part of its own, and so
     is the step of a converter.  Between two readings of a slow log a series that bends one way
     lies between their chord and the chord behind them, drawn on.
@@ -531,29 +531,37 @@ def _value_at_times(
                 of_begin = slope * begin_uncertainty
                 spread[index] = np.sqrt(noise**2 + rounding**2 + of_begin**2 + bend**2)
             continue
-        found[index], slope, own = _on_line(
-            time[first:last], series[first:last], wanted, noise=noise
-        )
+        found[index], slope, own = _on_curve(
+            time[first:last], series[first:last], wanted, noise=noise,
+            # a power of time bends by more than the noise of thousands of readings leaves
+            n_terms=3 if last - first >= _FEWEST_OF_BEND else 2,
+        )  # fmt: skip
         spread[index] = np.sqrt(own**2 + rounding**2 + (slope * begin_uncertainty) ** 2)
         release_pages(time, series)
     return found, spread
 
 
-def _on_line(
-    time: Floats, series: Floats, wanted: float, *, noise: float
+_FEWEST_OF_BEND = 12  # samples of which a parabola is no worse than what it corrects
+
+
+def _on_curve(
+    time: Floats, series: Floats, wanted: float, *, noise: float, n_terms: int = 2
 ) -> tuple[float, float, float]:
-    """Value and rate of the regression of a series at a time, and the noise of the value."""
-    count = time.size
-    mean, square, product = 0.0, 0.0, 0.0
-    for part in sample_blocks(count, time, series):
-        mean += float(np.log(time[part] / wanted).sum()) / count
-    for part in sample_blocks(count, time, series):
-        off = np.log(time[part] / wanted) - mean
-        square += float(off @ off)
-        product += float(off @ series[part])
-    slope = product / square
-    own = noise * float(np.sqrt(1 / count + mean**2 / square))
-    return mean_of(series) - slope * mean, slope / wanted, own
+    """Value and rate of the regression of a series at a time, and the noise of the value.
+
+    Over the logarithm of time: a line of two terms, a parabola of three.
+    """
+    level = mean_of(series)
+    power, product = np.zeros((n_terms, n_terms)), np.zeros(n_terms)
+    for part in sample_blocks(time.size, time, series):
+        rows = np.vander(np.log(time[part] / wanted), n_terms, increasing=True)
+        power += rows.T @ rows
+        product += rows.T @ (series[part] - level)
+    size = np.sqrt(np.diag(power))
+    inverse = np.linalg.pinv(power / np.outer(size, size), hermitian=True) / np.outer(size, size)
+    terms = inverse @ product
+    own = noise * float(np.sqrt(max(inverse[0, 0], 0.0)))
+    return level + float(terms[0]), float(terms[1]) / wanted, own
 
 
 TENSION_TOLERANCE = 0.01
@@ -843,7 +851,7 @@ def _lost_in_a_decade(hold: Hold) -> float:
     if stop - begin < FEWEST_SAMPLES // 4:
         return 0.0
     part = slice(begin, stop)
-    _, rate, _ = _on_line(since[part], hold.tension[part], float(since[begin]), noise=0.0)
+    _, rate, _ = _on_curve(since[part], hold.tension[part], float(since[begin]), noise=0.0)
     return float(abs(rate) * since[begin] * np.log(10))
 
 
@@ -854,7 +862,7 @@ def _at_last(hold: Hold, n_samples: int) -> tuple[float, float]:
     since = hold.time[-n_samples:] - hold.ramp_end_time
     if since.size < 3 or not since[0] > 0:
         return mean, spread
-    value, _, own = _on_line(since, series, float(since[-1]), noise=reading_noise(hold.tension))
+    value, _, own = _on_curve(since, series, float(since[-1]), noise=reading_noise(hold.tension))
     return value, float(np.hypot(spread, own))
 
 
