@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from reduction.pipeline.located_test import Located, slips_of
+from reduction.pipeline.located_test import PULLED, Located, slips_of
 from reduction.record.arrays import run_blocks
 from reduction.record.errors import DataError, FitError
 from reduction.record.measurement import Bools, Floats, Specimen, areas_of
 from reduction.record.notes import Note, note
-from reduction.record.samples import first_sample
+from reduction.record.samples import finite_extremes, first_sample
 from reduction.record.settings import ReductionSettings
 from reduction.stages.cycles.cycle_product import Cycles, Loops, turns_alike
 from reduction.stages.cycles.cycle_search import control_channel
@@ -333,6 +333,9 @@ def _without_modulus(curves: ModulusCurves, lacks_area: Bools) -> ModulusCurves:
     return replace(curves, **emptied)
 
 
+_PRELOAD = 0.2  # of the greatest load
+
+
 def parts_of_first_loading(
     located: Located,
     strain: Floats,
@@ -343,9 +346,17 @@ def parts_of_first_loading(
     *,
     kind: str,
 ) -> tuple[dict[str, Any], list[Note]]:
-    """The first rise of a record that begins slack: curve; of rubber, stress and laws too."""
+    """The first rise of a record that begins slack: curve; of rubber, stress and laws too.
+
+    A coupon of anything else may be pulled from a preload.
+    """
     begins = [_first_finite(force) for force in tension]
-    if all(start > located.standstills.slack_tension for start in begins):
+    may_be_loaded = kind in PULLED and not any(one.is_rubber for one in specimens)
+    slack = located.standstills.slack_tension
+    if all(
+        start > (max(slack, _PRELOAD * finite_extremes(force)[1]) if may_be_loaded else slack)
+        for start, force in zip(begins, tension, strict=True)
+    ):
         return {}, []
     area = areas_of(specimens)
     has_area = np.isfinite(area)

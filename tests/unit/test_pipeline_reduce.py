@@ -15,12 +15,12 @@ DIAMETER = 0.025
 SPIKE = 700
 
 
-def reduced(specimen, load_cell=2.0, zero=1.0):
+def reduced(specimen, load_cell=2.0, zero=1.0, preload=0.0):
     """A slow pull of a linear cord, slack at first, with one spike of 5 kN in its tension."""
     time = np.arange(0, 120, 0.1)
     position = 1 + np.interp(time, [0, 20, 120], [0, 0, 0.5])
     noise = np.random.default_rng(7)
-    tension = 400 * (position - 1) + noise.normal(0, 0.2, time.size)
+    tension = preload + 400 * (position - 1) + noise.normal(0, 0.2, time.size)
     tension[SPIKE] = 5000
     flags = np.zeros((1, time.size), dtype=np.uint16)
     flags[0, SPIKE] = Quality.SPIKE
@@ -83,6 +83,16 @@ def test_a_first_rise_that_stretches_nothing_gives_no_law_and_says_why():
     (note,) = [text for text in map(str, found.notes) if "hyperelastic" in text]
     assert note.startswith("cord: no hyperelastic law: the first rise of the record is not a pull")
     assert "(strain reaches -1" in note and "the zero of strain" in note
+
+
+@pytest.mark.parametrize(
+    ("kind", "preload", "is_given"),
+    [("other", 30.0, True), ("other", 100.0, False), ("elastomer", 30.0, False)],
+)
+def test_a_coupon_may_be_pulled_from_a_preload_and_rubber_may_not(kind, preload, is_given):
+    # synthetic: of 200 N and the preload; what rubber does at a strain needs its first stretch
+    found = reduced(Specimen("cord", kind=kind, diameter=(DIAMETER,)), preload=preload)
+    assert (found.first_loading is not None) is is_given
 
 
 def test_the_gauge_length_is_the_relaxed_length_of_a_pull(pulled):
