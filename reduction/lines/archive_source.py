@@ -358,13 +358,7 @@ def _line_source_of_test(dataset: xr.Dataset, specimen: str) -> LineSource:
             "the archive has no such specimen", found=specimen, needed=", ".join(known) or "none"
         )
     place = known.index(specimen)
-    curves = _curves_of_specimen(dataset, place)
-    if not curves:
-        raise DataError(
-            f"the archive of test {dataset.attrs.get('test', '')} has no curve",
-            needed="a cyclic test, or a slow pull",
-        )
-    return _line_of_curves(dataset, place, specimen, curves)
+    return _line_of_curves(dataset, place, specimen, _curves_of_specimen(dataset, place))
 
 
 def _levels_of_specimen(dataset: xr.Dataset, place: int) -> tuple[LineLevels, ...]:
@@ -722,8 +716,9 @@ def _pull_of(folder: Path, test: str, specimen: str, opener: Opener = reading) -
                 if curves:
                     return replace(found, curves=curves)
                 raise ArchiveError(
-                    f"the slow pull of {specimen} has no curve", found=str(path),
-                    needed="a load-strain cubic; the notes of the test say why it has none",
+                    f"the slow pull {test} of {specimen} has no load-strain curve",
+                    found=str(path), needed="a pull with K_0",
+                    hint="The notes of the test say why it has none.",
                 )  # fmt: skip
     raise ArchiveError(
         f"the slow pull of {specimen} has no archive", found=f"no test {test} in {folder}",

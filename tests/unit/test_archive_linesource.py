@@ -16,6 +16,7 @@ from reduction.lines.archive_source import (
     _line_source_of_experiment,
     _line_source_of_test,
     _specimens_of,
+    experiments_with_pulls,
 )
 from reduction.lines.line_lookup import look_up
 from reduction.record.errors import ArchiveError, DataError
@@ -228,15 +229,19 @@ def test_what_has_no_surface_is_refused(surfaces):
         _line_source_of_experiment(shares, "nylon")
 
 
-def test_a_pull_that_was_refused_and_a_test_without_a_curve_give_no_line(folder):
+def test_surfaces_beside_a_pull_that_was_refused_are_looked_up_without_k_0(folder, tmp_path):
+    shutil.copy(folder / "surfaces.nc", tmp_path)
+    shutil.copy(folder / "R01.nc", tmp_path)
     with open_archive(folder / "Q01.nc") as archive:
-        pull = archive.load()
-    name = str(pull["specimen"].to_numpy()[0])
-    refused = pull.copy(deep=True)
-    refused["pull_strain_coefficient"][0, 2] = np.nan
-    for one in (refused, pull.drop_vars("pull_strain_coefficient")):
-        with pytest.raises(DataError, match="has no curve; needed a cyclic test, or a slow pull"):
-            _line_source_of_test(one, name)
+        pull = archive.load().copy(deep=True)
+    pull["pull_strain_coefficient"][0, 2] = np.nan
+    pull.to_netcdf(tmp_path / "Q01.nc", engine="netcdf4")
+    (line,) = lines_of_source(str(tmp_path / "surfaces.nc"))
+    assert line.slow_pulls == {}
+    at = {"frequency": 0.3, "mean_tension": 6000.0, "tension_amplitude": 2000.0}
+    assert np.isfinite(look_up(line, "apparent_spring_constant", **at).value)
+    with pytest.raises(ArchiveError, match=r"the slow pull Q01 of line-1 has no load-strain curve"):
+        experiments_with_pulls(tmp_path / "surfaces.nc")
 
 
 def test_an_archive_without_a_curve_or_a_level_is_refused_by_its_name(folder, tmp_path):
