@@ -284,7 +284,7 @@ def test_a_mark_below_all_others_is_not_set_aside_for_a_law_that_saturates():
             tension_uncertainty=np.array([0, 0.0143, 0.0081, 0.0079, 0.0073, 0.0063, 0.009]),
         )
     )  # fmt: skip
-    assert found.set_aside is None
+    assert found.set_aside == ()
 
 
 def test_a_mark_below_a_kink_is_not_set_aside_for_a_law_that_the_others_hardly_pass():
@@ -299,3 +299,31 @@ def test_a_mark_below_a_kink_is_not_set_aside_for_a_law_that_the_others_hardly_p
     )  # fmt: skip
     with pytest.raises(DataError, match="no law"):
         fit_splice_laws(given)
+
+
+def marks_of_five_tests(*wrong):
+    """Splices that strain by 0.1 (1 - exp(-F / 120 N)), read to a 600th; rows off by so much."""
+    tension = np.tile([0.0, 110.0, 190.0, 280.0], 5) * np.repeat([1.0, 1.1, 1.25, 1.4, 1.6], 4)
+    free = 0.004 * tension + 1e-6 * tension**2 * np.repeat([1.0, 0.6, 1.4, 0.8, 1.2], 4)
+    splice = 0.1 * -np.expm1(-tension / 120.0)
+    for row, error in wrong:
+        splice[row] += error
+    return SpliceReadings(
+        free, splice, tension, np.repeat(np.arange(5), 4), tension == 0, 0.4, 1 / 600,
+        np.zeros((2, 2)),
+    )  # fmt: skip
+
+
+def test_a_misread_mark_is_set_aside_beside_another_that_is_less_so():
+    """20 and 10 mm of splices of 0.6 m: laws that the others contradict do not excuse a mark."""
+    found = fit_splice_laws(marks_of_five_tests((10, 0.033), (5, -0.0165)))
+    assert 10 in found.set_aside
+    assert set(found.set_aside) <= {5, 10}
+
+
+def test_a_refusal_names_the_mark():
+    rng = np.random.default_rng(3)
+    wrong = [(row, 0.05 * rng.choice([-1, 1])) for row in (1, 2, 5, 6, 9, 10, 13, 14, 17)]
+    names = [f"mark {row}" for row in range(20)]
+    with pytest.raises(DataError, match=r"Look at mark \d+, off by"):
+        fit_splice_laws(marks_of_five_tests(*wrong), names=names)

@@ -237,8 +237,8 @@ class SpliceAverage:
         By how much the splices of each test are longer, over their length. [1]
     test_variance : ndarray, shape (n_tests,)
         Of these. [1]
-    set_aside : int or None
-        Row that lies far off every law.
+    set_aside : tuple of int
+        Rows that lie far off every law that the others agree with, at most one of six.
     is_checked : bool
         False where every law with a mark to spare is doubtful, and others follow any marks: a
         misread mark would not show.  Where none of the former passes at all, laws that the marks
@@ -254,11 +254,13 @@ class SpliceAverage:
     slip: float
     test_offset: Floats
     test_variance: Floats
-    set_aside: int | None = None
+    set_aside: tuple[int, ...] = ()
     is_checked: bool = True
 
 
-def fit_splice_laws(readings: SpliceReadings, *, specimen: str = "") -> SpliceAverage:
+def fit_splice_laws(
+    readings: SpliceReadings, *, specimen: str = "", names: Sequence[str] = ()
+) -> SpliceAverage:
     r"""Fit every law that the marks can carry, and average those that they do not reject.
 
     Parameters
@@ -267,6 +269,8 @@ def fit_splice_laws(readings: SpliceReadings, *, specimen: str = "") -> SpliceAv
         Of all tests of the specimen.
     specimen : str
         For messages.
+    names : sequence of str
+        Of the rows, for messages.
 
     Returns
     -------
@@ -308,14 +312,18 @@ def fit_splice_laws(readings: SpliceReadings, *, specimen: str = "") -> SpliceAv
     >>> print(found.laws[0].name, found.values.round(3)[1])
     strain-ratio 0.22
     """
-    kept, set_aside = readings, None
+    kept, left = readings, np.arange(readings.free.size)
     n_loaded = int((~readings.is_slack).sum())
     found = _judged(kept)
-    if n_loaded >= _ENOUGH and found.laws and found.laws[0].chance < _DOUBT:
-        row = _outlier(readings, found.slip)
-        if row is not None:
-            kept, set_aside = readings.without(row), row
-            found = _judged(kept)
+    while (
+        readings.free.size - left.size < n_loaded // _ENOUGH
+        and found.laws
+        and found.laws[0].chance < _DOUBT
+        and (row := _outlier(kept, found.slip)) is not None
+    ):
+        kept, left = kept.without(row), np.delete(left, row)
+        found = _judged(kept)
+    set_aside = tuple(np.setdiff1d(np.arange(readings.free.size), left).tolist())
     laws, slip = found.laws, found.slip
     if not laws:
         raise DataError(
@@ -325,7 +333,7 @@ def fit_splice_laws(readings: SpliceReadings, *, specimen: str = "") -> SpliceAv
         )
     passing = np.array([law.chance >= REJECTED for law in laws])
     if not passing.any():
-        raise _refusal(readings, laws, specimen)
+        raise _refusal(readings, laws, specimen, names)
     n_loaded = int((~kept.is_slack).sum())
     has_spare = np.array([law.freedom > 0 for law in laws])
     is_sure = np.array([law.chance >= _DOUBT for law in laws])
@@ -736,9 +744,10 @@ def _outlier(readings: SpliceReadings, slip: float) -> int | None:
     """Return the stretched row that lies far off every law that is fitted without it."""
     far = np.zeros(readings.free.size)
     for row in np.flatnonzero(~readings.is_slack):
-        others = _fitted(readings.without(int(row)), slip)
-        if not others:
-            return None
+        # what a law says of the row counts where the other marks agree with the law
+        others = [
+            law for law in _fitted(readings.without(int(row)), slip) if law.chance >= REJECTED
+        ]
         errors = []
         for law in others:
             columns = _terms(readings, float(law.values[_EXPONENT]), float(law.values[_SATURATION]))
@@ -751,7 +760,7 @@ def _outlier(readings: SpliceReadings, slip: float) -> int | None:
             of_law = float(design @ law.covariance[np.ix_(at, at)] @ design)
             away = readings.splice[row] - design @ law.values[at]
             errors.append(abs(away) / np.sqrt(own + of_law))
-        far[row] = min(errors)
+        far[row] = min(errors, default=0.0)
     worst = int(np.argmax(far))
     if far[worst] <= _FAR:
         return None
@@ -769,17 +778,20 @@ def _outlier(readings: SpliceReadings, slip: float) -> int | None:
     return worst if agrees else None
 
 
-def _refusal(readings: SpliceReadings, laws: Sequence[FittedLaw], specimen: str) -> DataError:
+def _refusal(
+    readings: SpliceReadings, laws: Sequence[FittedLaw], specimen: str, names: Sequence[str]
+) -> DataError:
     best = max(laws, key=lambda law: law.chance)
     length = 1 / (1 + readings.share * np.maximum(best.values[1], 0.0))
     points = 100 * readings.share * length * np.abs(best.residual)
     worst = int(np.argmax(points))
+    named = names[worst] if names else f"row {worst + 1} of its marks"
     return DataError(
         f"no law of the splices of '{specimen}' agrees with its marks",
         found=f"{best.name}, the best of {len(laws)}, misses them by "
         f"{points[~readings.is_slack].mean():.2f} points of strain where the tape explains "
         f"{100 * readings.share * length * readings.tape * np.sqrt(3):.2f}",
         needed="marks that one of the laws passes within the stated error of the tape",
-        hint=f"Look at row {worst + 1} of its marks, off by {points[worst]:.2f} points; at holds"
+        hint=f"Look at {named}, off by {points[worst]:.2f} points; at holds"
         " whose tension is not that of the marks; or state the error of the tape.",
     )

@@ -929,7 +929,9 @@ def average_over_laws(readings: PooledMarks) -> SpliceAverage:
     """Average over the laws of the splices that the marks do not reject."""
     marks = readings.marks
     held = replace(readings, marks=replace(marks, reading_uncertainty=_tape_error(marks)))
-    return fit_splice_laws(_splice_readings(held, readings.relaxed()), specimen=marks.specimen)
+    given = _splice_readings(held, readings.relaxed())
+    names = [f"the mark of test {marks.test[row]} at {marks.hold[row]}" for row in given.row]
+    return fit_splice_laws(given, specimen=marks.specimen, names=names)
 
 
 def _fit_mixed(readings: PooledMarks, average: SpliceAverage | None) -> _MixedFit:
@@ -959,7 +961,7 @@ def _fit_mixed(readings: PooledMarks, average: SpliceAverage | None) -> _MixedFi
     if not average.slip:  # strain refers to the mean slack length, a test lies anywhere about it
         of_slip = _growth_of_slack(marks) / (_ANY * splice)
     between += _of_creep(np.array(values), _mean_splice_strain(given, own))
-    rows = given.row if average.set_aside is None else np.delete(given.row, average.set_aside)
+    rows = np.delete(given.row, average.set_aside)
     model = StrainModel(
         marks.specimen,
         "mixed",
@@ -1077,10 +1079,11 @@ def _on_laws(fit: _MixedFit, readings: PooledMarks) -> tuple[Note, ...]:
             else _effect_on_modulus(fit.model, second, average.reference),
         )
     ]
-    if average.set_aside is not None:
-        row = int(_splice_readings(readings, readings.relaxed()).row[average.set_aside])
-        notes.append(note("mark-set-aside", marks.specimen, test=marks.test[row],
-                          hold=marks.hold[row]))  # fmt: skip
+    rows = _splice_readings(readings, readings.relaxed()).row
+    notes += [
+        note("mark-set-aside", marks.specimen, test=marks.test[row], hold=marks.hold[row])
+        for row in rows[list(average.set_aside)]
+    ]
     if average.is_checked and any(
         weight > 0 and law.chance < REJECTED
         for law, weight in zip(average.laws, average.weight, strict=True)
