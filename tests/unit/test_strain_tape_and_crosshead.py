@@ -29,8 +29,9 @@ def check(tape, *, unit="m", holds=HOLDS, rest=SLACK, reach=(3.74, 7.36), slack=
             MarkPlace("marks.csv", row, f"far_thimble_{unit}") for row in range(2, 2 + far.size)
         ),
     )  # fmt: skip
+    position = np.concatenate([[np.nan], holds, reach])
     return check_tape_against_crosshead(
-        marks, test_id="T-1", standstills=stands, position=np.array(reach), position_uncertainty=u
+        marks, test_id="T-1", standstills=stands, position=position, position_uncertainty=u
     )
 
 
@@ -76,6 +77,29 @@ def test_a_small_shift_is_said_unless_the_crosshead_is_stated_to_be_so_uncertain
     assert (found.code, found.severity) == ("tape-off-crosshead", "warning")
     assert found.numbers["apart"] == pytest.approx(0.03)
     assert check(HOLDS - 0.03, slack=SLACK - 0.03, u=0.01) == ()
+
+
+@pytest.mark.parametrize(
+    ("moment", "is_off"), [(0.0, False), (0.6, False), (1.0, False), (1.5, True)]
+)
+def test_a_tape_that_was_read_while_the_specimen_crept_at_a_held_load_is_not_off(moment, is_off):
+    """Each hold creeps by 40 mm, as a tether does at a held load."""
+    n, creep = 101, 0.04
+    of_hold = creep * np.linspace(-0.5, 0.5, n)
+    stands = Standstills(
+        first=np.arange(3) * n, last=np.arange(1, 4) * n - 1, start_time=np.arange(3) * 30.0,
+        end_time=np.arange(3) * 30.0 + 29, mean_position=HOLDS, mean_tension=np.ones((1, 3)),
+        is_rest=np.zeros(3, dtype=bool), position_tolerance=creep, slack_tension=0.5,
+    )  # fmt: skip
+    far = np.append(SLACK, HOLDS + creep * (moment - 0.5))
+    marks = SpliceMarks(
+        "new", ("T-1",) * 4, ("slack", "min", "centre", "max"),
+        near_toe=0.1 * far, far_toe=0.9 * far, far_thimble=far, reading_uncertainty=0.001,
+    )  # fmt: skip
+    found = check_tape_against_crosshead(
+        marks, test_id="T-1", standstills=stands, position=(HOLDS[:, None] + of_hold).ravel()
+    )
+    assert bool(found) is is_off
 
 
 def test_a_slack_specimen_hangs_but_does_not_reach_farther_than_it_is_long():

@@ -129,13 +129,32 @@ def check_tape_against_crosshead(
     alike = _alike(marks, stretched)
     if not meets.any():
         return alike
-    nearest = holds[np.abs(holds - tape[meets][:, None]).argmin(axis=1)]
-    apart = float(np.mean(nearest - tape[meets]))
+    nearest = np.abs(holds - tape[meets][:, None]).argmin(axis=1)
+    ends = _ends(standstills, position)[nearest]
+    # where the specimen creeps at a held load, the tape may have been read at any moment
+    apart = float(np.mean(np.clip(tape[meets], *ends.T) - tape[meets]))
     reading = max(marks.reading_uncertainty, TAPE_UNCERTAINTY)
     if abs(apart) <= _FAR * np.hypot(reading, position_uncertainty):
         return alike
     apart_note = note("tape-off-crosshead", marks.specimen, n_marks=int(meets.sum()), apart=apart)
     return (apart_note, *alike)
+
+
+def _ends(standstills: Standstills, position: Floats) -> Floats:
+    """Least and greatest of where each hold begins and ends, means over a tenth, shape (n, 2)."""
+    ends = []
+    for mean, first, last in zip(
+        standstills.mean_position[~standstills.is_rest],
+        standstills.first[~standstills.is_rest],
+        standstills.last[~standstills.is_rest],
+        strict=True,
+    ):
+        of_hold = position[first : last + 1]
+        known = of_hold[np.isfinite(of_hold)]
+        n_tenth = max(known.size // 10, 1)
+        both = [known[:n_tenth].mean(), known[-n_tenth:].mean()] if known.size else [mean, mean]
+        ends.append(sorted(both))
+    return np.array(ends)
 
 
 def _alike(marks: SpliceMarks, rows: Integers) -> tuple[Note, ...]:
