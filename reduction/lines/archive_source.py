@@ -197,8 +197,8 @@ def _line_source_of_experiment(
     )
     surfaces = {}
     for response in RESPONSES:
-        name = next((f"{one}{response}" for one in _SCALES if f"{one}{response}" in names), None)
-        if name is not None:
+        name = looked_up_surface(response, names)
+        if name:
             shared = _shared(dataset, row, name, len(fitted.exponents))
             plan = dataset["run_plan"].values[row, :, : len(factors)]
             surfaces[response] = _surface(
@@ -214,6 +214,17 @@ def _line_source_of_experiment(
         notes=_synthetic(dataset),
         **_agreed([(specimens or {}).get(one, {}) for one in _specimens_of(dataset, experiment)]),
     )
+
+
+def looked_up_surface(response: str, names: Sequence[str]) -> str:
+    """Name of the surface that the look-up takes a response from, of those fitted; empty if none.
+
+    Examples
+    --------
+    >>> looked_up_surface("hysteresis_energy", ["hysteresis_energy", "log_hysteresis_energy"])
+    'log_hysteresis_energy'
+    """
+    return next((f"{one}{response}" for one in _SCALES if f"{one}{response}" in names), "")
 
 
 def _specimens_of(dataset: xr.Dataset, experiment: str) -> tuple[str, ...]:

@@ -9,8 +9,10 @@ import numpy as np
 import xarray as xr
 
 from reduction.archive.open import reading
-from reduction.lines.archive_source import CYCLE
+from reduction.archive.surfaces_dataset import surface_names
+from reduction.lines.archive_source import CYCLE, looked_up_surface
 from reduction.lines.export_tables import TableColumn, ValueTable
+from reduction.quantities.names import quantity
 from reduction.quantities.units import UnitSystem, display_unit
 from reduction.record.errors import DataError
 from reduction.record.measurement import Floats
@@ -218,6 +220,8 @@ _MEANING = {
     "experiment": "by its name in the campaign",
     "response": "quantity; with log_ before it the surface is of its natural logarithm, with "
     "log_frequency_times_ of that of the frequency times it",
+    "looked_up": "whether the look-up answers from this surface of the response",
+    "response_is": "what the response is, with its unit; the sum is that of coefficient times term",
     "term": "number of the term, as the reports count",
     "term_name": "product of levels that the coefficient multiplies",
     "unit": "of the coded coefficient",
@@ -231,9 +235,19 @@ _MEANING = {
 }
 
 _ABOUT = (
-    "the response is the sum of coefficient times term",
-    "covariance: of the coded coefficients of one response, scatter and shared errors together",
+    "the look-up takes a response from the surface with looked_up = yes; response_is says what the"
+    " sum of coefficient times term stands for",
+    "covariance: of the coded coefficients of one response, scatter and shared errors together; the"
+    " intervals of the look-up also hold what a quadratic misses between the tested levels",
 )
+
+_READ_AS = {
+    "log_frequency_times_": "exp(sum) / frequency in Hz",
+    "log_": "exp(sum)",
+    "box_cox_": "(1 + {exponent:.6g} sum)^(1 / {exponent:.6g})",
+    "": "sum",
+}
+"""What a response is, by the scale of its surface."""
 
 
 def _rows(
@@ -247,8 +261,10 @@ def _rows(
     coefficient = of(_COEFFICIENT)
     if not np.isfinite(coefficient).any():
         return None
-    is_log = response.startswith("log_")
-    system: UnitSystem = "si" if is_log else units
+    scale = next(one for one in _READ_AS if response.startswith(one))
+    plain = response.removeprefix(scale)
+    system: UnitSystem = "si" if scale else units
+    experiment = str(archive["experiment"].values[place])
     unit, factor = _shown(archive[f"{response}{_COEFFICIENT}"].attrs.get("units", "1"), system)
     names = [str(one) for one in archive["factor_name"].values[place]]
     shown = [_shown(str(one), system) for one in archive["factor_unit"].values[place]]
@@ -263,9 +279,15 @@ def _rows(
         f"{name} {one[1] * a:.6g} to {one[1] * b:.6g} {one[0]}"
         for name, one, a, b in zip(names, shown, low, high, strict=True)
     )
+    exponent = 0.0 if scale != "box_cox_" else float(of("_transform_exponent"))
+    read_as = _READ_AS[scale].format(exponent=exponent)
+    response_unit = unit if not scale else quantity(plain).unit
+    is_looked_up = looked_up_surface(plain, surface_names(archive, experiment)) == response
     return {
-        "experiment": np.full(n_terms, str(archive["experiment"].values[place])),
+        "experiment": np.full(n_terms, experiment),
         "response": np.full(n_terms, response),
+        "looked_up": np.full(n_terms, "yes" if is_looked_up else "no"),
+        "response_is": np.full(n_terms, f"{read_as}, in {response_unit}"),
         "term": np.array([f"B{number + 1}" for number in range(n_terms)]),
         "term_name": np.array(terms),
         "unit": np.full(n_terms, unit),

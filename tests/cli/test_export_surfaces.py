@@ -121,6 +121,26 @@ def test_a_logarithm_stays_in_si(command, archive, tmp_path):
     assert si["coefficient"][at].tolist() == us["coefficient"][at].tolist()
 
 
+def test_the_surfaces_that_are_looked_up_are_named_and_give_the_look_up(command, archive, tmp_path):
+    found = exported(command, archive, tmp_path / "s.csv", "csv")
+    (line,) = lines_of_archive(archive)
+    low, high = np.array([[0.1, 768 * NEWTON, 320 * NEWTON], [0.5, 1920 * NEWTON, 768 * NEWTON]])
+    coded = np.array([0.5, -0.3, 0.2])
+    levels = dict(zip(line.factor_names, (low + high) / 2 + coded * (high - low) / 2, strict=True))
+    terms = np.array([1, *coded**2, *coded, *(coded[[0, 0, 1]] * coded[[1, 2, 2]])])
+    chosen = np.unique(found["response"][found["looked_up"] == "yes"]).tolist()
+    assert len(chosen) == 4
+    for name in chosen:
+        at = found["response"] == name
+        (read_as,) = set(found["response_is"][at])
+        total = float(found["coefficient"][at].astype(float) @ terms)
+        response = next(one for one in line.surfaces if name.endswith(one))
+        value = total if read_as.startswith("sum") else np.exp(total)
+        value /= levels["frequency"] if "/ frequency in Hz" in read_as else 1.0
+        assert value == pytest.approx(float(look_up(line, response, **levels).value), rel=1e-6)
+    assert "log_hysteresis_energy" in chosen
+
+
 def test_an_experiment_that_is_not_there_is_named(command, archive, tmp_path):
     done = command(
         "export", archive, "--to", "csv", "--out", tmp_path / "s.csv", "--specimen", "hemp"
