@@ -284,7 +284,9 @@ def _turns(archive: xr.Dataset, place: int) -> _Turns:
     return _Turns((middle - half, middle + half), (level - pull, level + pull))
 
 
-_FARTHEST = 0.2  # of the range of the curve, at each end
+# of the range of the curve, at each end: of a sine in load whose loss factor is 0.5 a third of the
+# range, where one branch or the other has been cut
+_FARTHEST = 0.5
 
 _SHORT = 0.02  # of the range of a cycle, that a curve may leave out at its upper end
 

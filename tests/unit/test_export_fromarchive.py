@@ -5,7 +5,7 @@ from predicted_hoses import dataset, predicted
 
 from reduction.archive.dataset_builder import SCHEMA_VERSION
 from reduction.archive.write import write_archive
-from reduction.lines.export_sources import line_from_archive
+from reduction.lines.export_sources import _to_turns, _Turns, line_from_archive
 from reduction.record.errors import ArchiveError, DataError, SettingsError
 
 STRAIN = np.linspace(0.1, 1.0, 10)
@@ -157,3 +157,20 @@ def test_mass_a_length_comes_from_the_archive_and_what_is_stated_goes_before(
         tmp_path / "mass.nc", specimen="new", linear_density=0.7
     ).linear_density == pytest.approx(0.7)
     assert np.isnan(line_from_archive(tmp_path / "mass.nc", specimen="used").linear_density)
+
+
+@pytest.mark.parametrize("loss_factor", [0.1, 0.3, 0.5])
+def test_the_mean_curve_of_a_lossy_cycle_in_load_has_the_stiffness_of_the_cycle(loss_factor):
+    """Strain lags the load: branches that are cut at 0.9 of its amplitude share less of the strain."""
+    lag, end = np.arctan(loss_factor), np.arcsin(0.9)
+    phase = np.linspace(-end, end, 2001)
+    rise, fall = np.sin(phase - lag), np.sin(np.pi - phase - lag)
+    strain = np.linspace(rise.min(), rise.max(), 400)[20:]
+    shared = strain[(strain > fall.min()) & (strain < rise.max())]
+    mean = [np.interp(shared, *(one[np.argsort(way)] for one in (way, load)))
+            for way, load in ((rise, np.sin(phase)), (fall, np.sin(np.pi - phase)))]  # fmt: skip
+    longer, tension, added = _to_turns(
+        shared, np.mean(mean, axis=0), _Turns((-1.0, 1.0), (-1.0, 1.0))
+    )
+    assert added.tolist() == [1, 1]
+    assert np.ptp(tension) / np.ptp(longer) == pytest.approx(1.0)
