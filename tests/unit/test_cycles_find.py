@@ -577,3 +577,18 @@ def test_irregular_movements_that_are_small_beside_the_pull_are_no_cycles():
     time, position = path(back([(0, 3), (20, 3), (30, 5), (40, 5), *ripple]), noise=2e-4)
     with pytest.raises(DataError, match="no whole cycle|no cycle"):
         find(time, position)
+
+
+@pytest.mark.parametrize("share", [0.5, 0.55])  # of the stroke, from the last valley to the mean
+def test_the_way_from_the_last_valley_over_the_mean_to_slack_is_no_cycle(share):
+    """Twelve sines of 260 N about 300 N in 30 s; then to the mean, and slack in 8 s."""
+    at = np.arange(0, 78.5, 1 / 16)
+    ends = [0, 5, 13, 33]  # slack, up, held at the mean, down to the valley
+    angle = 2 * np.pi * 0.4 * (at - 38)
+    way = 40 + 520 * share
+    load = np.interp(at, [*ends, 38, 68, 68.625, 76.6, 90], [0, 0, 300, 300, 40, 40, way, 0, 0])
+    cycling = (at >= 38) & (at <= 68)
+    load[cycling] = 300 - 260 * np.cos(angle[cycling])
+    load += np.random.default_rng(2).normal(0, 0.3, at.size)
+    found = find(at, load, waveform="sinusoidal")
+    assert found.n_cycles == 12

@@ -1021,15 +1021,18 @@ _MOST_ODD = 0.1  # of the cycles, and no more than so many of a few
 _FEW = 3
 
 
-def _odd_cycles(time: Floats, first: Indices, last: Indices) -> Bools:
+def _odd_cycles(time: Floats, first: Indices, last: Indices, ranges: Floats) -> Bools:
     """Cycles within a row that last otherwise than all others: the machine jumped or waited there.
 
-    A function generator that starts again goes on at another phase.
+    A function generator that starts again goes on at another phase.  A cycle at an end of the row
+    may have been cut there; that both its ranges, shape (n_cycles, 2), are not those of the two
+    beside it says that it is the way to the cycles or from them.
 
     Examples
     --------
     >>> turns = np.append(np.arange(0, 60, 10), np.arange(67, 130, 10))
-    >>> print(np.flatnonzero(_odd_cycles(np.arange(130.0), turns[:-1], turns[1:])))
+    >>> time, ranges = np.arange(130.0), np.ones((turns.size - 1, 2))
+    >>> print(np.flatnonzero(_odd_cycles(time, turns[:-1], turns[1:], ranges)))
     [5]
     """
     length = take_samples(time, last) - take_samples(time, first)
@@ -1046,7 +1049,11 @@ def _odd_cycles(time: Floats, first: Indices, last: Indices) -> Bools:
     beside = is_odd[1:] & is_odd[:-1] & (np.abs(length[1:] + length[:-1] - 2 * middle) < limit[1:])
     is_odd[1:][beside] = is_odd[:-1][beside] = False
     n_odd = np.count_nonzero(is_odd)
-    return is_odd if n_odd <= min(_FEW, _MOST_ODD * length.size) else np.zeros_like(is_odd)
+    is_odd &= n_odd <= min(_FEW, _MOST_ODD * length.size)
+    for end, beside in ((0, [1, 2]), (-1, [-2, -3])):
+        apart = np.abs(length[end] - length[beside]) > limit[end]
+        is_odd[end] = apart.all() and (np.abs(ranges[end] / ranges[beside] - 1) > _STARTING).all()
+    return is_odd
 
 
 def _labels(first: Indices, last: Indices, values: NDArray[Any], time: Floats) -> NDArray[Any]:
@@ -1180,7 +1187,8 @@ def find_cycles(
         if counted is None and has_gaps and 0 < first.size < _READ_CLOSELY * n_moves:
             ends = float(time[last[-1]])
             notes.append(note("cycles-by-turns", n_cycles=first.size, n_moves=n_moves, time=ends))
-        odd = _odd_cycles(time, first, last)
+        turned = take_samples(values, branch_last) - take_samples(values, branch_first)
+        odd = _odd_cycles(time, first, last, np.abs(turned))
         if odd.any():
             notes.append(note("cycles-of-other-length", n_cycles=int(odd.sum()),
                               time=float(time[first[odd][0]])))  # fmt: skip
@@ -1212,10 +1220,12 @@ def find_cycles(
             n_hidden = int(count[-1]) - count.size
             notes.append(note("cycles-in-gaps", n_cycles=first.size, n_hidden=n_hidden))
         elif odd.any():
-            count, is_sure = np.flatnonzero(~odd) + 1, True
+            count, is_sure = np.flatnonzero(~odd) + 1 - int(odd[0]), True
     if first.size == 1:
         notes.append(note("one-cycle"))
-    n_made = first.size + (n_unsteady + np.count_nonzero(odd) if counted_by == "reversals" else 0)
+    # the way to the cycles and from them is none
+    n_left = n_unsteady + np.count_nonzero(odd[1:-1])
+    n_made = first.size + (n_left if counted_by == "reversals" else 0)
     if settings.expected_cycles is not None and settings.expected_cycles != n_made:
         # each end that is left out takes a cycle with it at most
         is_ends = 0 < settings.expected_cycles - n_made <= found.n_ends_left_out
