@@ -571,6 +571,14 @@ def _of_levels(
             needed="--specimen with one of " + ", ".join(f'"{one.name}"' for one in lines),
         )
     (line,) = found
+    if line.surfaces and set(line.factor_names) != set(_LEVELS):
+        raise SettingsError(
+            "static and dynamic stiffness at a mean tension need surfaces over tension",
+            found=f"those of {line.name}, over {', '.join(line.factor_names)}",
+            needed=", ".join(_LEVELS),
+            hint="Export the archive of the run nearest to your cycle with --form damped-table: it"
+            " has the K_ap and H of that run.",
+        )
     strength = line.rated_break_strength
     strength = strength if math.isfinite(strength) else stated.get("rated_break_strength", math.nan)
     at = {

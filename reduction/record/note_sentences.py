@@ -1086,7 +1086,7 @@ _OF_LINE: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "pull-misfit": (
         "warning",
         "a cubic misses the load-strain curve by {misfit:.1%} of its strain (rms). Do not use its"
-        " strain and K_0 for design",
+        " strain for design; K_0 is the slope of a spline and is not off by that",
     ),
     "pull-falls": (
         "note", "tension falls on the way to the peak, by {fall:.1%} of the rise",

@@ -1,13 +1,20 @@
 """A rope of one's own, from its experiment to the dynamic stiffness that a mooring code runs with."""
 
+import importlib
 import importlib.util
 import json
 import shutil
+from pathlib import Path
 
 import netCDF4
 import numpy as np
 import pytest
 from moordyn_runs import run
+
+from reduction.lines.lookup_product import LineSource
+from reduction.record.errors import SettingsError
+
+export = importlib.import_module("reduction.cli.export")
 
 LBF = 4.4482216152605
 STRENGTH = 6400 * LBF
@@ -113,3 +120,14 @@ def test_an_experiment_without_its_slow_pull_is_refused(nylon_campaign, command,
     done = exported(command, folder, tmp_path / "deck.dat", *CENTRE)
     assert done.returncode != 0
     assert ("no test Q01" if lost == "archive" else "quasi_static") in done.stderr
+
+
+def test_surfaces_over_strain_are_told_from_a_level_that_is_missing(monkeypatch):
+    line = LineSource(
+        "main", "", "", "", "", 0.025, 2500.0, surfaces={"apparent_spring_constant": None},
+        factor_names=("frequency", "mean_strain", "strain_amplitude"),
+    )  # fmt: skip
+    monkeypatch.setattr(export, "experiments_with_pulls", lambda path: [line])
+    levels = {"frequency": "0.1 Hz", "mean_tension": "180 N", "tension_amplitude": "50 N"}
+    with pytest.raises(SettingsError, match=r"those of main, over .*mean_strain.*damped-table"):
+        export._of_levels(Path("surfaces.nc"), {}, None, levels, "refuse", {})
