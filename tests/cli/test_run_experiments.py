@@ -5,10 +5,12 @@ import shutil
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from reduction.archive import open as opening
 from reduction.archive.open import open_archive
+from reduction.batch.experiment_product import write_experiments
 from reduction.batch.run_campaign import run_campaign
 from reduction.campaign.load import load_campaign
 from reduction.experiments.designs import FactorLevels
@@ -195,3 +197,23 @@ def test_a_run_whose_archive_cannot_be_read_is_not_one_that_is_missing(folder, m
     with pytest.raises(ArchiveError, match=r"R02\.nc cannot be read; found Input/output error"):
         run(folder)
     assert surfaces.read_bytes() == before
+
+
+def test_that_k_1_has_no_surface_is_a_warning_where_the_experiment_names_a_slow_pull(
+    nylon_campaign, tmp_path
+):
+    for path in nylon_campaign.processed.glob("R*.nc"):
+        with open_archive(path) as archive:
+            test = archive.load().copy(deep=True)
+        for name in ("dissipation_spring_constant", "relaxation_time"):
+            test[f"test_{name}"][:] = np.nan
+        test.to_netcdf(tmp_path / path.name, engine="netcdf4")
+    campaign = load_campaign(RAW / "campaign.toml")
+    common = {"failed": (), "waiting": (), "raw_sha256": {}, "command": ""}
+    for pulls, severity in (({"line-1": "Q01"}, "warning"), ({}, "refusal")):
+        plan = replace(campaign.experiments["nylon"], quasi_static=pulls)
+        write_experiments(replace(campaign, experiments={"nylon": plan}), tmp_path, **common)
+        with open_archive(tmp_path / "surfaces.nc") as archive:
+            codes = archive["note_code"].to_numpy().tolist()
+            told = archive["note_severity"].to_numpy()[codes.index("no-surface")]
+        assert told == severity
