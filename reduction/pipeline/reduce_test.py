@@ -391,6 +391,20 @@ def _with_late_readings(
     return tuple(replace(errors, lag=float(np.hypot(errors.lag, own))) for errors in instruments)
 
 
+def _with_late_loads(
+    record: Record, instruments: Sequence[InstrumentErrors], late: Sequence[Note]
+) -> tuple[InstrumentErrors, ...]:
+    """Errors with the delay of a load that is later than is stated: a filter, or a clock."""
+    found = dict.fromkeys(record.specimens, 0.0)
+    for one in late:
+        found[one.subject] = one.numbers["lag"] + _BEYOND_LAG * one.numbers["spread"]
+    known = instruments or tuple(InstrumentErrors(name) for name in found if late)
+    return tuple(
+        replace(errors, lag=float(np.hypot(errors.lag, own / np.sqrt(3))), smoothed_over=own)
+        for errors, own in zip(known, found.values(), strict=False)
+    )
+
+
 def _late_extensometers(
     located: Located,
     models: Sequence[StrainModel],
@@ -981,6 +995,15 @@ def reduce_test(
     record = replace(record, notes=(*record.notes, *late))
     located = replace(located, record=record)
     instruments = _with_late_readings(record, _with_drift_of_zero(located, instruments))
+    lag, lag_notes = (
+        (None, [])
+        if cycles is None
+        else lag_of_test(
+            record, position, tension, cycles,
+            standstills=standstills, stated=[one.lag for one in instruments],
+        )
+    )  # fmt: skip
+    instruments = _with_late_loads(record, instruments, lag_notes)
     readings = _readings_of(record, instruments)
     stated = replace(located, record=_with_readings(record, readings))
     cycle_parts = parts_of_cycles(
@@ -1014,11 +1037,6 @@ def reduce_test(
         slack_tension=standstills.slack_tension,
         relaxed_free_length=np.array([model.relaxed_length for model in models]),
         time=record.time,
-    )
-    lag, lag_notes = (
-        (None, ())
-        if cycles is None
-        else lag_of_test(record, position, tension, cycles, stated=[one.lag for one in instruments])
     )
     loop_notes = (
         (

@@ -47,6 +47,9 @@ class InstrumentErrors:
         Of the crosshead's zero. [m]
     lag : float
         Of the time by which tension is logged late (or early) against position. [s]
+    smoothed_over : float
+        The longest time constant of a filter of tension, where its record shows that it is late.
+        [s]
     diameter : float
         Of the mean diameter. [m]
     diameter_readings : int
@@ -90,6 +93,7 @@ class InstrumentErrors:
     position_gain: float = 0.0
     position_offset: float = 0.0
     lag: float = 0.0
+    smoothed_over: float = 0.0
     diameter: float = 0.0
     diameter_readings: int = 0
     area: float = 0.0

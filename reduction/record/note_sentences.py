@@ -717,11 +717,21 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "compliance-matters": ("warning", _unknown_compliance),
     "tension-late": (
         "warning",
-        lambda lag, spread, stated: (
-            f"tension reverses {1e3 * lag:.0f} +- {1e3 * spread:.0f} ms (k=1) after position, but"
+        lambda lag, spread, stated, is_of_stops: (
+            f"tension {'stops' if is_of_stops else 'reverses'} {1e3 * lag:.0f} +-"
+            f" {1e3 * spread:.0f} ms (k=1) after position, but"
             f" {f'a lag of 0 +- {1e3 * stated:g} ms is stated' if stated else 'no lag is stated'}."
-            " Damping makes tension reverse before position, never after it, so tension was logged"
-            " late, by at least this much; no correction is made, and the loops are too narrow"
+            f" Damping makes tension {'stop' if is_of_stops else 'reverse'} before position, never"
+            " after it, so tension was logged late or through a filter, by at least this much; no"
+            " correction is made: the loops are too narrow, and their intervals include it"
+        ),
+    ),
+    "tension-filtered": (
+        "warning",
+        lambda lag, **_: (
+            f"its load has the noise that a low-pass filter leaves, which delays it by about"
+            f" {1e3 * lag:.0f} ms, and position has not: filter both alike, or state the lag. No"
+            " correction is made: the loops are too narrow, and their intervals include it"
         ),
     ),
 }  # fmt: skip
@@ -1823,7 +1833,7 @@ CAUSES = (
     "hose-not-of-design", "hose-unlike-design",
     "target-strain-missed", "density-outside-band", "strain-above-band",
     "extensometer-off-at-slack", "reference-tension-elsewhere", "length-jumps", "strain-below-zero",
-    "tension-late", "tension-behind-position", "loops-give-work", "loops-not-of-a-sine",
-    "hold-load-late",
+    "tension-late", "tension-filtered", "tension-behind-position", "loops-give-work",
+    "loops-not-of-a-sine", "hold-load-late",
 )  # fmt: skip
 """What is wrong with an input as it was stated, first what explains those behind it."""

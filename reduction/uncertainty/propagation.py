@@ -946,6 +946,16 @@ def loop_contributions(
                 "peak_tension": -of_approach * felt,
                 "valley_tension": of_approach * felt,
             }
+        if errors.smoothed_over:
+            # anything from nothing, of a clock that is late, to all that such a filter takes
+            share = _smoothed_away(waveform, ramps * frequency * errors.smoothed_over) / np.sqrt(3)
+            lost = share * felt
+            for name, way in (
+                ("tension_amplitude", 1.0), ("peak_tension", 1.0), ("valley_tension", -1.0),
+                ("apparent_spring_constant", 1 / strain_amplitude),
+                ("storage_spring_constant", 1 / strain_amplitude),
+            ):  # fmt: skip
+                of_lag[name] = of_lag.get(name, 0.0) - way * lost
         component, values = _with(
             component, values, Component("lag", errors.tension_instrument), of_lag
         )
@@ -979,6 +989,20 @@ def loop_contributions(
         - values["storage_spring_constant"] / storage_spring_constant
     )
     return Contributions(component, values)
+
+
+def _smoothed_away(
+    waveform: Literal["triangular", "sinusoidal", "other"], constant: Floats
+) -> Floats:
+    r"""Share of its amplitude that a wave loses in a filter of a time constant in its periods.
+
+    Of a sine, :math:`1 - (1 + (2\pi f\tau)^2)^{-1/2}`.  Behind a corner between ramps of
+    :math:`\pm v` a filter gives :math:`v\tau(2 e^{-t/\tau} - 1)` for its delay, and turns
+    where that is zero, at :math:`v \tau \ln 2` below the corner; v is four amplitudes a period.
+    """
+    if waveform == "sinusoidal":
+        return np.asarray(1 - 1 / np.hypot(1, 2 * np.pi * constant))
+    return np.asarray(4 * np.log(2) * constant)
 
 
 def _with(

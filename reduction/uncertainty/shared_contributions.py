@@ -42,6 +42,7 @@ from typing import Any, Literal, TypeVar
 import numpy as np
 import scipy
 
+from reduction.quantities.flags import LAG_REFUSALS
 from reduction.record.contributions import (
     Component,
     Contributions,
@@ -55,7 +56,12 @@ from reduction.record.measurement import Floats, Integers, LoadTrain, Record, ar
 from reduction.record.notes import Note, note
 from reduction.record.samples import empty_like, full_like, release_pages, take_samples
 from reduction.record.settings import CycleSettings
-from reduction.stages.channel_lag import LagEstimate, lag_by_turns
+from reduction.stages.channel_lag import (
+    LagEstimate,
+    delay_by_noise,
+    lag_at_stops,
+    lag_by_turns,
+)
 from reduction.stages.cycles.cycle_product import Cycles, Loops
 from reduction.stages.holds.relaxation_and_creep import HoldResult, hold_numbers
 from reduction.stages.moduli.elastomer_laws import LAWS
@@ -72,6 +78,7 @@ from reduction.stages.moduli.secant_modulus import (
     slope_per_decade,
 )
 from reduction.stages.reduced_test import ReducedTest
+from reduction.stages.standstills import Standstills, median_step
 from reduction.stages.strain.strain_model import StrainModel, position_by_model
 from reduction.stages.three_parameter_line.hold_pairs import CreepOfHold, HeldPair
 from reduction.stages.three_parameter_line.line_product import LineParameters, SlowPull
@@ -1366,22 +1373,39 @@ def lag_of_test(
     tension: Floats,
     cycles: Cycles,
     *,
+    standstills: Standstills | None = None,
     stated: Sequence[float] = (),
 ) -> tuple[LagEstimate, list[Note]]:
     """Estimate the lag of each tension channel, and say where it is more than what is stated."""
     turns = np.concatenate([cycles.branch_first.ravel(), cycles.branch_last.ravel()])
     estimate = lag_by_turns(record.time, position, tension, turns)
+    is_of_stops = np.isin(estimate.refusal, _WITHOUT_TURNS).all()
+    if standstills is not None and is_of_stops:
+        edges = np.concatenate([turns, standstills.first, standstills.last])
+        stops = standstills.first[~standstills.is_rest]
+        estimate = lag_at_stops(record.time, position, tension, stops, edges)
     known = np.asarray(stated) if len(stated) else np.zeros(len(record.specimens))
     total = np.hypot(estimate.standard_uncertainty, known)
+    step = median_step(record.time)
+    period = step * float(np.median(cycles.last - cycles.first))
     notes = []
     for place, name in enumerate(record.specimens):
         lag, spread, own = estimate.lag[place], estimate.standard_uncertainty[place], known[place]
-        if not lag > _NOTED * total[place]:
+        if lag > _NOTED * total[place]:
+            notes.append(note(
+                "tension-late", name, lag=float(lag), spread=float(spread), stated=float(own),
+                is_of_stops=bool(is_of_stops),
+            ))  # fmt: skip
             continue
-        notes.append(
-            note("tension-late", name, lag=float(lag), spread=float(spread), stated=float(own))
-        )
+        late = step * delay_by_noise(position, tension[place], samples_per_cycle=period / step)
+        if late > max(_NOTED * own, _LEAST_DELAY * period):
+            notes.append(note("tension-filtered", name, lag=late, spread=late / 4))
     return estimate, notes
+
+
+_LEAST_DELAY = 5e-4  # of a period: a phase of 0.003, a thirtieth of a loss factor of 0.1
+
+_WITHOUT_TURNS = [LAG_REFUSALS[name] for name in ("few_turns", "turns_not_sharp")]
 
 
 # an archive has them for each cycle, not for the means of a test

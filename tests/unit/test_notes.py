@@ -143,7 +143,8 @@ def test_a_late_load_comes_before_what_follows_from_it():
         of_lag=0.0,
         is_of_turns=False,
     )
-    late = note("tension-late", "cord", lag=0.08, spread=0.002, stated=0.005)
+    late = note("tension-late", "cord", lag=0.08, spread=0.002, stated=0.005,
+                is_of_stops=False)  # fmt: skip
     work = note("loops-give-work", "cord", energy=-1.0, n_cycles=9, n_known=9, delay=0.02,
                 stated=0.005, time_step=0.05, cause="driven")  # fmt: skip
     assert by_severity([identity, work, late]) == (late, work, identity)

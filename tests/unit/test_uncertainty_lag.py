@@ -7,7 +7,12 @@ from scipy.signal import lfilter
 from reduction.quantities.flags import LAG_REFUSALS
 from reduction.record.errors import DataError
 from reduction.stages import channel_lag as lag_module
-from reduction.stages.channel_lag import delay_of_extensometer, lag_by_turns
+from reduction.stages.channel_lag import (
+    delay_by_noise,
+    delay_of_extensometer,
+    lag_at_stops,
+    lag_by_turns,
+)
 
 FINE, HALF, LAST = 0.002, 5.0, 118.0
 TURNS = np.arange(HALF, LAST, HALF)
@@ -181,3 +186,46 @@ def test_a_camera_that_is_late_is_told_from_damping(shape):
 @pytest.mark.parametrize("strop", [0.0, 0.3])
 def test_a_strop_in_series_makes_no_extensometer_late(strop, shape):
     assert stretch_with_extensometer(strop=strop, shape=shape) == 0.0
+
+
+def stop(material, *, time_constant=0.0, poles=1, noise=0.0):
+    """A ramp of 4 s that stops under tension, the latter behind a low-pass filter."""
+    fine = np.arange(0, 9, FINE)
+    strain = np.clip(fine - 1, 0, 4)
+    tension = strain.copy()
+    for strength, tau in zip(*MATERIALS[material], strict=True):
+        decay = np.exp(-FINE / tau)
+        tension[1:] += lfilter([strength * tau * (1 - decay) / FINE], [1, -decay], np.diff(strain))
+    for _ in range(poles if time_constant else 0):
+        decay = np.exp(-FINE / time_constant)
+        tension = lfilter([1 - decay], [1, -decay], tension)
+    rng = np.random.default_rng(6)
+    at = slice(None, None, 10)
+    scatter = noise * rng.normal(size=(2, fine[at].size))
+    return fine[at], strain[at] + scatter[0], 500 * (tension[at] + scatter[1])
+
+
+@pytest.mark.parametrize("material", list(MATERIALS))
+def test_where_a_crosshead_stops_damping_is_not_taken_for_lag(material):
+    time, position, tension = stop(material, noise=1e-3)
+    found = lag_at_stops(time, position, [tension], [250], [50])
+    assert not found.lag[0] > 2 * found.standard_uncertainty[0]
+
+
+@pytest.mark.parametrize(("time_constant", "poles"), [(0.1, 1), (0.0159, 2)])
+def test_a_filter_stops_later_than_the_crosshead_by_up_to_its_delay(time_constant, poles):
+    time, position, tension = stop("elastic", time_constant=time_constant, poles=poles, noise=1e-3)
+    found = lag_at_stops(time, position, [tension], [250], [50])
+    lag, spread, delay = found.lag[0], found.standard_uncertainty[0], poles * time_constant
+    assert lag > 2 * spread and 0.5 * delay < lag < delay + 2 * spread
+    assert delay < lag + 2.5 * spread
+
+
+def test_noise_of_both_channels_that_is_alike_is_vibration_and_no_filter():
+    white = np.random.default_rng(2).normal(size=(2, 20_000))
+    behind = lfilter([1], [1, -np.exp(-1 / 4)], white)
+    assert delay_by_noise(white[0], behind[1], samples_per_cycle=400) == pytest.approx(4, rel=0.4)
+    assert delay_by_noise(behind[0], behind[1], samples_per_cycle=400) == 0
+    assert delay_by_noise(white[0], behind[1], samples_per_cycle=40) == 0
+    coarse = np.round(behind[1] / 20) * 20
+    assert delay_by_noise(white[0], coarse, samples_per_cycle=400) == 0
