@@ -18,7 +18,11 @@ from reduction.record.samples import finite_extremes, first_sample
 from reduction.record.settings import ReductionSettings
 from reduction.stages.cycles.cycle_product import Cycles, Loops, turns_alike
 from reduction.stages.cycles.cycle_search import control_channel
-from reduction.stages.cycles.loop_sense import contradicts_sine, without_backward_loops
+from reduction.stages.cycles.loop_sense import (
+    contradicts_sine,
+    without_backward_loops,
+    without_loss,
+)
 from reduction.stages.cycles.loops import close_loops
 from reduction.stages.moduli.cycle_alignment import (
     aligned_strain,
@@ -209,6 +213,7 @@ def parts_of_cycles(
     history: History | None,
     settings: ReductionSettings,
     lag: Sequence[float],
+    is_open: bool = False,
 ) -> dict[str, Any]:
     """Loops, curves, segments and what follows from them, by field of `ReducedTest`."""
     record, cycles = located.record, located.cycles
@@ -224,6 +229,8 @@ def parts_of_cycles(
     if settings.cycles.waveform == "sinusoidal" and contradicts_sine(loops).any():
         loops = close(waveform="other")
     loops = without_backward_loops(loops)
+    if is_open:
+        loops = without_loss(loops)
     # both channels have the corner of a ramp, as far apart as the lag that is stated
     alike = np.zeros(len(specimens))
     if settings.cycles.waveform == "triangular" and np.any(lag):

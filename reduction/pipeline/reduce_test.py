@@ -63,7 +63,12 @@ from reduction.record.settings import CycleSettings, ReductionSettings
 from reduction.stages.channel_lag import delay_of_extensometer
 from reduction.stages.cycles.cycle_product import Cycles, Loops
 from reduction.stages.cycles.cycle_search import control_channel, label_phases
-from reduction.stages.cycles.loop_sense import notes_of_loops, waveform_of_log
+from reduction.stages.cycles.loop_sense import (
+    OPEN,
+    notes_of_loops,
+    unlike_neighbours,
+    waveform_of_log,
+)
 from reduction.stages.holds.relaxation_and_creep import HoldResult, reduce_holds
 from reduction.stages.moduli.modulus_product import ModulusCurves
 from reduction.stages.moduli.slack_length import slack_crossings, slack_strain_at_unloading
@@ -989,6 +994,8 @@ def reduce_test(
     record, standstills, cycles = located.record, located.standstills, located.cycles
     position, tension = located.position, located.tension
     settings = _with_waveform_of_log(settings, located)
+    driven = control_channel(position, tension, settings.cycles)
+    unlike = 0.0 if cycles is None else unlike_neighbours(record.time, driven, cycles, standstills)
     phase = label_phases(record.time, standstills=standstills, cycles=cycles)
     strain = strain_of_record(record, position, tension, models)
     late = _late_extensometers(located, models, strain, instruments)
@@ -1008,7 +1015,7 @@ def reduce_test(
     stated = replace(located, record=_with_readings(record, readings))
     cycle_parts = parts_of_cycles(
         located, strain, tension, specimens=specimens, history=history, settings=settings,
-        lag=[one.lag for one in instruments],
+        lag=[one.lag for one in instruments], is_open=unlike > OPEN,
     )  # fmt: skip
     of_first_rise, first_rise_notes = parts_of_first_loading(
         located, strain, tension, specimens, settings, history, kind=description.kind,
@@ -1040,6 +1047,7 @@ def reduce_test(
     )
     loop_notes = (
         (
+            *([note("wave-not-periodic", share=unlike, is_open=unlike > OPEN)] if unlike else []),
             *notes_of_loops(
                 cycle_parts["loops"], names=record.specimens, time_step=median_step(record.time),
                 lag=[one.lag for one in instruments] or [0.0] * len(specimens),

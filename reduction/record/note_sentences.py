@@ -616,6 +616,16 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             + ". Stiffness, loop energy and loss are not given"
         ),
     ),
+    "wave-not-periodic": (
+        "warning",
+        lambda share, is_open: (
+            f"the wave does not repeat from cycle to cycle (by {share:.0%} of half its range), as"
+            " of two frequencies at once: a cycle is no closed loop, and its stiffness is that of"
+            " no single frequency"
+            + (". Its energy and loss are not given" if is_open else "")
+            + ". Give each frequency a test of its own"
+        ),
+    ),
     "loops-give-work": (
         "warning",
         lambda energy, n_cycles, n_known, delay, stated, time_step, cause: (
@@ -1833,7 +1843,7 @@ CAUSES = (
     "hose-not-of-design", "hose-unlike-design",
     "target-strain-missed", "density-outside-band", "strain-above-band",
     "extensometer-off-at-slack", "reference-tension-elsewhere", "length-jumps", "strain-below-zero",
-    "tension-late", "tension-filtered", "tension-behind-position", "loops-give-work",
-    "loops-not-of-a-sine", "hold-load-late",
+    "wave-not-periodic", "tension-late", "tension-filtered", "tension-behind-position",
+    "loops-give-work", "loops-not-of-a-sine", "hold-load-late",
 )  # fmt: skip
 """What is wrong with an input as it was stated, first what explains those behind it."""

@@ -3,14 +3,20 @@
 import numpy as np
 import pytest
 
+from reduction.record.settings import CycleSettings, PhaseSettings
 from reduction.stages.cycles.cycle_product import Cycles
+from reduction.stages.cycles.cycle_search import find_cycles
 from reduction.stages.cycles.loop_sense import (
+    OPEN,
     contradicts_sine,
     notes_of_loops,
+    unlike_neighbours,
     waveform_of_log,
     without_backward_loops,
+    without_loss,
 )
 from reduction.stages.cycles.loops import close_loops
+from reduction.stages.standstills import find_standstills
 
 FREQUENCY, N_CYCLES, PER = 0.5, 12, 100
 
@@ -167,3 +173,36 @@ def test_turns_half_way_between_readings_make_ramps_no_other_wave(rest, told):
         np.zeros(205, np.int32), np.zeros(205, np.int8), np.zeros(205, bool), 0.1,
     )  # fmt: skip
     assert waveform_of_log(np.arange(205) * 0.1, wave, cycles) == told
+
+
+def unlike(wave, *, step=0.05, last=120.0, noise=0.0):
+    time = np.arange(0, last, step)
+    driven = wave(time) + noise * np.random.default_rng(8).normal(size=time.size)
+    stands = find_standstills(time, driven, driven[None], settings=PhaseSettings())
+    cycles = find_cycles(time, driven, driven[None], stands, settings=CycleSettings())
+    return unlike_neighbours(time, driven, cycles, stands)
+
+
+@pytest.mark.parametrize("ratio", [1.37, 2.7, 3.7, 10.3])
+@pytest.mark.parametrize("share", [0.2, 0.5])
+def test_a_wave_of_two_frequencies_does_not_repeat(ratio, share):
+    # one that is slowly modulated is nearly closed
+    least = OPEN if ratio > 2 or share > 0.2 else 0
+    assert unlike(lambda t: np.cos(t) + share * np.cos(ratio * t + 1), step=0.02) > least
+
+
+@pytest.mark.parametrize("wave", [
+    np.cos, lambda t: np.abs((t / 5) % 2 - 1), lambda t: np.cos(t) * (1 + t / 60) + t / 90,
+    lambda t: np.cos(t + t**2 / 300), lambda t: np.where(t > 60, 2, 1) * (1 - np.cos(t)),
+    lambda t: np.clip(np.cos(t), -0.6, 0.8), lambda t: np.cos(t) + 0.2 * np.cos(3 * t),
+])  # fmt: skip
+@pytest.mark.parametrize(("step", "noise"), [(0.05, 0.0), (0.05, 0.01), (0.5, 0.0)])
+def test_a_wave_that_drifts_grows_sweeps_or_is_no_sine_repeats(wave, step, noise):
+    assert unlike(wave, step=step, noise=noise) == 0
+
+
+def test_cycles_that_are_no_closed_loops_keep_their_amplitudes_and_have_no_loss():
+    kept = without_loss(loops_of(0.1))
+    for name in ("hysteresis_energy", "closed_loop_energy", "loss_factor"):
+        assert np.isnan(getattr(kept, name)).all() and np.isnan(kept.uncertainty[name]).all()
+    assert np.isfinite(kept.apparent_spring_constant).all()

@@ -111,3 +111,26 @@ def test_a_hose_without_a_diameter_has_tensions_and_no_stress():
     hose = reduced(Specimen("cord", kind="stretch hose"))
     assert "nominal_stress" not in _sample_values(hose, hose.record) and hose.pulls[0] is not None
     assert any("no diameter or area is stated" in note for note in map(str, hose.notes))
+
+
+def test_cycles_of_two_sines_say_so_and_have_no_loss():
+    time = np.arange(0, 120, 0.05)
+    wave = np.sin(0.2 * np.pi * time) + 0.3 * np.sin(0.74 * np.pi * time)
+    zeros = np.zeros((1, time.size), dtype=np.uint16)
+    record = Record(
+        "C-1", ("cord",), time, 1.3 + 0.1 * wave, 400 * (0.3 + 0.1 * wave)[None], zeros, zeros[0]
+    )
+    settings = ReductionSettings()
+    test = reduce_test(
+        locate(record, kind="cyclic", settings=settings),
+        description=TestDescription("c", "C-1", "cyclic", "position", "sinusoidal", 1, {}),
+        specimens=(Specimen("cord", kind="elastomer", diameter=(DIAMETER,)),),
+        models=(
+            StrainModel("cord", "gauge-length", {"gauge_length": 1.0, "reference_position": 1.0}),
+        ),
+        history=None, sources=(), settings=settings, settings_json="{}",
+    )  # fmt: skip
+    (note,) = [one for one in test.loop_notes if one.code == "wave-not-periodic"]
+    assert note.severity == "warning" and "Its energy and loss are not given" in str(note)
+    assert np.isnan(test.loops.hysteresis_energy).all()
+    np.testing.assert_allclose(test.amplitude.apparent_spring_constant, [400], rtol=0.01)

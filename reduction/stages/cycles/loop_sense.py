@@ -18,14 +18,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
 
-from reduction.record.measurement import Bools, Floats
+from reduction.record.measurement import Bools, Floats, Integers
 from reduction.record.notes import Note, note
+from reduction.record.samples import take_samples
 from reduction.stages.cycles.cycle_product import PLACE_OF_DRIFT, Cycles, Loops
 from reduction.stages.cycles.loops import reading_noise
+from reduction.stages.cycles.periods import touching
+from reduction.stages.standstills import Standstills
 
 _OF_A_SPECIMEN = (
     "apparent_spring_constant", "hysteresis_energy", "storage_spring_constant",
@@ -116,6 +120,155 @@ def contradicts_sine(loops: Loops) -> Bools:
         told[row] = abs(_median(apart)) > max(_SINE_TOLD * greater, _BEYOND_SCATTER * scatter)
     return told
 
+
+def unlike_neighbours(
+    time: Floats, driven: Floats, cycles: Cycles, standstills: Standstills
+) -> float:
+    r"""By how much the wave of a cycle is not that of the cycle before it; 0 where it repeats.
+
+    .. math:: x_{k+1}(\varphi) \approx a + b \varphi + c \, x_k(\varphi)
+
+    Parameters
+    ----------
+    time, driven : ndarray, shape (n_samples,)
+        [s], and position or tension. [m] or [N]
+    cycles : Cycles
+        Of the record.
+    standstills : Standstills
+        Of the record.
+
+    Returns
+    -------
+    share : float
+        Root mean square of what is left, or the scatter of the steps of its middle, over half the
+        range: the greater one; 0 where readings, their noise or chance explain it. [1]
+
+    Raises
+    ------
+    IndexError
+        If a cycle lies outside the record.
+
+    Notes
+    -----
+    The median over some forty pairs at equal shares of their durations.  A mean that drifts, an
+    amplitude that grows and a sweep of the frequency leave nothing; a second frequency does.
+
+    Examples
+    --------
+    >>> from reduction.record.settings import CycleSettings, PhaseSettings
+    >>> from reduction.stages.cycles.cycle_search import find_cycles
+    >>> from reduction.stages.standstills import find_standstills
+    >>> time = np.arange(0, 120, 0.05)
+    >>> def told(wave):
+    ...     stands = find_standstills(time, wave, wave[None], settings=PhaseSettings())
+    ...     cycles = find_cycles(time, wave, wave[None], stands, settings=CycleSettings())
+    ...     return unlike_neighbours(time, wave, cycles, stands)
+    >>> print(told(np.cos(time)), told(np.cos(time) + 0.2 * np.cos(3.7 * time)) > 0.2)
+    0.0 True
+    """
+    follows = touching(cycles)
+    threes = np.flatnonzero(follows[1:-1] & follows[2:])
+    if threes.size >= _FEWEST_CYCLES - 1:
+        # from middle to middle of the rises: noise and rests at the turns leave them in place
+        which = (_spread(threes)[:, None] + np.arange(3)).ravel()
+        edges = cycles.first[which], cycles.branch_last[which, 0] + 1
+        begins = [
+            _crossing(time[first:stop], driven[first:stop])
+            for first, stop in zip(*(one.tolist() for one in edges), strict=True)
+        ]
+        pairs = np.array(begins).reshape(-1, 3)
+    else:  # cycles that no like one follows, while the machine goes on
+        ends = np.stack([cycles.first, cycles.last, 2 * cycles.last - cycles.first], axis=1)
+        stop = ends[:, 1] + _GOES_ON * (ends[:, 1] - ends[:, 0])
+        goes_on = [
+            end < driven.size and not standstills.covers(slice(first, end)).any()
+            for first, end in zip(cycles.first.tolist(), stop.tolist(), strict=True)
+        ]
+        pairs = take_samples(time, _spread(ends[np.array(goes_on, dtype=bool)]))
+    phase = np.linspace(0, 1, _PHASES, endpoint=False)
+    left, gone, noise = [], [], []
+    for times in pairs:
+        begin, end = np.searchsorted(time, times[[0, 2]], side="right").tolist()
+        part = slice(max(begin - 1, 0), end + 1)
+        one, other = (
+            np.interp(low + phase * (high - low), time[part], driven[part])
+            for low, high in pairwise(times)
+        )
+        half = float(np.ptp(one)) / 2
+        if not (half > 0 and np.isfinite(one + other).all()):
+            continue
+        basis = np.stack([np.ones(_PHASES), phase, one], axis=1)
+        rest = other - basis @ np.linalg.lstsq(basis, other)[0]
+        left.append(float(np.sqrt(np.mean(rest**2))) / half)
+        gone.append((other.max() + other.min() - one.max() - one.min()) / (4 * half))
+        noise.append(reading_noise(driven[part]) / half)
+    if not left:
+        return 0.0
+    scatter = 1.4826 * _median(np.abs(np.array(gone) - np.median(gone)))
+    share = max(float(np.median(left)), scatter)
+    n_readings = float(np.median(cycles.last - cycles.first))
+    # a turn lies up to half a reading off
+    by_chance = _REPEATS + np.pi / n_readings + _BEYOND_SCATTER * float(np.median(noise))
+    return share if share > by_chance else 0.0
+
+
+_PHASES = 64
+
+_GOES_ON = 3  # durations of a cycle
+
+
+def _spread(values: Integers) -> Integers:
+    """At most forty of many, from the first to the last."""
+    some = np.linspace(0, len(values) - 1, min(len(values), _MOST_CYCLES))
+    return values[np.unique(some.astype(np.int64))]
+
+
+def _crossing(time: Floats, rise: Floats) -> float:
+    """Time at which a rise first comes to its middle. [s]."""
+    level = (np.fmin.reduce(rise) + np.fmax.reduce(rise)) / 2
+    after = max(int(np.argmax(rise >= level)), 1)
+    return float(np.interp(level, rise[after - 1 : after + 1], time[after - 1 : after + 1]))
+
+
+_REPEATS = 0.03  # of half the range; a machine repeats its wave to a hundredth
+
+OPEN = 0.1
+"""Of half a range, from which on a cycle is too far from a closed loop to have a loss."""
+
+
+def without_loss(loops: Loops) -> Loops:
+    """Leave out energy and loss of cycles that are no closed loops.
+
+    Parameters
+    ----------
+    loops : Loops
+        From `reduction.stages.cycles.loops`. [SI]
+
+    Returns
+    -------
+    loops : Loops
+        With NaN for energy, loss and loss factor.
+
+    Raises
+    ------
+    TypeError
+        If it is no `Loops`.
+
+    Examples
+    --------
+    >>> one = {name: np.ones((1, 2)) for name in Loops.__dataclass_fields__} | {"uncertainty": {}}
+    >>> print(without_loss(Loops(**one)).hysteresis_energy)
+    [[nan nan]]
+    """
+    gone = {name: np.full_like(getattr(loops, name), np.nan) for name in _OF_LOSS}
+    known = {name: gone[name] for name in _OF_LOSS if name in loops.uncertainty}
+    return replace(loops, **gone, uncertainty=loops.uncertainty | known)
+
+
+_OF_LOSS = (
+    "hysteresis_energy", "loss_spring_constant", "loss_factor", "fundamental_energy_share",
+    "closed_loop_energy",
+)  # fmt: skip
 
 _MOST_CYCLES = 40  # that are looked at, spread over the test
 
