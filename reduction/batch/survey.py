@@ -38,6 +38,7 @@ from reduction.stages.load_at_slack import (
     rises_with_stretch,
     stands_at_slack_length,
 )
+from reduction.stages.moduli.cycle_alignment import jump_of_mean
 from reduction.stages.standstills import median_step
 from reduction.stages.strain.tape_and_crosshead import (
     TAPE_UNCERTAINTY,
@@ -232,7 +233,8 @@ def _read_test(campaign: Campaign, plan: TestPlan, *, reader: Reader = read_reco
     whole = locate(
         record, kind="quasi-static", settings=plan.settings, specimens=_specimens(campaign, plan)
     )
-    surveys = []
+    surveys: list[Survey] = []
+    slipped: list[tuple[float, Note]] = []
     for place, step in enumerate(plan.steps, start=1):
         part = _step_plan(plan, step, place)
         try:
@@ -243,7 +245,12 @@ def _read_test(campaign: Campaign, plan: TestPlan, *, reader: Reader = read_reco
                 settings=part.settings,
                 specimens=_specimens(campaign, plan),
             )
-            located = _with_load_at_slack(located, whole, campaign, plan)
+            begin = located.record.time[0]
+            located = _with_load_at_slack(
+                located, whole, campaign, plan,
+                earlier=[told for when, told in slipped if when < begin],
+            )  # fmt: skip
+            slipped += _slips_of_step(located, part)
             survey = _located(part, located, sources)
             survey.remarks = () if found is None or found.remark is None else (found.remark,)
         except ReductionError as error:
@@ -296,7 +303,12 @@ _LITTLE = 0.1
 
 
 def _with_load_at_slack(
-    located: Located, whole: Located, campaign: Campaign, plan: TestPlan
+    located: Located,
+    whole: Located,
+    campaign: Campaign,
+    plan: TestPlan,
+    *,
+    earlier: Sequence[Note] = (),
 ) -> Located:
     """Say what each load cell reads at the slack rests of the whole log."""
     layouts, stands = _layouts(campaign, plan), whole.standstills
@@ -337,7 +349,7 @@ def _with_load_at_slack(
         if not campaign.specimens[one.subject].can_push
     ]  # fmt: skip
     jumps = _jumps_of_length(whole, campaign, plan, until=float(located.record.time[-1]))
-    record = replace(located.record, notes=(*notes, *jumps, *located.record.notes))
+    record = replace(located.record, notes=(*notes, *jumps, *earlier, *located.record.notes))
     return replace(located, record=record, load_at_slack=tuple(found))
 
 
@@ -365,6 +377,40 @@ def _jumps_of_length(
                 found[what] = note("length-jumps", what=what, size=size, unit=unit, time=time)
                 break  # the first one stands for those after it
     return list(found.values())
+
+
+def _slips_of_step(located: Located, plan: TestPlan) -> list[tuple[float, Note]]:
+    """When something slipped between two cycles of a step, and what later ones are told of it."""
+    cycles, break_in = located.cycles, plan.settings.cycles.break_in_cycles
+    if cycles is None or cycles.n_cycles <= break_in + 1:
+        return []
+    if plan.settings.strain.method == "extensometer":
+        return []  # which does not see what slips in a grip
+    first, last = cycles.first[break_in:], cycles.last[break_in:]
+    ends = np.column_stack([first, last]).ravel()[:-1]
+
+    def of_cycles(values: Floats) -> tuple[Floats, Floats]:
+        """Mean and half the range of each cycle."""
+        sums, most, least = (
+            one.reduceat(values[: last[-1]], ends)[::2] for one in (np.add, np.maximum, np.minimum)
+        )
+        return sums / (last - first), (most - least) / 2
+
+    time, length = located.record.time[first], of_cycles(located.position)
+    found = []
+    for name, tension in zip(plan.specimens, located.tension, strict=True):
+        load = of_cycles(tension)
+        for what, (mean, half), (other, reach) in (
+            ("position", length, load), ("tension", load, length),
+        ):  # fmt: skip
+            jump = jump_of_mean(time, mean, other, reach / half, half)
+            if jump is not None:
+                told = note(
+                    "slipped-in-earlier-step", name, step=plan.id, size=jump[1], what=what,
+                    number=jump[0] + break_in,
+                )  # fmt: skip
+                found.append((float(time[jump[0]]), told))
+    return found
 
 
 def _needs_length(campaign: Campaign, plan: TestPlan) -> bool:

@@ -375,6 +375,22 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "note",
         "parted at {time:g} s; what follows is left out",
     ),
+    "slipped-in-earlier-step": (
+        "warning",
+        lambda step, size, what, number: (
+            f"in {step} its mean {what} jumped by"
+            + (f" {1e3 * size:+.3g} mm" if what == "position" else f" {size:+.3g} N")
+            + f" after cycle {number}, and the {'tension' if what == 'position' else 'position'}"
+            " did not follow: something slipped"
+            + (
+                ". Strain here, counted from before it, is off by that length; amplitudes and EA"
+                " are not"
+                if what == "position"
+                else ", or the load cell was knocked. Strain here is counted from before it, and"
+                " tension may be off by as much"
+            )
+        ),
+    ),
     "strain-below-zero": (
         "warning",
         lambda least, tension, reference, rises: (
@@ -1842,7 +1858,8 @@ CAUSES = (
     "dead-length-large", "two-designs-of-one", "hose-length-not-tested", "static-at-frequency",
     "hose-not-of-design", "hose-unlike-design",
     "target-strain-missed", "density-outside-band", "strain-above-band",
-    "extensometer-off-at-slack", "reference-tension-elsewhere", "length-jumps", "strain-below-zero",
+    "extensometer-off-at-slack", "reference-tension-elsewhere", "length-jumps",
+    "slipped-in-earlier-step", "strain-below-zero",
     "wave-not-periodic", "tension-late", "tension-filtered", "tension-behind-position",
     "loops-give-work", "loops-not-of-a-sine", "hold-load-late",
 )  # fmt: skip

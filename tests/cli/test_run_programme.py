@@ -543,3 +543,45 @@ def test_a_step_that_failed_is_named_where_its_property_is_missing(log, tmp_path
     )
     assert found.loc["construction strain", "property_remark"].endswith("; new failed")
     assert found.loc["dynamic stiffness", "property_stiffness"] > 0
+
+
+@pytest.mark.parametrize("what", ["position", "tension", ""])
+def test_each_step_after_a_slip_is_told_of_it(tmp_path, what):
+    cycle = np.arange(0, 60, 0.02)
+    level = np.searchsorted([20, 40], cycle, side="right")
+    # steps of 20 cycles, 5 s each, about 20, 30 and 40 kN; the slip takes half a cycle
+    load = 1e4 * (2 + level) - 8e3 * np.cos(2 * np.pi * cycle)
+    slipped = np.clip(cycle - 9.8, 0, 0.5) / 0.5
+    noise = np.random.default_rng(7)
+    strain = load / 1e6 + 1e-4 * np.log10(1 + cycle) + noise.normal(0, 2e-6, load.size)
+    position = 10 * (strain + (4e-3 * slipped if what == "position" else 0))
+    load = load - (4e3 * slipped if what == "tension" else 0)
+    lead = np.linspace(0, 1, 150)
+    rows = np.column_stack([
+        np.concatenate([15 * lead - 15.1, 5 * cycle]),
+        np.concatenate([position[0] * lead, position]),
+        np.concatenate([load[0] * lead, load]),
+    ])  # fmt: skip
+    np.savetxt(tmp_path / "S.csv", np.column_stack([rows, rows[:, 1] / 10]), fmt="%.7g",
+               delimiter=",", header="t_s,x_m,F_N,e", comments="")  # fmt: skip
+    steps = "".join(
+        f'[[tests.S.steps]]\nname = "{name}"\nfrom = "{low} s"\nto = "{high} s"\n'
+        for name, low, high in (("one", 0, 100), ("two", 100, 200), ("three", 200, 300))
+    )
+    control = "load" if what == "position" else "position"
+    path = made.write_campaign(
+        tmp_path, made.single("S", "cyclic", f'waveform = "sinusoidal"\ncontrol = "{control}"',
+                              'strain = { method = "gauge-length" }', steps)
+    )  # fmt: skip
+    text = path.read_text().replace("[specimens.R-1]", '[specimens.R-1]\ngauge_length = "10 m"')
+    path.write_text(text)
+    result = run_campaign(
+        load_campaign(path), processed=tmp_path / "p", reports=tmp_path / "r", clock=lambda: 0.0
+    )
+    later = [f"in S.one its mean {what} jumped by" in one.message for one in result.tests]
+    assert later == ([False, True, True] if what else [False, False, False])
+    if what:
+        assert result.tests[0].status == "check"
+        found = float(result.tests[1].message.split("jumped by ")[1].split()[0])
+        # of a slip that goes on over three cycles the greatest two steps are taken
+        assert found == pytest.approx(40 if what == "position" else -4000, rel=0.2)

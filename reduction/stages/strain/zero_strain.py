@@ -245,8 +245,9 @@ def jumps_of_length(
     Notes
     -----
     A stroke that is set to zero again under load, a grip or an extensometer that is seated anew.
-    The medians of eight readings on both sides differ by the step, so a spike is none; the load
-    stays within a tenth of what a stretch of that size makes by the ranges of the record.
+    The medians of eight readings on both sides differ by the step, so a spike is none, nor is the
+    motion of both sides; the load steps by less than a tenth of what a stretch of that size makes
+    by the ranges of the record.
 
     Examples
     --------
@@ -268,22 +269,29 @@ def jumps_of_length(
     far = np.flatnonzero(size_of_step > max(_LEAST_JUMP * reach, _CODES * step_of_codes(x)))
     far = far[(far >= _BESIDE_JUMP) & (far < step.size - _BESIDE_JUMP)]
     for beside in range(1, _BESIDE_JUMP):  # the nearest first: next to none of many are left
-        for way in (-beside, beside):
-            far = far[size_of_step[far] > _JUMP * size_of_step[far + way]]
+        for side in (-beside, beside):
+            far = far[size_of_step[far] > _JUMP * size_of_step[far + side]]
     found = []
     for place in far.tolist():
-        before, after = (
-            slice(place + 1 - _BESIDE_JUMP, place + 1),
-            slice(place + 1, place + 1 + _BESIDE_JUMP),
-        )
-        size = float(np.median(x[after]) - np.median(x[before]))
-        waits = np.diff(t[before.start : after.stop])
-        answered = abs(float(np.median(load[after]) - np.median(load[before])))
+        around = slice(place + 1 - _BESIDE_JUMP, place + 1 + _BESIDE_JUMP)
+        waits = np.diff(t[around])
+        (size, way), (answered, pulled) = (_step_beside_motion(one[around]) for one in (x, load))
+        if 4 * pull * abs(way) < reach * abs(pulled):
+            # readings that are repeated stand still, and step, while the load moves
+            answered += pulled / 2
         if (
             waits[_BESIDE_JUMP - 1] <= _IN_STEP * np.median(waits)
             and abs(size - step[place]) < abs(step[place]) / 2
-            and answered < _ANSWER * pull * abs(size) / reach
-            and min(load[before].min(), load[after].min()) > slack_tension
+            and abs(answered) < _ANSWER * pull * abs(size) / reach
+            and load[around].min() > slack_tension
         ):
             found.append((float(t[place + 1]), size))
     return found
+
+
+def _step_beside_motion(values: Floats) -> tuple[float, float]:
+    """Step in the middle of some readings, and the way that they go beside it."""
+    half = values.size // 2
+    rate = float(np.median(np.delete(np.diff(values), half - 1)))
+    still = values - rate * np.arange(values.size)
+    return float(np.median(still[half:]) - np.median(still[:half])), rate * values.size
