@@ -27,7 +27,6 @@ from reduction.stages.three_parameter_line.line_model import refused_lines
 from reduction.stages.three_parameter_line.line_of_loops import identify_cycles, identify_run
 from reduction.stages.three_parameter_line.line_product import SlowPull, mean_of_rows
 from reduction.stages.three_parameter_line.rope_programme import (
-    BeddingIn,
     CyclesToFailure,
     DynamicStiffness,
     RopeStep,
@@ -227,7 +226,12 @@ def rope_step(
         dynamic = dynamic_stiffness(
             loops, last_cycles=settings.last_cycles, rated_break_strength=strength
         )
-        bedding = _bedding_in(loops, strength) if kind == "bedding-in" else None
+        bedding = None
+        if kind == "bedding-in" and loops.frequency.shape[1] > 1 and located.cycles is not None:
+            bedding = summarise_bedding_in(
+                loops, rated_break_strength=strength,
+                begin_tension=tension[:, located.cycles.first[0]],
+            )  # fmt: skip
         notes += _stiffness_notes(dynamic, names, settings) + _of_levels(loops, dynamic, names)
         if kind == "bedding-in":
             notes += _of_first_cycle(loops, names)
@@ -275,12 +279,6 @@ def _creep(
         return ()
     of_name = dict(zip(names, strength.tolist(), strict=True))
     return tuple(creep_of_hold(hold, rated_break_strength=of_name[hold.specimen]) for hold in holds)
-
-
-def _bedding_in(loops: Loops, strength: Floats) -> BeddingIn | None:
-    if loops.frequency.shape[1] < 2:
-        return None
-    return summarise_bedding_in(loops, rated_break_strength=strength)
 
 
 def _of_first_cycle(loops: Loops, names: Sequence[str]) -> list[Note]:

@@ -36,6 +36,20 @@ class TestBeddingIn:
         assert bedding.last_stiffness_over_strength == pytest.approx([2.5])
         assert bedding.n_cycles == 3
 
+    def test_the_first_secant_is_that_of_the_way_up_with_what_the_rope_gains_on_it(self):
+        # from 0 to 6 % and 200 to 8,000 N, of which 1 % is gained; back to 1.5 % and 200 N
+        loops = loops_with(
+            (1, 3), foot_strain=[0.0, 0.015, 0.02], mean_strain=[0.03, 0.0425, 0.045],
+            strain_amplitude=[0.025, 0.025, 0.025], peak_tension=8000.0, valley_tension=200.0,
+            apparent_spring_constant=[156e3, 156e3, 160e3],
+        )  # fmt: skip
+        bedding = summarise_bedding_in(loops, rated_break_strength=1.0, begin_tension=200.0)
+        assert bedding.first_stiffness == pytest.approx([7800 / 0.06])
+        assert bedding.last_stiffness == pytest.approx([160e3])
+        # where the machine sets the position, the rope has relaxed by the end of the cycle
+        bedding = summarise_bedding_in(loops, rated_break_strength=1.0, begin_tension=500.0)
+        assert bedding.first_stiffness == pytest.approx([7500 / 0.06])
+
     def test_uncertainties_add_up(self):
         loops = loops_with((2, 5), u=0.001, apparent_spring_constant=2.0)
         bedding = summarise_bedding_in(loops, rated_break_strength=np.nan)

@@ -122,7 +122,9 @@ class DynamicStiffness:
     notes: tuple[Note, ...] = ()
 
 
-def summarise_bedding_in(loops: Loops, *, rated_break_strength: ArrayLike) -> BeddingIn:
+def summarise_bedding_in(
+    loops: Loops, *, rated_break_strength: ArrayLike, begin_tension: ArrayLike = np.nan
+) -> BeddingIn:
     r"""First and last secant of bedding-in cycles, and the permanent elongation.
 
     .. math:: \varepsilon_p = (\varepsilon_{v,n} - \varepsilon_{v,1})
@@ -134,6 +136,8 @@ def summarise_bedding_in(loops: Loops, *, rated_break_strength: ArrayLike) -> Be
         Table of the bedding-in cycles.
     rated_break_strength : array_like, shape (n_specimens,)
         NaN where not stated. [N]
+    begin_tension : array_like, shape (n_specimens,), optional
+        Reading at the begin of the first cycle. [N]
 
     Returns
     -------
@@ -149,7 +153,9 @@ def summarise_bedding_in(loops: Loops, *, rated_break_strength: ArrayLike) -> Be
     -----
     The permanent strain is between the feet (v) of the first and the last loop, brought to
     one tension along the last secant; the elongation of the first rise, before the first
-    valley, is not in it.  [1]_ leaves break-in cycles out and prints none.
+    valley, is not in it.  [1]_ leaves break-in cycles out and prints none.  The first secant is
+    that of the first way up, from begin to peak: what a new rope gains on it is its answer, where
+    loops leave out the drift of steady cycles.
 
     Examples
     --------
@@ -164,7 +170,12 @@ def summarise_bedding_in(loops: Loops, *, rated_break_strength: ArrayLike) -> Be
     if n_cycles < 2:
         raise DataError("bedding-in needs two cycles", found=str(n_cycles), needed="2 or more")
     strength = one_a_specimen(rated_break_strength, n_specimens)
-    secant = loops.apparent_spring_constant[:, [0, -1]]
+    secant = loops.apparent_spring_constant[:, [0, -1]].copy()
+    foot_tension = np.fmax(one_a_specimen(begin_tension, n_specimens), loops.valley_tension[:, 0])
+    way_up = 2 * (loops.mean_strain[:, 0] - loops.foot_strain[:, 0])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        of_way_up = (loops.peak_tension[:, 0] - foot_tension) / way_up
+    secant[:, 0] = np.where(np.isfinite(secant[:, 0]) & (of_way_up > 0), of_way_up, secant[:, 0])
     u_secant = loops.uncertainty["apparent_spring_constant"][:, [0, -1]]
     foot = loops.foot_strain[:, [0, -1]]
     u_foot = loops.uncertainty["foot_strain"]
