@@ -26,6 +26,7 @@ from numpy.typing import ArrayLike
 from reduction.record.arrays import as_positive, as_same_shape, run_blocks
 from reduction.record.measurement import Bools, Floats, Integers
 from reduction.record.samples import (
+    finite_extremes,
     first_sample,
     last_sample,
     release_pages,
@@ -48,7 +49,7 @@ from reduction.stages.moduli.tangent_window import (
     round_number,
     window_blur,
 )
-from reduction.stages.standstills import Standstills
+from reduction.stages.standstills import Standstills, estimate_noise
 
 _BAND = 0.01  # of the rise: a sample this far below the greatest strain so far has unloaded
 
@@ -141,6 +142,46 @@ class _Rise:
     def piece(self) -> Integers:
         """One a sample."""
         return np.concatenate([numbers for _, numbers in self._found])
+
+
+_CALM = 0.001  # of the rise: a tenth of the band
+
+_LEAST_OF_RISE = 100  # means that are left of it
+
+
+def _calmed(
+    strain: Floats, tension: Floats, is_still: Callable[[slice], Bools] | None
+) -> tuple[Floats, Floats, Callable[[slice], Bools] | None]:
+    """Means of consecutive samples where noise of strain is more than the rise can be told with.
+
+    A window about a noisy strain holds samples of places beside it, and the greatest strain so far
+    is that of the noisiest: the curve is pulled in at its ends.  Means over time of both channels
+    are not.
+    """
+    low, high = finite_extremes(strain)
+    rise = high - low
+    # of a series without readings the range is not finite
+    noise = estimate_noise(strain)[0] if rise > 0 and strain.size > 2 * _LEAST_OF_RISE else 0.0
+    if not noise > _CALM * rise:
+        return strain, tension, is_still
+    top = first_sample(lambda part: strain[part] > high - rise / 10, 0, strain.size, strain)
+    foot = last_sample(lambda part: strain[part] < low + rise / 10, 0, top or 0, strain)
+    together = min(
+        int(np.ceil((noise / (_CALM * rise)) ** 2)),
+        ((top or 0) - (foot or 0)) * 10 // 8 // _LEAST_OF_RISE,
+    )
+    if together < 2:
+        return strain, tension, is_still
+    whole = strain.size // together * together
+
+    def covers(part: slice) -> Bools:
+        if is_still is None:
+            return np.zeros(part.stop - part.start, dtype=bool)
+        still = is_still(slice(part.start * together, part.stop * together))
+        return np.asarray(still.reshape(-1, together).any(axis=1))
+
+    of_both = (one[:whole].reshape(-1, together).mean(axis=1) for one in (strain, tension))
+    return (*of_both, covers)
 
 
 def _rise_of(strain: Floats, tension: Floats, is_still: Callable[[slice], Bools] | None) -> _Rise:
@@ -301,10 +342,11 @@ def first_loading_curves(
     """
     strains, tensions, areas = pair_specimens(strain, tension, area)
     is_still = None if standstills is None else standstills.covers
-    rises = run_blocks(
-        lambda row: _rise_of(strains[row], tensions[row], is_still), range(areas.size)
+    calmed = run_blocks(
+        lambda row: _calmed(strains[row], tensions[row], is_still), range(areas.size)
     )
-    stretches = [take_samples(strains[row], rise.sample) for row, rise in enumerate(rises)]
+    rises = run_blocks(lambda row: _rise_of(*calmed[row]), range(areas.size))
+    stretches = [take_samples(one[0], rise.sample) for one, rise in zip(calmed, rises, strict=True)]
     grid = _grid_of_rise(stretches, settings)
     if grid is None:
         return None
@@ -312,7 +354,7 @@ def first_loading_curves(
         (5, areas.size, 2, grid.n_bins), np.nan
     )
     for row, rise in enumerate(rises):
-        load_of_rise = take_samples(tensions[row], rise.sample)
+        load_of_rise = take_samples(calmed[row][1], rise.sample)
         fits = _fit_rise(
             stretches[row], load_of_rise, rise, grid=grid, minimum_count=settings.minimum_count
         )
