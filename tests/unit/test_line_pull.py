@@ -277,7 +277,7 @@ class TestPull:
 
     def test_a_staircase_of_few_steps_is_refused(self):
         load = np.repeat([0.0, 250, 500, 750, 1000], 50)
-        with pytest.raises(FitError, match="too few steps of tension for a cubic; found 5 of 100"):
+        with pytest.raises(FitError, match="too few steps of tension for a cubic; found 5 of 300"):
             fit_pull(np.arange(250.0), load / 1e4, load, reference_tension=0.0)
 
     def test_cycles_in_place_of_a_pull_are_refused(self):
@@ -469,3 +469,41 @@ def test_without_a_relaxation_a_pull_is_slow():
     pull = fit_pull(*pulled(20.0))
     assert error_of_pull_rate(pull, 6e3, spring_constant=np.nan, relaxation_time=np.nan) == 0
     assert error_of_pull_rate(pull, 6e9, spring_constant=6e4, relaxation_time=5.0) == 0
+
+
+_FEET_AND_KINKS = {
+    # strain, tension, K_0 and shares of the greatest tension: a foot of a tenth of the stiffness
+    "foot": (
+        lambda e: 2e5 * (e - 0.01 * (1 - np.exp(-e / 0.01))) + 2e4 * e,
+        lambda e: 2e5 * (1 - np.exp(-e / 0.01)) + 2e4,
+        [0.02, 0.03, 0.05, 0.1],
+    ),
+    # three times as stiff within a twentieth of the strain
+    "kink": (
+        lambda e: 8e4 * e + 96 * np.logaddexp(0, (e - 0.025) / 6e-4),
+        lambda e: 8e4 + 1.6e5 / (1 + np.exp(-(e - 0.025) / 6e-4)),
+        [0.1, 0.15, 0.19, 0.23, 0.27, 0.4],
+    ),
+}
+
+
+@pytest.mark.parametrize("law", _FEET_AND_KINKS)
+@pytest.mark.parametrize(("noise", "least"), [(3e-4, 0.0), (1.5e-3, 0.02)])
+def test_the_local_slope_follows_a_foot_and_a_kink(law, noise, least):
+    tension_at, constant_at, shares = _FEET_AND_KINKS[law]
+    strain = np.linspace(0, 0.06, 1200)
+    load = tension_at(strain)
+    at = np.array(shares) * load[-1]
+    true = constant_at(np.interp(at, load, strain))
+    distance, size = [], []
+    for seed in range(8):
+        noisy = load + noise * load[-1] * np.random.default_rng(seed).normal(size=load.size)
+        pull = fit_pull(np.arange(1200.0), strain, noisy)
+        found, spread = quasi_static_spring_constant(pull, at)
+        distance.append((found - true) / spread)
+        size.append(spread / true)
+        # where noise chooses the readings that begin the pull there is no K_0
+        foot = quasi_static_spring_constant(pull, 0.008 * load[-1])[0]
+        assert np.isnan(foot) == (least > 0)
+    assert np.sqrt(np.mean(np.square(distance), axis=0)).max() < 1.8
+    assert np.median(size) < 0.04

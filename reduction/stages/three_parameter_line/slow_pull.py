@@ -42,7 +42,6 @@ References
    Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.4.2, 4.4.3 and App. D.
 .. [7] C. de Boor, "A Practical Guide to Splines," Springer, 1978, ch. XII (the slope of a cubic
    spline is off by the third power of the distance of its knots).
-.. [8] G. Schwarz, "Estimating the dimension of a model," Ann. Statist., vol. 6, no. 2, 1978.
 """
 
 from __future__ import annotations
@@ -194,7 +193,7 @@ def tension_grid(pulls: Sequence[SlowPull | None]) -> Floats:
     return np.linspace(low, high, _GRID_STEPS + 1)
 
 
-N_BLOCKS = 100
+N_BLOCKS = 300
 """Steps of tension between the ends of a pull. [1]."""
 
 # degree that a load-strain curve may ask for beyond the cubic, and blocks that it needs
@@ -238,7 +237,7 @@ def _block_means(time: Floats, strain: Floats, tension: Floats) -> _PullBlocks:
     >>> load = np.linspace(0.0, 2000.0, 400)
     >>> blocks = _block_means(np.arange(400.0), 1e-4 * load, load)
     >>> print(blocks.time.size, blocks.tension[[0, -1]].round(1))
-    100 [   7.5 1992.5]
+    300 [   2.5 1997.5]
     """
     reached = np.maximum.accumulate(tension)
     low, high = float(tension[0]), float(reached[-1])
@@ -312,17 +311,19 @@ def _misfit_of_cubic(blocks: _PullBlocks, cubic: Floats, covariance: Floats) -> 
     return float(np.sqrt(square - noise)) if square > _BEYOND_NOISE * noise else 0.0
 
 
-# pieces that a curve may have, and blocks that each of its coefficients needs
-_PIECES = (1, 2, 3, 4, 6, 8, 12, 16)
+_FINEST = 64  # pieces that a curve may have
 
-_BLOCKS_PER_COEFFICIENT = 3
+_BLOCKS_OF_PIECE = 4  # of each piece, at the least
+
+_SPLIT = 4.0  # times the square that noise makes: a piece that is halved
 
 _DEGREE = 3
 
 _BLOCK_SAMPLES = 1 << 17  # whose rows are held at once
 
-# by which the error of a slope falls when the pieces are halved [7]
-_GAIN_OF_HALVING = 2**_DEGREE
+# of the difference to a curve of pieces twice as long: a smooth one misses a seventh of it ([7]:
+# of the errors e' and e = 8 e' the difference is 7 e'), beside a kink it is more
+_SHARE_OF_COARSER = 1 / 3
 
 
 def _spline(n_coefficients: int) -> scipy.interpolate.BSpline:
@@ -359,26 +360,62 @@ MISFIT_AT = np.linspace(-1, 1, 81)
 """Where what a curve misses of its slope is given, in u."""
 
 
-def _fitted_pieces(blocks: _PullBlocks) -> dict[int, tuple[Floats, Floats]]:
-    """Rows of the blocks and their pseudo-inverse, by the number of pieces."""
-    matrix = {}
+# a mean of knots for each of the finest splines, at which values give its coefficients
+_ALONG = np.convolve(_spline(_FINEST + _DEGREE).t[1:-1], np.full(_DEGREE, 1 / _DEGREE), "valid")
+
+_OF_FINEST = np.linalg.inv(_rows_of_strain(_ALONG, _FINEST + _DEGREE))
+
+
+@dataclass(frozen=True)
+class _Pieces:
+    """Least squares of one choice of pieces: ``coefficient`` = ``inverse`` @ strain.
+
+    ``insertion`` gives the coefficients on the finest knots, where every choice is exact.
+    """
+
+    insertion: Floats
+    rows: Floats
+    inverse: Floats
+
+    @property
+    def to_finest(self) -> Floats:
+        """Coefficients on the finest knots by strain of the blocks."""
+        return np.asarray(self.insertion @ self.inverse)
+
+
+def _rows_of_finest(blocks: _PullBlocks) -> Floats:
+    """Mean of every spline of the finest knots over the readings of each block."""
     n_blocks, n_samples = blocks.strain.size, blocks.scaled.size
     count = np.diff(blocks.first, append=n_samples)
     cell = np.repeat(np.arange(n_blocks), count)
-    for pieces in _PIECES:
-        size = pieces + _DEGREE
-        if pieces > 1 and size * _BLOCKS_PER_COEFFICIENT > n_blocks:
-            break
-        total = np.zeros((n_blocks, size))
-        for start in range(0, n_samples, _BLOCK_SAMPLES):
-            part = slice(start, start + _BLOCK_SAMPLES)
-            basis = scipy.interpolate.BSpline.design_matrix(
-                np.clip(blocks.scaled[part], -1, 1), _spline(size).t, _DEGREE
-            )
-            total += (sums_by_cell(cell[part], n_blocks) @ basis).toarray()
-        rows = total / count[:, None]
-        matrix[pieces] = rows, np.linalg.pinv(rows).astype(np.float64)
-    return matrix
+    size = _FINEST + _DEGREE
+    total = np.zeros((n_blocks, size))
+    for start in range(0, n_samples, _BLOCK_SAMPLES):
+        part = slice(start, start + _BLOCK_SAMPLES)
+        basis = scipy.interpolate.BSpline.design_matrix(
+            np.clip(blocks.scaled[part], -1, 1), _spline(size).t, _DEGREE
+        )
+        total += (sums_by_cell(cell[part], n_blocks) @ basis).toarray()
+    return np.asarray(total / count[:, None])
+
+
+def _fitted(finest: Floats, breaks: Integers) -> _Pieces:
+    """Fit of pieces between breaks, which are counted in the finest ones."""
+    places = 2 * breaks / _FINEST - 1
+    knots = np.concatenate([[-1.0] * _DEGREE, places, [1.0] * _DEGREE])
+    coarse = scipy.interpolate.BSpline(knots, np.eye(knots.size - _DEGREE - 1), _DEGREE)
+    insertion = _OF_FINEST @ coarse(_ALONG)
+    rows = finest @ insertion
+    return _Pieces(insertion, rows, np.linalg.pinv(rows).astype(np.float64))
+
+
+def _halved(breaks: Integers, number: Floats) -> tuple[Integers, Bools]:
+    """Breaks with those of all pieces that have blocks for it, and which pieces these are."""
+    middle = (breaks[:-1] + breaks[1:]) / 2
+    edges = np.append(np.column_stack([breaks[:-1], middle]).ravel(), breaks[-1])
+    fewest = np.histogram(number, edges)[0].reshape(-1, 2).min(axis=1)
+    may = (np.diff(breaks) > 1) & (fewest >= _BLOCKS_OF_PIECE)
+    return np.sort(np.concatenate([breaks, middle[may].astype(np.int64)])), may
 
 
 def _curve_of_pull(blocks: _PullBlocks) -> _PulledCurve:
@@ -386,12 +423,12 @@ def _curve_of_pull(blocks: _PullBlocks) -> _PulledCurve:
 
     Notes
     -----
-    The number of pieces is the next one above that of Schwarz's criterion ([8]_), so that what the
-    pieces miss is small beside what noise does to them.  What they miss of the slope is the
-    difference to a curve of twice as many pieces, squared, less what noise makes the two differ
-    by, as a mean over one piece to both sides.  Without a curve of twice as many pieces it is a
-    seventh of the difference to one of half as many ([7]_: of the errors :math:`e_n` and
-    :math:`e_{n/2} = 8 e_n` the difference is :math:`7 e_n`).
+    Its pieces are short where the curve bends, at the foot and beside kinks, and long elsewhere:
+    one is halved as long as that changes the curve on it by more than noise does, and then all of
+    them once more, so that what they miss is small beside what noise does to them.  What they miss
+    of the slope is a share of what that last step changes, squared, less what noise makes the two
+    curves differ by, as a mean over one piece to both sides.  The coefficients are those on the
+    finest knots, on which each choice of pieces is exact.
 
     Examples
     --------
@@ -404,37 +441,63 @@ def _curve_of_pull(blocks: _PullBlocks) -> _PulledCurve:
     >>> print((middle * 2 * np.sqrt(1050.0) / 1e-3).round(4))
     1.0
     """
-    matrix = _fitted_pieces(blocks)
-    n_blocks, strain = blocks.strain.size, blocks.strain
-    residual = {
-        pieces: strain - rows @ (inverse @ strain) for pieces, (rows, inverse) in matrix.items()
-    }
+    strain, finest = blocks.strain, _rows_of_finest(blocks)
+    # of a block, its place in the finest pieces
+    number = np.clip((blocks.powers[:, 1] + 1) / 2, 0, 1) * _FINEST
+    breaks = np.array([0, _FINEST])
+    fit = _fitted(finest, breaks)
+    # noise is what all pieces leave that the blocks allow
+    shortest, may = _halved(breaks, number)
+    while may.any():
+        shortest, may = _halved(shortest, number)
+    own, inflation = _own_noise(_fitted(finest, shortest), strain)
     least = (np.finfo(np.float64).eps * float(np.ptp(strain))) ** 2
-    size = np.array([pieces + _DEGREE for pieces in matrix])
-    square = np.array([max(float(np.mean(left**2)), least) for left in residual.values()])
-    criterion = n_blocks * np.log(square) + np.log(n_blocks) * size
-    pieces = list(matrix)[min(int(np.argmin(criterion)) + 1, len(matrix) - 1)]
-    rows, inverse = matrix[pieces]
-    covariance = _covariance_of_blocks(rows, residual[pieces])
-    coefficient = inverse @ strain
-    other, share = 2 * pieces, 1.0
-    if other not in matrix:
-        other, share = pieces // 2, 1 / (_GAIN_OF_HALVING - 1)
-    if other not in matrix:
-        return _PulledCurve(coefficient, covariance, np.zeros(MISFIT_AT.size))
-    apart = share * (
-        _rows_of_slope(MISFIT_AT, other + _DEGREE) @ matrix[other][1]
-        - _rows_of_slope(MISFIT_AT, pieces + _DEGREE) @ inverse
-    )
-    finest = max(other, pieces)
-    basis, of_basis = matrix[finest]
-    leverage = np.einsum("ij,ji->i", basis, of_basis)
-    own = residual[finest] / np.maximum(1 - leverage, _LEAST_FREE)
-    noise = lag_one_inflation(residual[finest]) * (apart**2 @ own**2)
-    missed = (apart @ strain) ** 2 - noise
-    near = np.abs(MISFIT_AT[:, None] - MISFIT_AT) <= 2 / pieces
+    while True:
+        halves, may = _halved(breaks, number)
+        if not may.any():
+            finer = fit
+            break
+        finer = _fitted(finest, halves)
+        apart = finer.rows @ finer.inverse - fit.rows @ fit.inverse
+        noise = inflation * (apart**2 @ own**2) + least
+        square = (apart @ strain) ** 2
+        inside = np.clip(np.searchsorted(breaks, number, side="right") - 1, 0, breaks.size - 2)
+        told, by_noise = (np.bincount(inside, one, breaks.size - 1) for one in (square, noise))
+        split = may & (told > _SPLIT * by_noise)
+        if not split.any():
+            break
+        middle = (breaks[:-1] + breaks[1:]) // 2
+        breaks = np.sort(np.concatenate([breaks, middle[split]]))
+        fit = _fitted(finest, breaks)
+    # one step finer than noise asks for, so that what pieces miss is small beside what it does
+    residual = strain - finer.rows @ (finer.inverse @ strain)
+    covariance = finer.insertion @ _covariance_of_blocks(finer.rows, residual) @ finer.insertion.T
+    slope_at = _rows_of_slope(MISFIT_AT, _FINEST + _DEGREE)
+    apart = slope_at @ (finer.to_finest - fit.to_finest)
+    at = (MISFIT_AT + 1) / 2 * _FINEST
+    here = np.clip(np.searchsorted(breaks, at, side="right") - 1, 0, breaks.size - 2)
+    if not may.all() and breaks.size > 2:
+        # pieces that no block allows to be halved, against ones twice as long
+        width = np.diff(breaks)
+        odd = np.array([
+            0 < one < _FINEST and one % (2 * width[max(place - 1, 0)]) != 0
+            for place, one in enumerate(breaks.tolist())
+        ])  # fmt: skip
+        is_short = ~may[here]
+        coarser = _fitted(finest, breaks[~odd])
+        apart[is_short] = slope_at[is_short] @ (coarser.to_finest - fit.to_finest)
+    apart *= _SHARE_OF_COARSER
+    missed = (apart @ strain) ** 2 - inflation * (apart**2 @ own**2)
+    near = np.abs(at[:, None] - at) <= np.diff(breaks)[here][:, None]
     mean = (near @ missed) / near.sum(axis=1)
-    return _PulledCurve(coefficient, covariance, np.sqrt(np.maximum(mean, 0)))
+    return _PulledCurve(finer.to_finest @ strain, covariance, np.sqrt(np.maximum(mean, 0)))
+
+
+def _own_noise(fit: _Pieces, strain: Floats) -> tuple[Floats, float]:
+    """What noise is in each block, and by how much its correlation adds to a variance."""
+    residual = strain - fit.rows @ (fit.inverse @ strain)
+    leverage = np.einsum("ij,ji->i", fit.rows, fit.inverse)
+    return residual / np.maximum(1 - leverage, _LEAST_FREE), lag_one_inflation(residual)
 
 
 def _rates_of_pull(blocks: _PullBlocks) -> tuple[float, float, float, float]:
@@ -725,6 +788,11 @@ def fit_pull(
             hint="Check the signs of strain and tension.",
         )
     centre, half = (low + high) / 2, (high - low) / 2
+    is_cut = stop - start < 2
+    # the pull begins where its readings stay above a level, which chooses their noise
+    chosen = _NOISE_FACTOR * reading_noise(load) / half
+    if chosen > _FOOT:
+        start = max(start, min(chosen + 2 * _BEYOND - 1, stop))
     use = (centre + half * start, centre + half * stop)
     along = np.linspace(start, stop, _STEPS_OF_FORM)
     slope = _rows_of_slope(along, curve.coefficient.size) @ curve.coefficient
@@ -777,7 +845,7 @@ def fit_pull(
             reference_length=length,
             reference_strain=begins,
             waiting=waiting_time is not None or bool(waiting),
-            cut=stop - start < 2,
+            cut=is_cut,
         ),
     )
 
