@@ -402,7 +402,8 @@ def _with_late_loads(
     """Errors with the delay of a load that is later than is stated: a filter, or a clock."""
     found = dict.fromkeys(record.specimens, 0.0)
     for one in late:
-        found[one.subject] = one.numbers["lag"] + _BEYOND_LAG * one.numbers["spread"]
+        # damping makes tension early: what is found is the least of a delay
+        found[one.subject] = 2 * one.numbers["lag"] + _BEYOND_LAG * one.numbers["spread"]
     known = instruments or tuple(InstrumentErrors(name) for name in found if late)
     return tuple(
         replace(errors, lag=float(np.hypot(errors.lag, own / np.sqrt(3))), smoothed_over=own)
