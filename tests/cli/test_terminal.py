@@ -111,7 +111,7 @@ def test_a_pipe_has_one_line_a_test_and_progress_beside_it(tmp_path):
     assert "\x1b" not in done.stdout + done.stderr
     assert done.stderr.startswith("1/1 static check: 1325: a length of 416.1 mm gives 167 %")
     lines = done.stdout.splitlines()
-    assert lines[0].startswith("Pulls and weights. EA: ")
+    assert lines[0].startswith("Pulls and weights. Strain: ")
     assert lines[lines.index("Check:") + 1].startswith("  static: 1325: ")
     place = next(number for number, line in enumerate(lines) if line.startswith("specimen "))
     head, row = lines[place : place + 2]

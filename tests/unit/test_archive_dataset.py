@@ -85,8 +85,8 @@ def test_a_stepwise_test_stands_along_step(stepwise_test):
     assert "sample" not in dataset.sizes
     np.testing.assert_array_equal(dataset["gauge_length"], stepwise_test.stepwise.length)
     assert dataset["relaxed_gauge_length"].item() == 0.1556
-    assert dataset["step_flag"].values.tolist() == [0, 3, 2]
-    assert dataset["n_flagged"].values.tolist() == [[1, 2]]
+    assert dataset["step_flag"].values.tolist() == [0, 3, 6]
+    assert dataset["n_flagged"].values.tolist() == [[1, 2, 1]]
 
 
 def test_quality_flags_carry_the_masks_of_the_record(rich_test):

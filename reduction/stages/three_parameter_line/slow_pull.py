@@ -48,6 +48,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 from itertools import pairwise
 
 import numpy as np
@@ -360,10 +361,13 @@ MISFIT_AT = np.linspace(-1, 1, 81)
 """Where what a curve misses of its slope is given, in u."""
 
 
-# a mean of knots for each of the finest splines, at which values give its coefficients
-_ALONG = np.convolve(_spline(_FINEST + _DEGREE).t[1:-1], np.full(_DEGREE, 1 / _DEGREE), "valid")
-
-_OF_FINEST = np.linalg.inv(_rows_of_strain(_ALONG, _FINEST + _DEGREE))
+@cache
+def _to_finest() -> tuple[Floats, Floats]:
+    """Places, one of each of the finest splines, and what gives coefficients by values there."""
+    knots = _spline(_FINEST + _DEGREE).t[1:-1]
+    along = np.convolve(knots, np.full(_DEGREE, 1 / _DEGREE), "valid")  # means of knots
+    inverse = np.linalg.inv(_rows_of_strain(along, _FINEST + _DEGREE))
+    return along, inverse.astype(np.float64)
 
 
 @dataclass(frozen=True)
@@ -404,7 +408,8 @@ def _fitted(finest: Floats, breaks: Integers) -> _Pieces:
     places = 2 * breaks / _FINEST - 1
     knots = np.concatenate([[-1.0] * _DEGREE, places, [1.0] * _DEGREE])
     coarse = scipy.interpolate.BSpline(knots, np.eye(knots.size - _DEGREE - 1), _DEGREE)
-    insertion = _OF_FINEST @ coarse(_ALONG)
+    along, of_finest = _to_finest()
+    insertion = of_finest @ coarse(along)
     rows = finest @ insertion
     return _Pieces(insertion, rows, np.linalg.pinv(rows).astype(np.float64))
 
