@@ -371,7 +371,7 @@ def test_the_local_slope_of_a_line_that_is_no_cubic_is_known_to_its_own_noise(
     grid = np.linspace(0, 10.3e3, 8001)
     random = np.random.default_rng(7)
     distance, size = [], []
-    for _ in range(40):
+    for _ in range(20):
         strain = np.linspace(0, strain_at(grid[-1]), n)
         load = np.interp(strain, strain_at(grid), grid) + random.normal(0, noise, n)
         pull = fit_pull(np.arange(n) * 0.1, strain + random.normal(0, strain_noise, n), load)
