@@ -121,16 +121,7 @@ def locate(
             record.time, position, tension, settings=settings.phases, is_held=kind in HELD
         )
     parted = tuple(_parted_at(position, load) for load in tension)
-    if min(parted) > 0:  # where all of them broke no rest is a slack length
-        before = standstills.first < max(parted)
-        standstills = replace(
-            standstills,
-            **{
-                name: getattr(standstills, name)[..., before]
-                for name in ("first", "last", "start_time", "end_time", "mean_position",
-                             "mean_tension", "is_rest")
-            },
-        )  # fmt: skip
+    standstills = _before_break(standstills, parted)
     if kind in CYCLIC and max(parted) > 0:
         record, tension = _without_parted(record, tension, parted, kind=kind)
     cycles = None
@@ -155,6 +146,7 @@ def locate(
         standstills = find_standstills(
             record.time, crosshead, tension, settings=settings.phases, is_held=kind in HELD
         )
+        standstills = _before_break(standstills, parted)
     given = (record.load_train.machine_compliance or 0.0) * standstills.mean_tension.sum(axis=0)
     standstills = replace(standstills, mean_position=standstills.mean_position - given)
     return Located(record, position, tension, standstills, cycles, parted=parted)
@@ -197,6 +189,21 @@ def _parted_at(position: Floats, load: Floats) -> int:
     # the load falls over some readings, of which the first may still be above
     fell_over = is_slack_there is not None and last + 1 - is_slack_there <= _FEWEST_SLACK
     return last + 1 if is_slack_there is None or fell_over else -1
+
+
+def _before_break(standstills: Standstills, parted: Sequence[int]) -> Standstills:
+    """Leave out what stands still after all specimens parted: no rest there is a slack length."""
+    if min(parted) < 0:
+        return standstills
+    before = standstills.first < max(parted)
+    return replace(
+        standstills,
+        **{
+            name: getattr(standstills, name)[..., before]
+            for name in ("first", "last", "start_time", "end_time", "mean_position",
+                         "mean_tension", "is_rest")
+        },
+    )  # fmt: skip
 
 
 def _without_parted(

@@ -7,7 +7,7 @@ import pytest
 
 from reduction.pipeline.located_test import locate
 from reduction.pipeline.rope_test import rope_step
-from reduction.record.measurement import Record, Specimen
+from reduction.record.measurement import LoadTrain, Record, Specimen
 from reduction.record.settings import CycleSettings, ReductionSettings, RopeSettings
 from reduction.stages.cycles.loops import close_loops
 from reduction.stages.three_parameter_line.rope_programme import DynamicStiffness
@@ -257,3 +257,16 @@ def test_the_stop_after_a_creep_rupture_is_no_slack_length():
     assert located.parted == (440,)
     assert not located.standstills.is_rest.any()
     assert located.standstills.n_standstills == 1
+
+
+def test_a_stated_load_train_does_not_bring_the_rest_after_a_break_back():
+    whole = cycles(12)
+    load, place = whole.copy(), 10 + whole / 200
+    load[187:], place[187:] = 0.0, 12.5
+    one = replace(
+        record(load, position=place),
+        load_train=LoadTrain(load_cell_at="fixed", attached_mass=None, machine_compliance=1e-7),
+    )
+    located = locate(one, kind="cyclic", settings=ReductionSettings(), specimens=(ROPE,))
+    assert located.parted == (187,)
+    assert not (located.standstills.first >= 187).any()

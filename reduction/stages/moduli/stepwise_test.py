@@ -174,8 +174,8 @@ def _curvature_error(
     -----
     The largest :math:`E''` is taken that three slopes in a row show of the branch, and twice that
     at its ends; that of the other branch where it has fewer.  Where neither has three,
-    :math:`E'' \Delta\varepsilon = 2 E'`, which a modulus has that doubles within an interval.  A
-    single slope says nothing of a curve.
+    :math:`E'' \Delta\varepsilon = 2 E'`: the slope of the modulus changes by twice itself within an
+    interval.  A single slope says nothing of a curve.
 
     Examples
     --------
