@@ -16,9 +16,11 @@ from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass
 from itertools import islice
 from multiprocessing.resource_tracker import ensure_running
+from pathlib import Path
 from queue import Empty, SimpleQueue
 from types import FrameType
 from typing import Any, Generic, TypeVar
+from warnings import catch_warnings, simplefilter
 
 from reduction import __version__
 from reduction.record.errors import ReductionError, SettingsError, WorkerError
@@ -43,6 +45,9 @@ _OF_MALLOC = {-3: 1 << 25, -1: 1 << 25, -2: 1 << 22}
 library, and M_TOP_PAD, by which more is asked for."""
 
 _SENT = 1.0  # s, after which what a worker sends is sent
+
+_BEARS_A_FORK = {"jemalloc_bg_thd"}
+"""Threads that look after themselves when a process is forked: the one of arrow's allocator."""
 
 
 @dataclass(frozen=True)
@@ -194,7 +199,7 @@ def local_workers(number: int) -> Iterator[Workers]:
     available = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
     threads = max(1, (available or 1) // number)
     pool = ProcessPoolExecutor(
-        number, mp_context=multiprocessing.get_context("spawn"), initializer=_begin,
+        number, mp_context=multiprocessing.get_context(_way_to_start()), initializer=_begin,
         initargs=(threads, gc.get_threshold()),
     )  # fmt: skip
     try:
@@ -207,10 +212,29 @@ def local_workers(number: int) -> Iterator[Workers]:
         pool.shutdown(cancel_futures=True)
 
 
+def _way_to_start() -> str:
+    """Fork where no other thread can hold a lock meanwhile, or begin with a new interpreter.
+
+    Workers that are forked share the libraries of this process, 80 MB each, and need not load them.
+    """
+    own = str(threading.get_native_id())
+    try:
+        others = {
+            Path(f"/proc/self/task/{one}/comm").read_text().strip()
+            for one in os.listdir("/proc/self/task")
+            if one != own
+        }
+    except OSError:  # of a system without it
+        return "spawn"
+    return "fork" if others <= _BEARS_A_FORK else "spawn"
+
+
 def _start(pool: ProcessPoolExecutor, number: int) -> None:
     """Have all processes begin, so that it is known that they can."""
+    gc.freeze()  # what is here is not looked through by those that are forked, and stays shared
     try:
-        with _interrupts_later():
+        with _interrupts_later(), catch_warnings():
+            simplefilter("ignore", DeprecationWarning)  # of forks beside any thread
             started = [pool.submit(os.getpid) for _ in range(number)]
         for one in started:
             one.result()
@@ -220,6 +244,8 @@ def _start(pool: ProcessPoolExecutor, number: int) -> None:
             found=f"{type(error).__name__}: {error}",
             hint="Run with --jobs 1, which needs none.",
         ) from error
+    finally:
+        gc.unfreeze()
 
 
 def keep_freed_memory() -> None:

@@ -235,7 +235,7 @@ def test_a_worker_of_jobs_that_is_killed_ends_the_run_with_words_and_what_was_ma
     worker = next(
         child
         for child in psutil.Process(process.pid).children(recursive=True)
-        if "spawn_main" in " ".join(child.cmdline())
+        if "resource_tracker" not in " ".join(child.cmdline())
     )
     done = archives(tmp_path)
     assert len(done) < len(SOUND), "it was stopped too late to show anything"

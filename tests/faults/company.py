@@ -104,7 +104,7 @@ class Company:
                 workers = [
                     one
                     for one in psutil.Process(process).children(recursive=True)
-                    if "spawn_main" in " ".join(one.cmdline())
+                    if "resource_tracker" not in " ".join(one.cmdline())
                 ]
                 if workers:
                     killed.append(self._random.choice(workers))

@@ -153,28 +153,36 @@ def test_processes_that_cannot_begin_are_told(monkeypatch):
 
 
 RUNS = """
-import sys
+import sys, threading, time
 from pathlib import Path
 from workerdeeds import say_and_wait
 from reduction.batch.workers import Task, local_workers, work_on
 if __name__ == "__main__":
+    if sys.argv[2] == "spawn":
+        threading.Thread(target=time.sleep, args=(600,), daemon=True).start()
     with local_workers(2) as two:
         tasks = [Task(name, (Path(sys.argv[1]),)) for name in "ab"]
         list(work_on(say_and_wait, tasks, workers=two))
 """
 
 
-def test_worker_processes_end_with_the_one_that_started_them(tmp_path):
-    """Also where it is killed, and can end nobody."""
+@pytest.mark.parametrize("way", ["fork", "spawn"])
+def test_worker_processes_end_with_the_one_that_started_them(way, tmp_path):
+    """Also where it is killed, and can end nobody; however they were started.
+
+    They are forked where no other thread could hold a lock then, and start anew elsewhere.
+    """
     process = subprocess.Popen(
-        [sys.executable, "-c", RUNS, tmp_path],
-        env=os.environ | {"PYTHONPATH": f"{ROOT}:{ROOT / 'tests'}"},
+        [sys.executable, "-c", RUNS, tmp_path, way],
+        env=os.environ | {"PYTHONPATH": f"{ROOT}:{ROOT / 'tests'}", "OPENBLAS_NUM_THREADS": "1"},
     )
     end = time.monotonic() + 60
     while len(list(tmp_path.iterdir())) < 2 and time.monotonic() < end:
         time.sleep(0.02)
     workers = [psutil.Process(int(path.name)) for path in tmp_path.iterdir()]
     assert len(workers) == 2
+    can_fork = sys.platform == "linux" and way == "fork"
+    assert [RUNS in one.cmdline() for one in workers] == [can_fork, can_fork]
     process.kill()
     process.wait()
     assert psutil.wait_procs(workers, timeout=10)[1] == []
