@@ -380,14 +380,18 @@ def _page_of(
     folder: str,
 ) -> Page:
     faults = find_faults(tests, statuses, unreadable, whole.findings)
+    figures: dict[str, tuple[Callable[[Sequence[TestView]], Sequence[Figure]], ...]] = {
+        "All tests in one figure": (draw_specimens_together, draw_all_moduli),
+        "Ratios of moduli": (draw_ratios,),
+        "Mean strain and amplitude": (draw_amplitude_pairs,),
+        "Start against end": (draw_parts,),
+        "Static against dynamic": (draw_static_dynamic,),
+    }
     comparisons = [
-        make_part(
-            "All tests in one figure", [*draw_specimens_together(tests), *draw_all_moduli(tests)]
+        *(
+            make_part(heading, [one.compact() for draw in draws for one in draw(tests)])
+            for heading, draws in figures.items()
         ),
-        make_part("Ratios of moduli", draw_ratios(tests)),
-        make_part("Mean strain and amplitude", draw_amplitude_pairs(tests)),
-        make_part("Start against end", draw_parts(tests)),
-        make_part("Static against dynamic", draw_static_dynamic(tests)),
         *whole.comparisons,
     ]
     first, comparisons = _first_figure(tests, comparisons)

@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -73,6 +73,11 @@ class Figure:
         about = f"{prefix}{self.title}. Axes: {'; '.join(axes)}. Lines: {lines}."
         return f"{shorten(about, 600)} {self.spoken}".rstrip()
 
+    def compact(self) -> Figure:
+        """The same figure in less memory, for those that have lines of each of many tests."""
+        points = [{name: _Points(one[name]) for name in ("x", "y")} for one in self.data]
+        return replace(self, data=[one | own for one, own in zip(self.data, points, strict=True)])
+
     def json(self) -> str:
         """The figure for a script element: no markup can close it, no line end can break it."""
         return script_json({"data": self.data, "layout": self.layout})
@@ -86,8 +91,36 @@ def script_json(document: object) -> str:
     >>> script_json("</script>")
     '"\\u003c/script\\u003e"'
     """
-    text = json.dumps(document, allow_nan=False, separators=(",", ":"))
+    text = json.dumps(document, allow_nan=False, separators=(",", ":"), default=_as_list)
     return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
+
+
+def _as_list(one: object) -> list[float | None]:
+    if isinstance(one, _Points):
+        return list(one)
+    raise TypeError(f"a {type(one).__name__} has no JSON")
+
+
+class _Points(Sequence[float | None]):
+    """Numbers in a quarter of the memory of a list; None where one is not there."""
+
+    def __init__(self, numbers: Sequence[float | None]) -> None:
+        self._numbers = np.array(numbers, dtype=np.float64)
+
+    def __len__(self) -> int:
+        return len(self._numbers)
+
+    def __iter__(self) -> Iterator[float | None]:
+        return (None if math.isnan(one) else one for one in self._numbers.tolist())
+
+    @overload
+    def __getitem__(self, place: int) -> float | None: ...
+
+    @overload
+    def __getitem__(self, place: slice) -> list[float | None]: ...
+
+    def __getitem__(self, place: int | slice) -> float | list[float | None] | None:
+        return list(self)[place]
 
 
 def plain_numbers(values: Floats, digits: int = _DIGITS) -> list[float | None]:
