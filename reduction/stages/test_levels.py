@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from reduction.record.measurement import Bools, Floats, Integers, read_only_arrays
-from reduction.record.samples import finite_extremes, first_sample, take_samples
+from reduction.record.samples import finite_extremes, first_sample, sample_blocks, take_samples
 from reduction.stages.cycles.cycle_product import Cycles
 from reduction.stages.cycles.cycle_search import find_reversals
 from reduction.stages.cycles.loop_sense import waveform_of_log
@@ -200,14 +200,21 @@ def levels_of_test(
             0,
         ),
         is_copy=np.array([
-            any(np.array_equal(tension[index], tension[before], equal_nan=True)
-                for before in range(index))
+            any(_is_copy(tension[index], tension[before]) for before in range(index))
             for index in range(n_specimens)
         ], dtype=np.bool_),
         load_step=np.array([_load_step(load) for load in tension]),
         like_means=like_means,
         mean_ramps=mean_ramps,
     )  # fmt: skip
+
+
+def _is_copy(one: Floats, other: Floats) -> bool:
+    """Whether two series have the same samples; most differ in the first block."""
+    return all(
+        np.array_equal(one[part], other[part], equal_nan=True)
+        for part in sample_blocks(one.size, one, other)
+    )
 
 
 _LIKE_POSITION = 0.02  # of the stroke

@@ -26,7 +26,7 @@ import scipy
 from numpy.typing import ArrayLike
 
 from reduction.record.measurement import Floats, Integers
-from reduction.record.samples import take_samples
+from reduction.record.samples import release_pages, take_samples
 
 _MOST_TURNS = 400  # for a mean over cycles
 
@@ -159,7 +159,7 @@ def noise_in_extreme(
     place = np.arange(-reach, reach + 1)
     shift = np.zeros(some.size, dtype=int)
     for _ in range(_PASSES):
-        levels = sign * np.stack([take_samples(values, one + place) for one in some + shift])
+        levels = sign * _around(values, some + shift, reach)
         mean = levels.mean(axis=0)
         if not np.isfinite(mean).all():
             return 0.0, 0.0
@@ -175,9 +175,7 @@ def noise_in_extreme(
         shift[clear] = np.clip(shift[clear] + moved, -reach, reach)
         if not moved.any():
             break
-    mean = sign * np.mean(
-        [take_samples(values, one + place) for one in (some + shift).tolist()], axis=0
-    )
+    mean = sign * _around(values, some + shift, reach).mean(axis=0)
     if not np.isfinite(mean).all():
         return 0.0, 0.0
     step = float(mean.max() - min(mean[0], mean[-1])) / reach
@@ -194,6 +192,13 @@ def noise_in_extreme(
 
 
 Turn = Literal["sharp", "hidden", "rounded"]
+
+
+def _around(values: Floats, places: Integers, reach: int) -> Floats:
+    """Samples within some reach of places, one row a place."""
+    found = np.stack([values[one - reach : one + reach + 1] for one in places.tolist()])
+    release_pages(values)
+    return found
 
 
 def kind_of_turns(
