@@ -57,6 +57,7 @@ class _Head:
     """Its editor's row, 0 where it has not been found yet."""
     n_fields: int = 0
     """Fields in it."""
+    is_over: bool = False
     wanted: list[tuple[DeclaredColumn, int]] = field(default_factory=list)
     """Each declared column with its place."""
 
@@ -110,6 +111,9 @@ def _data_rows(
     """Data rows of each part, once the head has been read."""
     for part in file:
         text, row = _tidy(part.text, layout), part.first_row
+        if head.is_over:
+            _keep_lines(head, text, row, layout)
+            continue
         below = row + (part.n_lines if text is part.text else count_lines(text))
         if not head.first_row:
             begin = _read_head(head, text, row, layout)
@@ -119,6 +123,14 @@ def _data_rows(
             head.n_fields = _count_fields(path, head, layout)
             watch.check_columns(head.n_fields, row=head.first_row)
             head.wanted = _find_columns(path, head, layout)
+        end = _end_of_table(text, layout)
+        if end is not None:
+            head.is_over = True
+            _keep_lines(head, text[end:], row + bytes(text[:end]).count(b"\n"), layout)
+            text = memoryview(bytes(text[:end]).rstrip(b"\r\n"))
+            if not text:
+                continue
+            below = row + count_lines(text)
         is_open = part.is_open and below == part.first_row + part.n_lines
         rows = TextRows(
             path,
@@ -130,6 +142,21 @@ def _data_rows(
             longest_line=file.longest_line,
         )
         yield _without_comments(rows, head)
+
+
+def _end_of_table(text: memoryview, layout: Layout) -> int | None:
+    """Place of the line at which the table ends, where one is stated and there."""
+    if not layout.ends_at:
+        return None
+    found = re.search(rb"(?m)^[ \t\"]*" + re.escape(layout.ends_at.encode()), text)
+    return None if found is None else found.start()
+
+
+def _keep_lines(head: _Head, text: memoryview, first_row: int, layout: Layout) -> None:
+    """Keep the lines below the table."""
+    for row, (_, line) in enumerate(_lines(text), first_row):
+        if line.strip():
+            head.keep(line, row, layout)
 
 
 def _fields(head: _Head, rows: TextRows) -> Fields:

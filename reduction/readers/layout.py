@@ -128,6 +128,8 @@ class Layout(BaseModel):
     missing: tuple[str, ...] = ("", "NaN", "nan")
     preamble_rows: int = Field(default=0, ge=0)
     """Lines before the name row, comment lines included; kept as metadata."""
+    ends_at: str = ""
+    """Delimited: text at the start of the first line below the table; such lines are metadata."""
     has_name_row: bool = True
     has_unit_row: bool = False
     """A unit row is checked against the units declared here."""

@@ -168,13 +168,17 @@ def _ragged(rows: TextRows, n_fields: int, message: str) -> LogError:
         found = len(split_line(text, rows.layout))
         if text.strip("\r") and found != n_fields:
             is_cut_off = rows.is_open and line == n_lines - 1
+            hint = "The log was cut off; remove its last line." if is_cut_off else None
+            first = text.partition(rows.layout.delimiter)[0].strip(' \t\r"')
+            if any(map(str.isalpha, first)):
+                hint = _table_ends_at(first)
             return LogError(
                 rows.path,
                 f"a row has {found} fields where the first has {n_fields}",
                 row=rows.row_of_line(line),
                 found=repr(text.strip()[:60]),
                 needed=f"{n_fields} fields",
-                hint="The log was cut off; remove its last line." if is_cut_off else None,
+                hint=hint,
             )
     return rows.not_told_apart(message)
 
@@ -265,7 +269,15 @@ def _what_to_set(found: str, want: DeclaredColumn, layout: Layout) -> str:
             "Set has_unit_row = true where this is a row of units; preamble_rows = N skips rows "
             "above the names."
         )
-    return "Add it to the missing marks of the layout where it means missing."
+    missing = "Add it to the missing marks of the layout where it means missing."
+    if want.key == "time" and found[:1].isalpha():
+        return f"{missing} {_table_ends_at(found)}"
+    return missing
+
+
+def _table_ends_at(text: str) -> str:
+    """What to set where a line of words stands below the table."""
+    return f'Where the table ends above this line, set ends_at = "{cut(text, 30)}" in the layout.'
 
 
 AT_A_TIME = 2

@@ -67,6 +67,25 @@ def test_a_preamble_may_be_longer_than_a_part(tmp_path, n_bytes):
 
 
 @pytest.mark.parametrize("n_bytes", LENGTHS)
+@pytest.mark.parametrize(
+    "below", ["Maximum,2\nat,1\n", "Maximum\n2\n", '\n"Maximum of F",2,N,kept\n\nat,1', "Maximum,2"]
+)
+def test_the_table_ends_where_it_is_said_to_whatever_stands_below(tmp_path, n_bytes, below):
+    content = f"Maximum: of what\nt,F\n0,1\n1,2\n2,3\n{below}"
+    log = read(tmp_path, content, n_bytes, preamble_rows=1, ends_at="Maximum")
+    assert (log.n_rows_read, log.columns["tension.1"].tolist()) == (3, [1.0, 2.0, 3.0])
+    assert len(log.metadata) == 1 + len(list(filter(None, below.split("\n"))))
+
+
+@pytest.mark.parametrize(
+    ("row", "name"), [("Maximum,2", "Maximum"), ("End of test", "End of test")]
+)
+def test_words_below_the_table_are_refused_with_what_to_set(tmp_path, row, name):
+    with pytest.raises(LogError, match=rf'^.*log.csv:4.* above this line, set ends_at = "{name}"'):
+        read(tmp_path, f"t,F\n0,1\n1,2\n{row}\n")
+
+
+@pytest.mark.parametrize("n_bytes", LENGTHS)
 def test_rows_are_counted_from_the_first_part_in_which_they_are_not_consecutive(tmp_path, n_bytes):
     log = read(tmp_path, "t,F\n0,1\n1,2\n# pause\n2,3\n\n3,4\n", n_bytes, comment="#")
     assert log.row.tolist() == [2, 3, 5, 7]
