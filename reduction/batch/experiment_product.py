@@ -18,6 +18,7 @@ from reduction.archive.surfaces_dataset import surfaces_to_dataset
 from reduction.archive.variables import read_notes, stored
 from reduction.archive.write import write_archive
 from reduction.batch.campaign_status import PartStatus, TestStatus
+from reduction.batch.plausibility import load_columns
 from reduction.batch.reuse import NOT_REDUCED
 from reduction.batch.slow_pulls import pull_tests
 from reduction.campaign.plan import Campaign, ExperimentPlan
@@ -52,7 +53,7 @@ def experiments_found(campaign: Campaign, tests: Sequence[TestStatus]) -> list[d
                 for specimen, test in plan.quasi_static.items()
             ],
             "slack_runs": _slack_runs(campaign, plan),
-            "notes": [*_without_pull(campaign, plan), *map(str, _same_logs(plan, sums))],
+            "notes": [*_without_pull(campaign, plan), *map(str, _same_logs(campaign, plan, sums))],
         }
         for plan in campaign.experiments.values()
     ]
@@ -104,12 +105,16 @@ def _without_pull(campaign: Campaign, plan: ExperimentPlan) -> list[str]:
     return [f"no slow pull of {', '.join(bare)}: K_0, K_1 and tau are not given"]
 
 
-def _same_logs(plan: ExperimentPlan, raw_sha256: Mapping[str, str]) -> list[Note]:
-    """Runs of different tests whose logs are byte for byte the same."""
-    tests_of: dict[str, dict[str, None]] = {}
+def _same_logs(
+    campaign: Campaign, plan: ExperimentPlan, raw_sha256: Mapping[str, str]
+) -> list[Note]:
+    """Runs of different tests whose loads are those of one log, byte for byte."""
+    tests_of: dict[tuple[object, ...], dict[str, None]] = {}
     for run in plan.runs:
         if raw_sha256.get(run):
-            tests_of.setdefault(raw_sha256[run], {})[run.partition(".")[0]] = None
+            log = campaign.tests[run.partition(".")[0]]
+            loads = (load_columns(campaign.layouts[layout]) for _, layout in log.files)
+            tests_of.setdefault((raw_sha256[run], *loads), {})[log.log] = None
     return [
         note("same-log", tests=" and ".join(tests)) for tests in tests_of.values() if len(tests) > 1
     ]
@@ -361,7 +366,7 @@ def _fit_experiments(
             else one
             for one in result.notes
         ]
-        results.append(replace(result, notes=(*told, *_same_logs(plan, raw_sha256))))
+        results.append(replace(result, notes=(*told, *_same_logs(campaign, plan, raw_sha256))))
     return results, tuple(sources.values())
 
 

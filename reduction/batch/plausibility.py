@@ -418,7 +418,7 @@ def _of_columns(campaign: Campaign, survey: Survey) -> Iterator[Note]:
             yield note("column-of-another", name, column=column, other=others[0])
 
 
-def _load_columns(layout: Layout) -> tuple[str, ...]:
+def load_columns(layout: Layout) -> tuple[str, ...]:
     """Where in a log its loads are: sheet, group or matrix, and columns."""
     columns = (
         str(channel.column) for key, channel in layout.channels.items() if key.startswith("tension")
@@ -434,7 +434,7 @@ def _of_pairs(
     for survey in surveys:
         # several tests may stand side by side in one file
         logs = tuple(
-            (source.sha256, *_load_columns(campaign.layouts[layout]))
+            (source.sha256, *load_columns(campaign.layouts[layout]))
             for source, (_, layout) in zip(survey.sources, survey.plan.files, strict=False)
         )
         known = first.setdefault(logs, survey.plan.log)

@@ -1,6 +1,7 @@
 """What a check says of an experiment: minimum tensions by hand, logs that are copies."""
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -9,6 +10,7 @@ from reduction.batch.experiment_product import _same_logs, experiments_found
 from reduction.batch.slow_pulls import pull_tests
 from reduction.campaign.plan import Campaign, ExperimentPlan, TestPlan
 from reduction.experiments.designs import FactorLevels
+from reduction.readers.layout import Layout
 from reduction.record.measurement import Specimen
 from reduction.record.settings import ReductionSettings
 
@@ -79,5 +81,19 @@ def test_steps_of_one_log_are_no_copies():
     level = (0.0, 0.0)
     planned = plan(**{"P-7.one": level, "P-7.two": level, "P-8.one": level, "R": level, "S": level})
     sums = {"P-7.one": "a", "P-7.two": "a", "P-8.one": "b", "R": "b", "S": ""}
-    (note,) = map(str, _same_logs(planned, sums))
+    channels = {"tension.1": {"column": "Force", "unit": "N"}}
+    layouts = {
+        name: Layout(format="spreadsheet", sheet=name, channels=channels) for name in ("I", "II")
+    }
+
+    def notes(sheet_of_r):
+        sheets = {"P-7": "I", "P-8": "I", "R": sheet_of_r, "S": "I"}
+        tests = {
+            log: SimpleNamespace(log=log, files=(("logs.xlsx", sheet),))
+            for log, sheet in sheets.items()
+        }
+        return _same_logs(SimpleNamespace(tests=tests, layouts=layouts), planned, sums)
+
+    (note,) = map(str, notes("I"))
     assert note.startswith("P-8 and R have the same log, byte for byte")
+    assert notes("II") == []  # two sheets of one workbook
