@@ -245,9 +245,10 @@ def _to_piece(log: RawLog, layout: Layout, *, gap_factor: float) -> _Piece:
         for key, name in ((key, _declared(layout, key)) for key in values)
         if f"{name}.time" in log.columns
     }
-    shared, of_clock = _between_ticks(_shared_time(log, layout), values)
+    shared, of_hour = _on_one_time_of_day(_shared_time(log, layout), log, layout)
+    shared, of_clock = _between_ticks(shared, values)
     common = _on_common_time(shared, values, own, gap_factor=gap_factor)
-    notes = [*log.notes, *of_clock, *common.notes]
+    notes = [*log.notes, *of_hour, *of_clock, *common.notes]
     if unused:
         notes.append(note("channels-not-used", channels=", ".join(unused)))
     piece = _Piece(log, layout, common.time, common.values, scale, common.resampled, tuple(notes))
@@ -277,6 +278,43 @@ def _seconds(values: Floats, unit: str, ticks: float = 1.0) -> Floats:
     for part in sample_blocks(values.size, values, seconds):
         np.multiply(values[part], factor, out=seconds[part])
     return seconds
+
+
+_HOUR = 3600.0  # s
+
+_HOURS_OF_CHANGE = 4  # from midnight, at which clocks are put forward somewhere
+
+
+def _on_one_time_of_day(
+    time: Floats | None, log: RawLog, layout: Layout
+) -> tuple[Floats | None, tuple[Note, ...]]:
+    """Time of a clock without the hour by which it is put forward or back for daylight saving.
+
+    No time goes back by an hour; that one was put forward needs the hour at which that is done:
+    a log that stops for an hour, and on the hour, is a rare one.
+    """
+    texts = log.text.get("time", ())
+    start = next(filter(None, map(clock_reading, texts)), None)
+    if time is None or start is None or layout.channels["time"].unit != CLOCK:
+        return time, ()
+    known = np.flatnonzero(np.isfinite(time))
+    steps = np.diff(time[known])
+    usual = float(np.median(steps[steps > 0])) if (steps > 0).any() else _HOUR
+    if 4 * usual > _HOUR:
+        return time, ()
+    near = [(0 <= steps - way * _HOUR) & (steps - way * _HOUR <= 3 * usual) for way in (-1, 1)]
+    into_hour = (start[1] + time[known[1:]]) % DAY
+    on_hour = (into_hour % _HOUR < 3 * usual) & (into_hour < _HOUR * (_HOURS_OF_CHANGE + 1))
+    is_zoned = texts[int(known[0])].endswith("Z")
+    changes = [*np.flatnonzero(near[0]), *np.flatnonzero(near[1] & on_hour & (not is_zoned))]
+    notes = []
+    for place in sorted(changes):
+        shift = -math.copysign(_HOUR, steps[place])
+        time = np.concatenate([time[: known[place] + 1], time[known[place] + 1 :] + shift])
+        notes.append(
+            note("clock-changed", way="back" if shift > 0 else "forward", time=time[known[place]])
+        )
+    return time, tuple(notes)
 
 
 _ROWS_OF_A_TICK = 1.5  # from so many on, on average, a clock is coarser than the log

@@ -139,6 +139,18 @@ _OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         " readings are used, one every {interval:.3g} s",
     ),
     "channels-not-used": ("note", "read and checked, but not used: {channels}"),
+    "clock-changed": (
+        "warning",
+        lambda way, time: (
+            f"the clock is put {way} by one hour after {time:.6g} s, as at the "
+            + (
+                "end of daylight saving time: an hour is added to all later times"
+                if way == "back"
+                else "beginning of daylight saving time: an hour is taken off all later times."
+                " Check that the log did not stop for that hour"
+            )
+        ),
+    ),
     "clock-coarse": (
         "note",
         "the time is in steps of {tick:.3g} s, with {rows:.3g} rows at the same time: the rows are"

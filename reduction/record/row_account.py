@@ -14,6 +14,9 @@ from reduction.record.samples import sample_blocks
 _HARMLESS = {"missing", "gap", "repeated_or_backward_time", "not_constant_rate", "resampled"}
 """Flags of what is not there or is told by a note of its own: what is kept is right."""
 
+_OUT_OF_ORDER = 0.02
+"""Share of rows whose time goes back, from which the clock may have been set meanwhile. [1]"""
+
 
 @dataclass(frozen=True)
 class _RowAccount:
@@ -60,5 +63,9 @@ def notes_on_rows(record: Record) -> list[Note]:
         for channel, of_channel in account.n_flagged.items()
         if of_channel
     )
-    code = ROWS_FLAGGED[0 if masks <= {"resampled"} else 1 if masks <= _HARMLESS else 2]
+    out_of_order = max(
+        one.get("repeated_or_backward_time", 0) for one in account.n_flagged.values()
+    )
+    is_harmless = masks <= _HARMLESS and out_of_order <= _OUT_OF_ORDER * account.n_kept
+    code = ROWS_FLAGGED[0 if masks <= {"resampled"} else 1 if is_harmless else 2]
     return [note(code, n_read=account.n_read, n_kept=account.n_kept, flags=listed)]

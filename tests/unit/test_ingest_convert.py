@@ -359,6 +359,43 @@ def test_a_slip_of_the_clock_is_flagged_and_no_second_time_base():
     assert np.flatnonzero(flags).tolist() == [50, 199]
 
 
+def text_of_clock(seconds):
+    hours, rest = divmod(seconds % 86400, 3600)
+    return f"{hours:02.0f}:{rest // 60:02.0f}:{rest % 60:06.3f}"
+
+
+@pytest.mark.parametrize(
+    ("shift", "at", "suffix", "told"),
+    [
+        (-3600, 3 * 3600, "", "put back by one hour"),
+        (3600, 2 * 3600, "", "put forward by one hour"),
+        (3600, 2 * 3600, "Z", None),  # the time of the world is put forward nowhere
+        (3600, 2 * 3600 + 700, "", None),  # nor is any on another minute
+        (3600, 12 * 3600, "", None),  # or at noon
+        (1800, 2 * 3600, "", None),
+    ],
+)
+def test_an_hour_by_which_a_clock_was_put_is_no_time(shift, at, suffix, told):
+    """Readings of every 20 s, from an hour before the change to an hour after it."""
+    elapsed = np.arange(-3600, 3600, 20.0) + 4
+    shown = at + elapsed + np.where(elapsed > 0, shift, 0)
+    channels_ = channels(time={"unit": "clock"})
+    many = {name: np.resize(values, elapsed.size) for name, values in
+            (("crosshead_position", POSITION), ("tension.1", LOAD), ("tension.2", LOAD))}  # fmt: skip
+    clocked = replace(
+        log({"time": shown - shown[0], **many}),
+        text={"time": tuple(text_of_clock(one) + suffix for one in shown.tolist())},
+    )
+    record = convert((clocked, layout(channels_)))
+    steps = np.diff(record.time)
+    notes = [str(one) for one in record.notes if one.code == "clock-changed"]
+    if told is None:
+        assert not notes and steps.max() == 20 + shift
+    else:
+        assert len(notes) == 1 and told in notes[0]
+        np.testing.assert_allclose(steps, 20)
+
+
 def test_the_verified_range_of_each_piece_is_its_own():
     narrow = channels(tension_1={"verified_range": ("50 lbf", "90 lbf")})
     record = convert((log(), layout(narrow)), (log({"time": TIME + 20}), layout()))
