@@ -16,7 +16,7 @@ from reduction.record.measurement import Floats
 
 
 class _ArmourSection(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
 
 
 class _ArmourLayerKeys(_ArmourSection):

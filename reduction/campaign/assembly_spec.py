@@ -27,7 +27,7 @@ _MOST_TETHERS = 100
 
 
 class _AssemblySection(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
 
 
 class _CurveKeys(_AssemblySection):

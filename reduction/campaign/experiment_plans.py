@@ -230,7 +230,7 @@ def _sigma(text: str) -> tuple[float, str]:
 
 
 class _ExperimentSection(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
 
 
 class _ExperimentKeys(_ExperimentSection):

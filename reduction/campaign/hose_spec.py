@@ -43,7 +43,7 @@ _Calibrated = Literal[
 
 
 class _HoseSection(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
 
 
 class CordSection(_HoseSection):

@@ -87,7 +87,7 @@ class _Limit(ReadKey):
 class _LimitsSection(BaseModel):
     """``[limits]``: beyond them a log is refused; no number depends on them."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
 
     file_size: Annotated[int, _Limit(1e3, 1e14, '"1 kB" to "100 TB"')] | None = None
     """Of one log: ``"100 GB"`` where left out."""
@@ -116,7 +116,7 @@ _GREATEST_OF: dict[Dimension, tuple[float, str]] = {
 
 
 class _UncertaintySection(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
 
 
 class _Expanded(_UncertaintySection):
@@ -546,7 +546,7 @@ _MOST = 999_999_999  # of what is counted: a netCDF integer holds it
 
 
 class _SpecSection(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+    model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True, allow_inf_nan=False)
 
 
 class _CampaignSection(_SpecSection):
@@ -663,7 +663,7 @@ class StepSection(_SpecSection):
     """``[[tests.ID.steps]]``: one step of a log that holds many."""
 
     model_config = ConfigDict(
-        extra="forbid", frozen=True, allow_inf_nan=False, populate_by_name=True
+        extra="forbid", frozen=True, defer_build=True, allow_inf_nan=False, populate_by_name=True
     )
 
     name: StepName

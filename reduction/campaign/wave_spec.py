@@ -34,7 +34,7 @@ _STEPS_A_PERIOD = 200
 class _WaveLoadKeys(BaseModel):
     """``[wave_load]``, in SI once it is read."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
 
     outer_diameter: PositiveLength
     wall_thickness: PositiveLength
@@ -67,7 +67,7 @@ class _WaveLoadKeys(BaseModel):
 class _WaveLoadFile(BaseModel):
     """The whole of SPEC.toml."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
 
     wave_load: _WaveLoadKeys
 

@@ -45,7 +45,7 @@ class Channel(BaseModel):
     name.  ``factor`` turns a voltage or count into ``unit`` and is 1 otherwise.
     """
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
 
     column: str | int
     unit: str = "1"
@@ -112,7 +112,7 @@ def _are_signs(text: str) -> bool:
 class Layout(BaseModel):
     """What a log file looks like.  Rows count from 1, as an editor counts them."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
 
     format: Format
     # text
