@@ -129,7 +129,7 @@ class Layout(BaseModel):
     preamble_rows: int = Field(default=0, ge=0)
     """Lines before the name row, comment lines included; kept as metadata."""
     ends_at: str = ""
-    """Delimited: text at the start of the first line below the table; such lines are metadata."""
+    """Text at the start of the first line below the table; such lines are metadata."""
     has_name_row: bool = True
     has_unit_row: bool = False
     """A unit row is checked against the units declared here."""
@@ -195,6 +195,12 @@ class Layout(BaseModel):
                     needed="one of the two",
                 )
         self._check_load_train()
+        if self.ends_at and self.format not in ("delimited", "spreadsheet"):
+            raise SettingsError(
+                f"ends_at says nothing of a layout of {self.format}",
+                found=f"ends_at = {self.ends_at!r}",
+                needed="delimited or spreadsheet, or no ends_at",
+            )
         # an MTS file of blocks states its decimal mark itself
         decimal = "" if self.format == "blocks" else self.decimal
         # quoted fields may hold the mark that parts them: "11,044.03516", "0,05"

@@ -10,7 +10,7 @@ import re
 import struct
 import zipfile
 import zlib
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -129,6 +129,8 @@ class _SheetCells:
     values: list[Floats] = field(default_factory=list)
     blanks: list[Bools] = field(default_factory=list)
     text: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    below: list[list[Any]] = field(default_factory=list)
+    """Rows below the end of the table, where one is stated."""
 
 
 def _fast_columns(
@@ -140,7 +142,7 @@ def _fast_columns(
     layout: Layout,
 ) -> _SheetCells | None:
     """Columns that hold numbers and blanks (NaN) alone; None where one holds more."""
-    if any(want.unit == CLOCK for want in wanted):
+    if layout.ends_at or any(want.unit == CLOCK for want in wanted):
         return None
     order = sorted(set(places))
     try:
@@ -182,6 +184,17 @@ def _error_cells(
     return found
 
 
+def _end_of_table(rows: Sequence[Sequence[Any]], layout: Layout) -> int:
+    """Place of the row at which the table ends, behind the last where none is stated or there."""
+    firsts = (next((cell for cell in row if cell != ""), None) for row in rows)
+    ends = (
+        place
+        for place, cell in enumerate(firsts)
+        if layout.ends_at and isinstance(cell, str) and cell.strip().startswith(layout.ends_at)
+    )
+    return next(ends, len(rows))
+
+
 def _clock_text(cell: object) -> str:
     """Time of day as text; 945 is 09:45."""
     if isinstance(cell, float) and cell.is_integer():
@@ -205,13 +218,16 @@ def _exact_columns(
             .get_sheet_by_index(sheet)
             .to_python(skip_empty_area=False)[first:]
         )
-        columns: list[list[Any]] = [[row[place] for row in rows] for place in places]
+        end = _end_of_table(rows, layout)
+        columns: list[list[Any]] = [[row[place] for row in rows[:end]] for place in places]
         if any("" in cells for cells in columns):  # an error value looks blank here
             errors = _error_cells(workbook, sheet, first)
             for (row, place), mark in errors.items():
+                if row - first >= end:
+                    continue
                 for index in (i for i, wanted_place in enumerate(places) if wanted_place == place):
                     columns[index][row - first] = mark
-    found = _SheetCells()
+    found = _SheetCells(below=rows[end:])
     for cells, want in zip(columns, wanted, strict=True):
         odd = [
             index for index, cell in enumerate(cells) if type(cell) is not float or math.isinf(cell)
@@ -251,7 +267,8 @@ def _number(path: Path, cell: object, want: DeclaredColumn, layout: Layout, *, r
         channel=str(want.column),
         found=f"the text {cell!r}" if isinstance(cell, str) else f"{type(cell).__name__} {cell}",
         needed=f"a number in {want.unit}",
-        hint="Make the cell a number, or add its text to the missing marks.",
+        hint="Make the cell a number, or add its text to the missing marks; where the table ends"
+        " above it, set ends_at in the layout.",
     )
 
 
@@ -363,11 +380,11 @@ def _head(
     return rows[: layout.preamble_rows], names, units
 
 
-def _metadata(sheet_name: str, preamble: list[list[str]]) -> dict[str, str]:
-    """Preamble rows by their first cell where there are two, else by their number."""
+def _metadata(sheet_name: str, rows: Iterable[tuple[int, Sequence[Any]]]) -> dict[str, str]:
+    """Numbered rows beside the table by their first cell where there are two, else by number."""
     metadata = {"sheet": sheet_name}
-    for row, cells in enumerate(preamble, start=1):
-        texts = [cell.strip() for cell in cells if cell.strip()]
+    for row, cells in rows:
+        texts = [text for cell in cells if (text := str(cell).strip())]
         key, value = f"row {row}", " ".join(texts)
         if len(texts) > 1:
             key, value = texts[0].rstrip(": "), " ".join(texts[1:])
@@ -429,6 +446,9 @@ def read_spreadsheet(
         first_row=first + 1,
         n_rows_read=check_lengths(path, columns),
         text={key: texts[:n_rows] for key, texts in cells.text.items()},
-        metadata=_metadata(sheet_name, preamble),
+        metadata=_metadata(
+            sheet_name,
+            [*enumerate(preamble, 1), *enumerate(cells.below, first + 1 + len(cells.values[0]))],
+        ),
         notes=(note("blank-rows", n_rows=left_out),) if left_out else (),
     )

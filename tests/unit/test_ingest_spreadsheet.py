@@ -86,6 +86,17 @@ def test_preamble_is_kept_and_rows_count_from_the_top(tmp_path):
     assert log.n_rows_read == 3
 
 
+def test_the_table_of_a_sheet_ends_where_it_is_said_to(tmp_path):
+    below = [[None, None], ["Maximum load", 3.75], [None, 7.0], ["Operator: KH", None]]
+    log = read(tmp_path, [*HEAD, *ROWS, *below], ends_at="Maximum")
+    assert log.columns["tension.1"].tolist() == [1.25, 2.5, 3.75]
+    assert log.metadata == {
+        "sheet": "log", "Maximum load": "3.75", "row 7": "7.0", "row 8": "Operator: KH",
+    }  # fmt: skip
+    with pytest.raises(LogError, match=r":6 \[time\].*found the text 'Maximum load'.*ends_at"):
+        read(tmp_path, [*HEAD, *ROWS, *below])
+
+
 def test_preamble_keys_that_come_twice_keep_their_rows(tmp_path):
     rows = [["Note", "a"], ["Note", "b"], *HEAD, *ROWS]
     log = read(tmp_path, rows, preamble_rows=2)
