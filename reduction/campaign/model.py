@@ -23,7 +23,14 @@ from pydantic import (
 )
 
 from reduction.archive.uncertainty_budget import parse_place
-from reduction.archive.write import ReportDetails, ReportLimit, ReportSection, ReportText, Statement
+from reduction.archive.write import (
+    Date,
+    ReportDetails,
+    ReportLimit,
+    ReportSection,
+    ReportText,
+    Statement,
+)
 from reduction.campaign.hose_spec import ComparisonSection, HoseSection
 from reduction.campaign.plan import TestPlan, product_of
 from reduction.campaign.toml_file import at_place, in_toml
@@ -643,7 +650,7 @@ class _Kept(_SpecSection):
     temperature: Text = ""
     machine: Text = ""
     load_cell: Text = ""
-    calibration_due: Text = ""
+    calibration_due: Date = ""
     operator: Text = ""
     procedure: Text = ""
     note: Text = ""
@@ -696,7 +703,7 @@ class TestSection(_Kept):
     """Place in the specimens' history."""
     part_of: Identifier | None = None
     """The test of which this log repeats a part; its cycles are not counted twice."""
-    date: Text = ""
+    date: Date = ""
     rest: Text = ""
     """Time at rest before this test."""
     target_strain: tuple[float, ...] = ()

@@ -97,6 +97,13 @@ def test_a_row_of_the_table_says_how_it_was_flexed(folder):
     assert plan.attributes["n_flex_cycles"] == "0"
 
 
+@pytest.mark.parametrize("quote", ["", '"'])
+def test_the_date_of_a_test_is_one_of_toml_or_text(folder, quote):
+    keys = f"date = {quote}2026-03-05{quote}\ncalibration_due = {quote}2027-01-31{quote}\n"
+    found = load(folder, BASE + TEST + keys).tests["T"].attributes
+    assert (found["date"], found["calibration_due"]) == ("2026-03-05", "2027-01-31")
+
+
 @pytest.mark.parametrize(
     ("key", "message"),
     [
