@@ -24,7 +24,8 @@ from reduction.record.samples import ColumnWriter, check_room
 
 CLOCK_TEXT = re.compile(
     r"(?:(?:(\d{4})-(\d\d)-(\d\d)|(\d{1,2})\.(\d{1,2})\.(\d{4}))[T ]\s*)?"
-    r"(\d{1,2}):?([0-5]\d)(?::([0-5]\d(?:[.,]\d+)?))?Z?"
+    r"(\d{1,2}):?([0-5]\d)(?::([0-5]\d(?:[.,]\d+)?))?(?:\s*([AaPp])\.?[Mm]\.?)?"
+    r"(Z|(?:\s*[+-][01]\d:?[0-5]\d))?"
 )
 """A time of day, with a date before it or none; of a date with slashes nobody knows the month."""
 
@@ -53,8 +54,8 @@ def clock_to_seconds(
                 row=first_row + index if row is None else int(row[index]),
                 channel=channel,
                 found=f"'{text}'",
-                needed="hours and minutes, such as 0945, 09:45 or 09:45:30, or a date before them, "
-                "2024-05-31 09:45:30 or 31.05.2024 09:45:30",
+                needed="hours and minutes, such as 0945, 09:45, 09:45:30 or 9:45:30 PM, or a date "
+                "before them, 2024-05-31 09:45:30 or 31.05.2024 09:45:30",
             )
         days[index], seconds[index] = reading
     valid = np.flatnonzero(np.isfinite(seconds))
@@ -79,10 +80,29 @@ def clock_reading(text: str) -> tuple[float, float] | None:
     match = CLOCK_TEXT.fullmatch(text)
     day = math.nan if match is None else _day_of(match)
     is_no_day = match is not None and bool(match[1] or match[4]) and math.isnan(day)
-    if match is None or int(match[7]) > 23 or is_no_day:
+    if match is None or is_no_day:
         return None
+    hour, half = int(match[7]), (match[10] or "").lower()
+    if hour > 23 or (half and not 1 <= hour <= 12):
+        return None
+    if half:
+        hour = hour % 12 + 12 * (half == "p")
     in_minute = float((match[9] or "0").replace(",", "."))
-    return day, 3600 * int(match[7]) + 60 * int(match[8]) + in_minute
+    return day, 3600 * hour + 60 * int(match[8]) + in_minute - _of_zone(match[11])
+
+
+def is_of_a_zone(text: str) -> bool:
+    """Whether a clock time says how far it is from that of Greenwich, so that nobody sets it."""
+    match = CLOCK_TEXT.fullmatch(text)
+    return match is not None and bool(match[11])
+
+
+def _of_zone(text: str | None) -> float:
+    """Seconds by which the clock of a zone is ahead of that of Greenwich."""
+    digits = (text or "").strip(" Z").replace(":", "")
+    if not digits:
+        return 0.0
+    return math.copysign(3600 * int(digits[1:3]) + 60 * int(digits[3:]), int(digits + "1"))
 
 
 def _day_of(match: re.Match[str]) -> float:

@@ -11,7 +11,7 @@ from itertools import pairwise
 import numpy as np
 
 from reduction.quantities.units import Dimension, parse_quantity, scale_to_si
-from reduction.readers.columns import DAY, clock_reading
+from reduction.readers.columns import DAY, clock_reading, is_of_a_zone
 from reduction.readers.layout import CLOCK, Channel, Layout
 from reduction.readers.raw_log import RawLog
 from reduction.readers.sample_flags import flag_record
@@ -305,7 +305,7 @@ def _on_one_time_of_day(
     near = [(0 <= steps - way * _HOUR) & (steps - way * _HOUR <= 3 * usual) for way in (-1, 1)]
     into_hour = (start[1] + time[known[1:]]) % DAY
     on_hour = (into_hour % _HOUR < 3 * usual) & (into_hour < _HOUR * (_HOURS_OF_CHANGE + 1))
-    is_zoned = texts[int(known[0])].endswith("Z")
+    is_zoned = is_of_a_zone(texts[int(known[0])])
     changes = [*np.flatnonzero(near[0]), *np.flatnonzero(near[1] & on_hour & (not is_zoned))]
     notes = []
     for place in sorted(changes):

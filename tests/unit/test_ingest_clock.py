@@ -1,3 +1,4 @@
+import re
 from pathlib import Path
 
 import numpy as np
@@ -36,10 +37,13 @@ def test_a_missing_mark_is_missing():
     np.testing.assert_equal(seconds("-", "0945", "", "0946"), [np.nan, 0.0, np.nan, 60.0])
 
 
-@pytest.mark.parametrize("text", ["2400", "0960", "noon", "9.45", "12345"])
+@pytest.mark.parametrize(
+    "text", ["2400", "0960", "noon", "9.45", "12345", "13:00 PM", "0:30 AM", "09:45+1"]
+)
 def test_text_that_is_no_clock_time_names_its_row(text):
     with pytest.raises(
-        LogError, match=rf"log\.csv:3 \[clock\]: a reading is not a clock time; found '{text}'"
+        LogError,
+        match=rf"log\.csv:3 \[clock\]: a reading is not a clock time; found '{re.escape(text)}'",
     ):
         seconds("0945", text)
 
@@ -54,6 +58,19 @@ def test_a_date_before_the_time_counts_the_days():
         0.0, 30.25, 3 * 86400.0 + 30.0,
     ]  # fmt: skip
     assert seconds("31.12.2024 12:00", "02.01.2025 12:00") == [0.0, 2 * 86400.0]
+
+
+def test_halves_of_a_day_are_told_by_their_letters():
+    assert seconds("11:59:30 AM", "12:00:30 PM", "11:59:30 pm", "12:00:30 a.m.") == [
+        0.0, 60.0, 12 * 3600.0, 12 * 3600.0 + 60.0,
+    ]  # fmt: skip
+    assert seconds("2024-02-28 09:00:00 PM", "2024-02-29 12:30 AM") == [0.0, 3.5 * 3600]
+
+
+def test_a_zone_that_changes_is_no_time():
+    """A clock that is put back shows so in its zone; both readings are 20 minutes apart."""
+    assert seconds("2026-10-25 02:50:00+02:00", "2026-10-25T02:10:00.5+0100") == [0.0, 1200.5]
+    assert seconds("2026-03-07 23:50 -05:00", "2026-03-08 04:51:00Z") == [0.0, 60.0]
 
 
 def test_a_date_in_some_rows_is_refused():
