@@ -280,41 +280,46 @@ def _pull_rows(view: TestView, *, is_of_lines: bool) -> Iterator[list[TableCell]
     areas, broke = view.array("area"), view.array("pull_is_break")
     for place, name in enumerate(view.specimens):
         curve = _rise(view, place)
-        if curve is None:
+        known = [_pull_peak(view, peak, place) for peak in ("strain", "tension")]
+        if curve is None and not all(known):  # a break is one without a curve before it, too
             continue
-        strain, load, stiffness, is_modulus = curve
-        at_end = int(np.nanargmax(load.values))
-        reached = strain[at_end]
-        ends: list[TableCell] = []
-        for peak, unit, of_curve in (
-            ("pull_peak_strain", strain_unit, _Series.known(strain)),
-            ("pull_peak_tension", force, load),
-        ):
-            known = view.array(peak)
-            if known is not None and np.isfinite(known[place]):
-                half = expanded_of(view, peak, known)
-                ends.append(measured(known[place], half.half[place], unit,
-                                     factor=half.factor[place]))  # fmt: skip
-                reached = known[place] if peak == "pull_peak_strain" else reached
-            else:
-                ends.append(of_curve.cell(at_end, unit))
-        usable = np.flatnonzero(np.isfinite(stiffness.values))
-        area = float("nan") if areas is None else float(np.ravel(areas)[place])
-        if usable.size:
-            half_way = reached / 2
-            if strain[usable[0]] > half_way:  # the pull begins under a load
-                half_way = (strain[usable[0]] + reached) / 2
-            middle = int(usable[np.argmin(np.abs(strain[usable] - half_way))])
-            line = stiffness.cell(middle, force, area if is_modulus else 1.0)
-            material = stiffness.cell(middle, stress, 1.0 if is_modulus else 1.0 / area)
-        else:
-            line = material = TableCell(NOT_GIVEN, is_number=True)
+        ends = [TableCell(NOT_GIVEN, is_number=True)] * 2
+        line = material = ends[0]
+        if curve is not None:
+            strain, load, stiffness, is_modulus = curve
+            at_end = int(np.nanargmax(load.values))
+            reached = known[0].values[0] if known[0] else strain[at_end]
+            ends = [_Series.known(strain).cell(at_end, strain_unit), load.cell(at_end, force)]
+            usable = np.flatnonzero(np.isfinite(stiffness.values))
+            if usable.size:
+                half_way = reached / 2
+                if strain[usable[0]] > half_way:  # the pull begins under a load
+                    half_way = (strain[usable[0]] + reached) / 2
+                middle = int(usable[np.argmin(np.abs(strain[usable] - half_way))])
+                area = float("nan") if areas is None else float(np.ravel(areas)[place])
+                line = stiffness.cell(middle, force, area if is_modulus else 1.0)
+                material = stiffness.cell(middle, stress, 1.0 if is_modulus else 1.0 / area)
+        ends = [
+            cell if own is None else own.cell(0, unit)
+            for own, cell, unit in zip(known, ends, (strain_unit, force), strict=True)
+        ]
         is_break = broke is not None and broke[place] == 1
         yield [
             words(name), words(f"{view.id} (earlier run)" if view.is_of_earlier_run else view.id),
             words("break" if is_break else "peak load"), *ends, line,
             *([] if is_of_lines else [material]), _status(view, name),
         ]  # fmt: skip
+
+
+def _pull_peak(view: TestView, of: str, place: int) -> _Series | None:
+    """Return the strain or tension at which a pull ended; None where it is not known."""
+    values = view.array(f"pull_peak_{of}")
+    if values is None or not np.isfinite(values[place]):
+        return None
+    half = expanded_of(view, f"pull_peak_{of}", values)
+    return _Series(
+        values[place : place + 1], *(one[place : place + 1] for one in (half.half, half.factor))
+    )
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,12 @@ from markupsafe import Markup
 from reduction import __version__
 from reduction.archive.write import Client, Instrument, Laboratory, ReportDetails, ReportItem
 from reduction.quantities.units import UnitSystem
-from reduction.report.answer_tables import AnswerBudget, answer_budgets, conformity_table
+from reduction.report.answer_tables import (
+    AnswerBudget,
+    answer_budgets,
+    conformity_table,
+    pull_table,
+)
 from reduction.report.campaign_sections import CampaignView
 from reduction.report.campaign_summary import SummaryFinding, test_table
 from reduction.report.figure_data import Figure
@@ -377,6 +382,8 @@ def _results(content: ClientContent) -> list[PageTable]:
     """Return the numbers: moduli at round strains, answers of each test, answers of the whole."""
     found = [part for one in design_tables(content.tests) for part in _by_columns(one)]
     found += [table for view in content.tests if (table := _answers(view)) is not None]
+    if (pulls := pull_table(content.tests)) is not None:
+        found += _by_columns(_without_status(pulls))
     found += [
         replace(table, caption=f"{section.title}: {table.caption}")
         for section, part in _chosen_parts(content.tests, content.sections, _TABLES)
@@ -418,7 +425,7 @@ def _in_full(view: TestView, one: AnswerBudget) -> str:
     )
     ends = [view.array(f"segment_strain_{end}") for end in ("low", "high")]
     low, high = (np.nan if rows is None else 100 * rows[at] for rows in ends)
-    return f"modulus, {place['branch_name']}, strain {low:.0f} to {high:.0f} %"
+    return f"modulus, {place['branch_name']}, strain {low:.3g} to {high:.3g} %"
 
 
 def _by_columns(table: PageTable) -> list[PageTable]:
@@ -457,6 +464,11 @@ def _tests(content: ClientContent) -> PageTable | None:
     )
     if is_amiss or len(content.statuses) > len(content.tests):
         return table
+    return _without_status(table)
+
+
+def _without_status(table: PageTable) -> PageTable:
+    """Return a table without its last column, what the software did with each test."""
     rows = tuple(row[:-1] for row in table.rows)
     return replace(table, columns=table.columns[:-1], rows=rows)
 

@@ -4,6 +4,7 @@ import html
 import re
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from reduction.archive.open import open_archive
@@ -187,6 +188,23 @@ def test_numbers_are_those_of_the_archive(client, rich_test, tmp_path):
     assert {float(stiffness[0]), float(energy[0])} <= {float(one) for one in exact}
     assert rows[0] == ["quantity", "item", "result", "unit", "k"]
     assert {row[1] for row in rows[1:]} <= {"new", "used"}
+
+
+def test_segments_within_one_percent_of_strain_keep_their_ends_apart(client, rich_test):
+    segments = rich_test.segments
+    low = np.full_like(segments.segment_strain_low, 0.0223)
+    narrow = replace(segments, segment_strain_low=low, segment_strain_high=low + 0.0031)
+    rows = rows_of(client(ReportDetails(), replace(rich_test, segments=narrow)), "Test T-1")
+    assert "modulus, ascending, strain 2.23 to 2.54 %" in {row[0] for row in rows}
+
+
+def test_a_break_stands_among_the_results(client, rich_test):
+    description = replace(rich_test.description, kind="tensile")
+    page = client(ReportDetails(), replace(rich_test, description=description))
+    head, *rows = rows_of(page, "Pulls and weights")
+    assert head[:5] == ["specimen", "test", "ends at", "strain [%]", "load [N]"]
+    assert "status" not in head
+    assert [row[0] for row in rows] == ["new", "used"]
 
 
 @pytest.fixture

@@ -241,6 +241,18 @@ def test_a_break_has_its_own_load_and_strain_and_a_line_no_modulus():
     ]
 
 
+def test_a_break_without_a_curve_before_it_has_its_load_and_strain():
+    # cycles before the pull, and no diameter: neither K_0 nor a first loading is known
+    more = {name: (S, [value]) for name, value in {
+        "pull_is_break": 1, "pull_peak_strain": 0.45, "pull_peak_strain_standard_uncertainty": 0.01,
+        "pull_peak_tension": 600.0, "pull_peak_tension_standard_uncertainty": 10.0,
+    }.items()}  # fmt: skip
+    view = pulled("tensile", of="rope", **more)
+    bare = view.data.drop_dims("first_loading_strain_bin")
+    (row,) = texts(pull_table([replace(view, data=bare)]))
+    assert row == ["new", "P-1", "break", "45.0 ± 2.0", "600 ± 20", NOT_GIVEN, "reduced"]
+
+
 def test_a_slow_pull_of_a_rope_has_k_0_half_way():
     grid = (S, "tension_grid")
     more = {
