@@ -160,6 +160,7 @@ class Survey:
     is told of the log, ``remarks`` what of its levels.  ``first_time`` is that of the first row
     [s]; ``broken`` names the specimens that broke, as stated or by the log of a pull, and
     ``slips`` holds those of the splices, by specimen, where a later test is to know of them.
+    ``n_cycles_between`` is how many the machine counted between those of the log.
     """
 
     plan: TestPlan
@@ -168,6 +169,7 @@ class Survey:
     step_readings: StepReadings | None = None
     n_rows: int = 0
     n_cycles: int = 0
+    n_cycles_between: int = 0
     first_time: float = float("nan")
     slips: dict[str, list[SpliceSlip]] = field(default_factory=dict)
     mark_tension: dict[str, Floats] = field(default_factory=dict)
@@ -433,6 +435,7 @@ def _located(plan: TestPlan, located: Located, sources: tuple[Source, ...]) -> S
         located,
         n_rows=record.n_samples,
         n_cycles=0 if cycles is None else cycles.n_cycles,
+        n_cycles_between=0 if cycles is None else cycles.n_between,
         first_time=float(record.time[0]),
         extremes=extremes_of_test(located),
         levels=levels_of_test(

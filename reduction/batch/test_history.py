@@ -120,7 +120,8 @@ def _earlier_cycles(earlier: Sequence[Survey], own: Survey, before: int | None) 
     """Cycles of tension before a test, logged or not; NaN where an earlier test failed."""
     if any(entry.error is not None for entry in earlier):
         return float("nan")
-    return float(_unlogged_cycles(earlier, own, before) + sum(one.n_cycles for one in earlier))
+    in_logs = sum(one.n_cycles + one.n_cycles_between for one in earlier)
+    return float(_unlogged_cycles(earlier, own, before) + in_logs)
 
 
 def _unlogged_cycles(earlier: Sequence[Survey], own: Survey, before: int | None) -> int:

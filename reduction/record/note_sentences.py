@@ -1195,6 +1195,11 @@ _OF_LINE: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "change of the static stiffness per decade of time not given: the readings of the upper"
         " hold after 3 ramp times are {span:.2f} decades; needed {needed:g}",
     ),
+    "stiffness-amid-ramp-times": (
+        "note",
+        "the stiffness at {reference:g} s is the secant that the log has then, within 3 times the"
+        " ramp of {ramp:.3g} s: it belongs to a ramp of this length",
+    ),
     "stiffness-beyond-hold": (
         "warning",
         "the stiffness at {reference:g} s is extrapolated; the hold has readings from {first:.3g}"

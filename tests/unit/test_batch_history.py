@@ -14,17 +14,29 @@ from reduction.pipeline.reduce_test import reduce_test
 from reduction.record.errors import DataError
 from reduction.record.measurement import Record, Specimen
 from reduction.record.settings import CycleSettings, ReductionSettings
+from reduction.stages.cycles.cycle_product import Cycles
 from reduction.stages.reduced_test import TestDescription
 from reduction.stages.strain.strain_model import StrainModel
 
 
-def survey(name, order, *, n_cycles=0, log="", place=0, error=None, specimens=("hose",), **told):
+def survey(
+    name,
+    order,
+    *,
+    n_cycles=0,
+    n_between=0,
+    log="",
+    place=0,
+    error=None,
+    specimens=("hose",),
+    **told,
+):
     plan = TestPlan(
         id=name, kind="cyclic", files=((f"{name}.csv", "ram"),), specimens=specimens, order=order,
         control="position", waveform="triangular", target_strain=(), attributes={},
         settings=ReductionSettings(), log=log or name, step_place=place, **told,
     )  # fmt: skip
-    return Survey(plan, n_cycles=n_cycles, error=error)
+    return Survey(plan, n_cycles=n_cycles, n_cycles_between=n_between, error=error)
 
 
 def past(surveys, *specimens):
@@ -36,6 +48,27 @@ def past(surveys, *specimens):
         flex = history.earlier_flex_cycles
         found[entry.plan.id] = (history.earlier_cycles[0], None if flex is None else flex[0])
     return found
+
+
+def counted(*count):
+    """Cycles of a log of which a machine numbers each."""
+    none, number = np.zeros(0), np.array(count)
+    rows = np.arange(number.size)
+    pairs = np.column_stack([rows, rows])
+    return Cycles(rows, rows, pairs, pairs, pairs, none, none, none, 0.1, count=number)
+
+
+def test_cycles_that_a_machine_counted_and_did_not_log_are_in_the_history():
+    # each tenth of 31 is logged; the counter starts again in the second log, and once within it
+    logs = counted(1, 11, 21, 31), counted(1, 11, 1, 2)
+    surveys = [
+        survey(name, order, n_cycles=log.n_cycles, n_between=log.n_between)
+        for order, (name, log) in enumerate(zip("AB", logs, strict=True), start=1)
+    ]
+    found = past([*surveys, survey("C", 3)], Specimen("hose"))
+    assert [found[name][0] for name in "ABC"] == [0, 31, 31 + 11 + 2]
+    # without a counter a gap may hold cycles, or none
+    assert replace(logs[0], is_count_sure=False).n_between == 0
 
 
 def test_cycles_before_the_campaign_and_between_its_logs_are_counted_with_the_logged_ones():

@@ -246,6 +246,22 @@ class TestStatic:
         found = _static_stiffness(*upper_hold(), **LOW, ramp_duration=10.0)
         assert found.elapsed[0] >= 30
 
+    def test_a_plateau_of_a_slow_cycle_has_its_secant_at_the_reference_time(self):
+        # ten minutes up and twenty held, as in an hour from 10 to 30 % of the strength and back
+        t, load, strain = upper_hold(seed=4)
+        held = slice(300, 1500)
+        found = _static_stiffness(t[held], load[held], strain[held], **LOW, ramp_duration=600.0)
+        error = found.stiffness_at_reference - (4000 - 100 * np.log10(600))
+        assert abs(error) < 2.5 * found.stiffness_at_reference_standard_uncertainty < 4
+        assert np.isnan(found.slope_per_decade)
+        own, slope = map(str, found.notes)
+        assert "it belongs to a ramp of this length" in own
+        assert "are 0.00 decades" in slope
+        # of a hold that has no reading at that time there is none
+        later = {**LOW, "reference_time": 1600.0}
+        with pytest.raises(FitError, match="too short for a line"):
+            _static_stiffness(t[held], load[held], strain[held], **later, ramp_duration=600.0)
+
     def test_a_reference_time_beyond_the_hold_is_noted(self):
         found = _static_stiffness(*upper_hold(), **{**LOW, "reference_time": 1e5})
         assert str(found.notes[0]).startswith("the stiffness at 100000 s is extrapolated")

@@ -76,6 +76,13 @@ class Cycles:
         return np.arange(1, self.n_cycles + 1) if self.count is None else self.count
 
     @property
+    def n_between(self) -> int:
+        """Cycles that surely ran between the first and the last of the log, and are not in it."""
+        if self.count is None or not self.is_count_sure:
+            return 0
+        return int(np.maximum(np.diff(self.count) - 1, 0).sum())  # a counter may start again
+
+    @property
     def longest(self) -> int:
         """Samples of the longest cycle."""
         return int((self.last - self.first).max(initial=0)) + 1

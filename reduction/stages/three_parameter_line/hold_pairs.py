@@ -49,6 +49,9 @@ _FEWEST_POINTS = 4
 
 _SHORTEST_SPAN = 0.5
 
+# a stiffness at one time alone is of the readings within this factor of it
+_BESIDE_REFERENCE = 10**0.1
+
 
 @dataclass(frozen=True)
 @read_only_arrays
@@ -142,12 +145,19 @@ def _static_stiffness(
             "the reference time is not positive", found=f"{reference_time:g} s", needed="above 0 s"
         )
     clock, load, stretch = as_same_shape(elapsed=elapsed, tension=tension, strain=strain)
-    series, shortest = (clock, load, stretch), RAMP_TIMES_LEFT_OUT * ramp_duration
+    series = clock, load, stretch
+    earliest, latest = RAMP_TIMES_LEFT_OUT * ramp_duration, np.inf
+    end = finite_extremes(clock)[1]
+    # a plateau of a slow programme ends within these ramp times: the secant at one time it has
+    is_of_ramp = bool(end < 10**_SHORTEST_SPAN * earliest and reference_time <= min(end, earliest))
+    after_ramp = max(0.0, float(np.log10(end / earliest))) if is_of_ramp else 0.0
+    if is_of_ramp:
+        earliest, latest = reference_time / _BESIDE_REFERENCE, reference_time * _BESIDE_REFERENCE
 
     def is_kept(part: slice) -> Bools:
         clock, load, stretch = (one[part] for one in series)
         known = np.isfinite(clock) & np.isfinite(load) & np.isfinite(stretch)
-        return known & ~(clock < shortest)
+        return known & ~((clock < earliest) | (clock > latest))
 
     clock, load, stretch = select_samples(is_kept, *series)
     if clock.size < _FEWEST_POINTS:
@@ -205,7 +215,14 @@ def _static_stiffness(
         slope_per_decade_over_strength=slope / rated_break_strength,
         confidence=confidence,
         notes=(
-            *((note("no-static-slope", span=span, needed=_SHORTEST_SPAN),) if is_short else ()),
+            *((note("stiffness-amid-ramp-times", reference=reference_time, ramp=ramp_duration),)
+              if is_of_ramp else ()),
+            *(
+                (note("no-static-slope", span=after_ramp if is_of_ramp else span,
+                      needed=_SHORTEST_SPAN),)
+                if is_short
+                else ()
+            ),
             *(
                 ()
                 if reaches
