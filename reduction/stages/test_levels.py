@@ -55,6 +55,9 @@ class TestLevels:
     n_strokes : int
         Rises and falls of position by more than a quarter of its range, one after another, but as
         many as there are holds: a line that is pulled from hold to hold does not cycle.
+    ends_in_pull : bool
+        Whether the last rise of position leads to a quarter more tension than any before it: what
+        was cycled until then was bedded in.
     is_copy : ndarray of bool, shape (n_specimens,)
         Specimens whose tension is that of one before them, reading by reading.
     load_step : ndarray, shape (n_specimens,)
@@ -82,6 +85,7 @@ class TestLevels:
     slack_strain: Floats
     final_share: Floats
     n_strokes: int
+    ends_in_pull: bool
     is_copy: Bools
     load_step: Floats
     like_means: Floats
@@ -180,6 +184,7 @@ def levels_of_test(
     else:
         speed = _speed(time, position)
     rests = np.flatnonzero(standstills.is_rest)
+    turns = _turns(position, least=5 * standstills.position_tolerance)
     return TestLevels(
         frequency=frequency,
         speed=speed,
@@ -194,11 +199,8 @@ def levels_of_test(
             for one in measured_strain
         ]),
         final_share=_final_share(position, tension),
-        n_strokes=max(
-            _n_strokes(position, least=5 * standstills.position_tolerance)
-            - int(np.count_nonzero(~standstills.is_rest)),
-            0,
-        ),
+        n_strokes=max(turns.size - 1 - int(np.count_nonzero(~standstills.is_rest)), 0),
+        ends_in_pull=_ends_in_pull(position, tension, turns),
         is_copy=np.array([
             any(_is_copy(tension[index], tension[before]) for before in range(index))
             for index in range(n_specimens)
@@ -366,13 +368,28 @@ def _strain_per_length(position: Floats, strain: Floats | None, n_specimens: int
     return found
 
 
-def _n_strokes(position: Floats, *, least: float) -> int:
-    """Rises and falls of a quarter of the range, of samples spread over the record."""
-    known = position[_some(position.size)]
-    known = known[np.isfinite(known)]
+def _turns(position: Floats, *, least: float) -> Integers:
+    """Samples where rises and falls of a quarter of the range end, of some spread over it."""
+    some = np.arange(*_some(position.size).indices(position.size))
+    known = some[np.isfinite(position[some])]
     if not known.size:
-        return 0
-    return max(find_reversals(known, band=max(np.ptp(known) / 4, least)).size - 1, 0)
+        return known
+    stroke = position[known]
+    return known[find_reversals(stroke, band=max(np.ptp(stroke) / 4, least))]
+
+
+_MORE_IN_PULL = 1.25
+
+
+def _ends_in_pull(position: Floats, tension: Floats, turns: Integers) -> bool:
+    """Whether the last rise leads to much more tension than all before it."""
+    if turns.size < 2:
+        return False
+    last = turns[-2] if position[turns[-1]] > position[turns[-2]] else turns[max(turns.size - 3, 0)]
+    greatest = [
+        (finite_extremes(load[:last])[1], finite_extremes(load[last:])[1]) for load in tension
+    ]
+    return all(after > _MORE_IN_PULL * before for before, after in greatest)
 
 
 def _position_at(position: Floats, load: Floats, level: float) -> float:

@@ -36,6 +36,19 @@ def test_a_sine_whose_tension_leads_by_a_known_time():
     assert found.n_strokes == 24
 
 
+@pytest.mark.parametrize(("reached", "ends_in_pull"), [(2.0, True), (1.1, False)])
+@pytest.mark.parametrize("returns", [True, False])
+def test_a_pull_to_more_than_the_cycles_before_it_is_told_from_one_more(
+    reached, ends_in_pull, returns
+):
+    back = [0.0] if returns else []
+    turns = [0, *[1.0, 0.1] * 8, reached, *back]
+    position = 2 + np.interp(np.arange(50 * len(turns)), 50 * np.arange(len(turns)), turns)
+    found = levels(position, 1e3 * (position - 2))
+    assert found.ends_in_pull == ends_in_pull
+    assert found.n_strokes >= 16
+
+
 def test_a_triangle_is_told_from_a_sine():
     phase = 0.05 * np.arange(1200) / 5 % 1
     position = 2 + np.abs(2 * phase - 1)
