@@ -1137,7 +1137,11 @@ _OF_LINE: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         " strain for design; K_0 is the slope of a spline and is not off by that",
     ),
     "pull-falls": (
-        "note", "tension falls on the way to the peak, by {fall:.1%} of the rise",
+        "warning",
+        "tension falls on the way to the peak, by {fall:.1%} of the rise, as where a line relaxes"
+        " in a hold or a strand parts: K_0 beside these tensions is neither of the pull nor of the"
+        " hold. Between holds read the static stiffness, or give a pull without them by a step with"
+        " its own from and to",
     ),
     "pull-rate-uneven": (
         "note",

@@ -286,14 +286,13 @@ class TestPull:
         with pytest.raises(DataError, match="tension falls by 9.% of its rise on the way"):
             fit_pull(turn, load / 1e4, load)
 
-    def test_a_fall_on_the_way_is_noted(self):
+    def test_a_fall_on_the_way_is_something_to_check(self):
         time, strain, load = rising()
         load = load.copy()
         load[1000:] -= 0.05 * 8800
-        assert any(
-            "tension falls on the way to the peak" in note
-            for note in map(str, fit_pull(time, strain, load).notes)
-        )
+        (found,) = (one for one in fit_pull(time, strain, load).notes if one.code == "pull-falls")
+        assert found.severity == "warning"
+        assert str(found).startswith("tension falls on the way to the peak, by 5.")
 
     def test_time_that_stands_still_is_refused(self):
         _, strain, load = rising()
