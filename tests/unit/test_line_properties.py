@@ -171,6 +171,14 @@ def test_original_stiffness_falls_back_to_the_first_cycle():
     assert (cycle.value, cycle.standard_uncertainty) == (1000.0, 2.0)
     assert "of the first cycle" in cycle.reason
     assert (cycle.low_tension, cycle.high_tension) == (40.0, 75.0)
+    # few readings on the rise leave a piece of its curve: 10 N of the 35 N of the first cycle
+    (piece,) = named([bedding(first_rise=rise(66, 76))], "original stiffness")
+    assert (piece.value, piece.low_tension, piece.high_tension) == (
+        cycle.value, cycle.low_tension, cycle.high_tension,
+    )  # fmt: skip
+    assert piece.reason == (
+        "of the first cycle: the curve of the first rise has 10 N of it, for want of readings"
+    )
     (none,) = named([step("C", holds=(HOLD,))], "original stiffness")
     assert "the first step has no curve of its first loading" in none.reason
     (empty,) = named([], "original stiffness")

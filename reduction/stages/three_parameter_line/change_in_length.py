@@ -457,6 +457,10 @@ def _with_note(one: ChangeInLength, missing: str) -> ChangeInLength:
     return replace(one, reason=f"{one.reason}; {missing}")
 
 
+# a curve of the first rise over less than this of the first cycle is of a few readings in it
+_LEAST_OF_RISE = 0.5
+
+
 def _original(steps: Sequence[StepOfProgramme], before: str) -> ChangeInLength:
     absent = ChangeInLength("original stiffness")
     if before:
@@ -465,10 +469,17 @@ def _original(steps: Sequence[StepOfProgramme], before: str) -> ChangeInLength:
         return replace(absent, reason="there is no step")
     first = steps[0]
     absent = replace(absent, step=first.name)
-    rise = first.first_rise
+    rise, cycles = first.first_rise, first.bedding
+    reason = "there is no curve of the first rise, which a log that begins slack gives"
     if rise is not None:
         # a rope creeps on for a while as the load falls again: that is no part of its rise
         top = max(int(np.argmax(rise.tension)), 1)
+    if rise is not None and cycles is not None:
+        spanned = float(rise.tension[top] - rise.tension[0])
+        if spanned < _LEAST_OF_RISE * (cycles.first_peak_tension - cycles.valley_tension):
+            rise = None
+            reason = f"the curve of the first rise has {spanned:.4g} N of it, for want of readings"
+    if rise is not None:
         gain = float(rise.strain[top] - rise.strain[0])
         stiffness = float(rise.tension[top] - rise.tension[0]) / gain
         of_tension, of_strain = (
@@ -489,16 +500,13 @@ def _original(steps: Sequence[StepOfProgramme], before: str) -> ChangeInLength:
                 else ""
             ),
         )
-    if first.bedding is None:
+    if cycles is None:
         return replace(absent, reason=_NO_RISE)
     return replace(
-        absent.with_number(first.bedding.first_stiffness),
-        low_tension=first.bedding.valley_tension,
-        high_tension=first.bedding.first_peak_tension,
-        reason=(
-            "of the first cycle: there is no curve of the first rise, which a log that begins "
-            "slack gives"
-        ),
+        absent.with_number(cycles.first_stiffness),
+        low_tension=cycles.valley_tension,
+        high_tension=cycles.first_peak_tension,
+        reason=f"of the first cycle: {reason}",
     )
 
 
