@@ -537,7 +537,8 @@ def lines_of_folder(folder: Path) -> list[LineSource]:
 
     A rope that is in several tests, and in no experiment with surfaces, is one line more: K_ap, H
     and loss factor at the level of each test, original and static stiffness, and K_0 and strain of
-    its slow pull.  It bears the name of the specimen, its tests are called TEST SPECIMEN.
+    its slow pull.  It bears the name of the specimen, its tests are called TEST SPECIMEN.  So is
+    one whose only test is of holds, where these have a static stiffness.
     """
     found = [(path.stem, lines_of_archive(path)) for path in archives_of_lines(folder)]
     named = _with_unique_names(found)
@@ -549,7 +550,8 @@ def lines_of_folder(folder: Path) -> list[LineSource]:
     ropes = [
         _rope(folder, name, own)
         for name, own in tests.items()
-        if len(own) > 1 and own[0].kind in _ROPES and any(line.levels for line in own)
+        if own[0].kind in _ROPES
+        and ((len(own) > 1 and any(line.levels for line in own)) or _changes(folder, name))
     ]
     pooled = {line.name for line in ropes}
     lines = []
@@ -601,8 +603,13 @@ def _rope(folder: Path, name: str, tests: Sequence[LineSource]) -> LineSource:
     return replace(
         tests[0],
         name=name,
-        source=f"{folder.name}, specimen {name}: levels of {n_tests} tests"
-        + (f", slow pull {pulls[0].source}" if len(pulls) == 1 else ""),
+        source=f"{folder.name}, specimen {name}: "
+        + ", ".join(
+            [
+                *([f"levels of {n_tests} tests"] if n_tests else []),
+                *([f"slow pull {pulls[0].source}"] if len(pulls) == 1 else []),
+            ]
+        ),
         curves=pulls[0].curves if len(pulls) == 1 else (),
         levels=(*(_joined(parts) for parts in by_quantity.values()), *_changes(folder, name)),
         conditions=pulls[0].conditions if len(pulls) == 1 else {},

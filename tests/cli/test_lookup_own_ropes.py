@@ -106,6 +106,17 @@ def test_between_two_levels_the_interval_spans_both_and_outside_nothing_is_given
         look_up(line, K_AP, mean_tension=0.21 * STRENGTH)
 
 
+def test_a_rope_of_one_pull_has_what_its_change_in_length_says(rope, line, tmp_path):
+    for name in ("Q01", "change_in_length"):
+        shutil.copy(rope / f"{name}.nc", tmp_path)
+    (alone,) = lines_of_folder(tmp_path)
+    assert [one.quantity for one in alone.levels] == ["original_stiffness"]
+    assert [one.quantity for one in alone.curves] == ["quasi_static_spring_constant", "strain"]
+    (own,) = (one for one in line.levels if one.quantity == "original_stiffness")
+    assert alone.levels[0].value == own.value
+    assert f"specimen {line.name}: slow pull " in alone.source
+
+
 def test_original_and_slow_stiffness_stand_beside_the_levels(line, lines, rope):
     with reading(rope / "R01.nc") as archive:
         tension, strain = archive["tension"].values[0], archive["strain"].values[0]
