@@ -467,7 +467,7 @@ def parse_quantity(
             raise SettingsError(
                 "a share of the break strength is given, but no break strength",
                 found=repr(text),
-                needed="rated_break_strength of the specimen",
+                needed="rated_break_strength in the same table; elsewhere a force in a unit",
             )
         return _finite(number / 100 * rated_break_strength, text)
     if not unit and dimension not in ("strain", "number"):

@@ -782,7 +782,7 @@ def _row(
         unit = _unit(quantity(one.quantity).unit, units)
         return [
             *head, words(""), _limits(one, unit), words(superscript(unit.unit)), words(one.source),
-            TableCell(f"no statement: {getattr(error, 'problem', error)}"),
+            TableCell(f"no statement: {_why(error)}"),
         ]  # fmt: skip
     shown = _unit(budget.unit, units)
     interval = _interval(view, budget)
@@ -795,6 +795,13 @@ def _row(
         words(one.source),
         words(verdict if verdict != "no statement" else _REACHES),
     ]
+
+
+def _why(error: Exception) -> str:
+    """Return what is wrong with a limit and what it needs, in the words of campaign.toml."""
+    needed = getattr(error, "needed", None)
+    what = str(getattr(error, "problem", error))
+    return what if needed is None else f"{what}; needed {needed.replace('--at', 'at')}"
 
 
 def _interval(view: TestView, budget: Budget) -> tuple[float, float]:

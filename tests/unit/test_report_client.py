@@ -279,6 +279,12 @@ def test_a_limit_of_a_number_that_is_not_there_gives_no_statement_and_says_why(
     assert row[5] == {"tangent_modulus": "MPa", "relaxation_time": "s"}[one.quantity]
 
 
+def test_a_limit_at_a_place_that_a_number_has_not_is_told_which_it_has(judged):
+    row, _ = judged(limit(1.0, at={"hold": "1"}))
+    assert row[-1].startswith("no statement: tangent_modulus does not vary with hold; needed at ")
+    assert row[-1].endswith("specimen, branch, strain")
+
+
 def test_us_units_change_what_is_shown(client, rich_test):
     page = client(
         ReportDetails(decision_rule="guard band", limits=(limit(1e6),)), rich_test, units="us"
