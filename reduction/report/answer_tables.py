@@ -265,8 +265,42 @@ def pull_table(tests: Sequence[TestView]) -> PageTable | None:
                 found, own, [_FIRST_RISE, _PULLED, "pull_peak_tension", "interval_modulus"]
             ),
             *(["EA of a slow pull of a rope: K_0, by its cubic."] if has_cubic else []),
+            *_sets_of_breaks(own),
         ],
     )  # fmt: skip
+
+
+_KIND_OF_ROPE = ("kind", "material", "construction", "condition")
+
+
+def _sets_of_breaks(tests: Sequence[TestView]) -> list[str]:
+    """Say what the breaks of specimens of one kind give together, where there are several."""
+    force = shown("tension", tests[0].units)
+    sets: dict[tuple[str, ...], list[tuple[str, float]]] = {}
+    for view in tests:
+        strength, broke = view.array("tensile_strength"), view.array("pull_is_break")
+        if strength is None or broke is None:
+            continue
+        words_of = [view.texts(f"specimen_{one}") for one in _KIND_OF_ROPE]
+        across = view.array_like("diameter", strength)
+        for place in np.flatnonzero((broke == 1) & np.isfinite(strength)):
+            key = (*(own[place] if own else "" for own in words_of), f"{across[place]:.3g}")
+            sets.setdefault(key, []).append((view.specimens[place], float(strength[place])))
+    found = []
+    for key, breaks in sets.items():
+        loads = np.array([load for _, load in breaks])
+        if loads.size < 2:
+            continue
+        mean, deviation = float(loads.mean()), float(loads.std(ddof=1))
+        of = ", ".join(one for one in key[:-1] if one)
+        texts = [number(one, force).text for one in (mean, deviation, float(loads.min()))]
+        found.append(
+            f"Breaks of {loads.size} specimens ({of}): mean {texts[0]} {force.unit}, standard"
+            f" deviation {texts[1]} {force.unit} ({deviation / mean:.1%}), least {texts[2]}"
+            f" {force.unit}. Breaks in a splice or grip are among them; a table of outcomes tells"
+            " them apart."
+        )
+    return found
 
 
 _PULLS = ("tensile", "quasi-static", "stepwise")

@@ -253,6 +253,22 @@ def test_a_break_without_a_curve_before_it_has_its_load_and_strain():
     assert row == ["new", "P-1", "break", "45.0 ± 2.0", "600 ± 20", NOT_GIVEN, "reduced"]
 
 
+def test_breaks_of_one_kind_have_their_mean_deviation_and_least():
+    def broken(load, material="nylon"):
+        return pulled(
+            "tensile", of="rope", specimen_material=(S, [material]), pull_is_break=(S, [1]),
+            tensile_strength=(S, [load]),
+        )  # fmt: skip
+
+    views = [*map(broken, (900.0, 1000.0, 1100.0)), broken(500.0, "polyester")]
+    (found,) = (one for one in pull_table(views).remarks if one.startswith("Breaks of"))
+    # deviations of -100, 0 and 100 N over n - 1
+    assert found.startswith(
+        "Breaks of 3 specimens (rope, nylon): mean 1,000 N, standard deviation 100.0 N (10.0%),"
+        " least 900.0 N."
+    )
+
+
 def test_a_slow_pull_of_a_rope_has_k_0_half_way():
     grid = (S, "tension_grid")
     more = {
