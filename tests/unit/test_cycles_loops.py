@@ -142,6 +142,23 @@ def test_a_slow_log_of_a_sine_has_the_stiffness_of_the_sine(per_cycle):
     assert loops.loss_factor == pytest.approx(np.tan(delta), rel=1e-2)
 
 
+@pytest.mark.parametrize("per_cycle", [20, 30, 60])
+def test_a_sine_without_its_form_misses_its_turns_by_no_more_than_a_sine_can(per_cycle):
+    # the foot lies anywhere between two readings: at most 1 - cos(pi / N) of half the range
+    ends = []
+    for place in np.linspace(-0.5, 0.5, 9):
+        angle = 2 * np.pi * (np.arange(12 * per_cycle) + place) / per_cycle
+        strain, tension = 0.02 - 0.005 * np.cos(angle), 200 - 100 * np.cos(angle)
+        cycles = cycles_of(per_cycle, 11, angle.size)
+        loops = close_loops(angle, tension[None], strain[None], cycles, waveform="other")
+        error = loops.foot_strain[0] - 0.015
+        stated = loops.uncertainty["foot_strain"][0]
+        ends.append((np.abs(error).max(), stated.max()))
+    most, stated = np.max(ends, axis=0)
+    assert most < 2.5 * stated
+    assert stated < 2 * 0.005 * (1 - np.cos(np.pi / per_cycle))
+
+
 def test_a_short_series_is_refused():
     with pytest.raises(DataError, match="a loop is too short; found 2 samples"):
         _loop_energy([1.0, 2.0], [0.0, 1.0], np.array([0]), np.array([1]))

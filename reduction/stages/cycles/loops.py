@@ -951,7 +951,6 @@ def _quantities_of_cycles(
     strain_noise: float,
     rise_shares: tuple[Floats | float, Floats | float] = (0.5, 0.5),
     control: Control = "position",
-    turn: Turn = "rounded",
     shapes: tuple[_Shape, _Shape] | None = None,
 ) -> tuple[dict[str, Floats], dict[str, Floats]]:
     """Quantities of each cycle of one specimen, and their standard uncertainties.
@@ -1063,19 +1062,16 @@ def _quantities_of_cycles(
         both = np.hypot(noise, apparent * strain_noise)
         u_over_time = np.sqrt(2 / n_samples) * both / np.sqrt(square)
         u_energy = row["strain_step_norm"] * both
-        missed = 0.0 if turn != "rounded" else _missed_turn(1.0, n_samples)
-        u_extreme = np.hypot(noise, missed * amplitude)
+        u_extreme = np.hypot(noise, row["force_missed"] / np.sqrt(12))
         if waveform == "sinusoidal":
+            u_extreme = np.hypot(noise, _missed_turn(amplitude, n_samples))
             u_half, u_strain = np.sqrt(2 / n_samples) * noise, np.sqrt(2 / n_samples) * strain_noise
             storage, loss = over_time, lost_over_time
             u_storage = u_loss = u_apparent = u_over_time
         else:
-            u_half = u_extreme / np.sqrt(2)
-            u_strain = np.hypot(strain_noise, missed * strain_amplitude) / np.sqrt(2)
-            if turn != "rounded":  # of one cycle the turn lies anywhere between two samples
-                u_extreme = np.hypot(u_extreme, row["force_missed"] / np.sqrt(12))
-                u_half = np.hypot(u_half, row["force_missed"] / np.sqrt(12))
-                u_strain = np.hypot(u_strain, row["strain_missed"] / np.sqrt(12))
+            # of one cycle the turn lies anywhere between two samples
+            u_half = np.hypot(noise / np.sqrt(2), row["force_missed"] / np.sqrt(12))
+            u_strain = np.hypot(strain_noise / np.sqrt(2), row["strain_missed"] / np.sqrt(12))
             # a missed turn takes the same share off both amplitudes; only noise is left
             u_apparent = apparent * np.hypot(noise / amplitude, strain_noise / strain_amplitude)
             u_apparent /= np.sqrt(2)
@@ -2258,7 +2254,7 @@ def close_loops(
         values, errors = _quantities_of_cycles(
             measured[index], cycles, ends, waveform=waveform, noise=noise,
             strain_noise=strain_noise, rise_shares=rise_shares, control=control,
-            turn=turns[index], shapes=shapes,
+            shapes=shapes,
         )  # fmt: skip
         for name, column in values.items():
             tables[name][index] = column
