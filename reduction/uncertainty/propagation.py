@@ -818,6 +818,7 @@ def loop_contributions(
     waveform: Literal["triangular", "sinusoidal", "other"],
     control: Literal["position", "load"] = "position",
     speed_ratio: Floats | float = 1.0,
+    has_corners: bool = True,
     inertia: Inertia | None = None,
 ) -> Contributions:
     """Contributions to the quantities of loops of one specimen.
@@ -829,7 +830,8 @@ def loop_contributions(
     harder where the machine sets the position, and stretches less where it sets the load; by as
     much, relatively, at the mean as at the amplitude.  Tension that is logged late turns the
     complex modulus back by 2 pi f lag and narrows the loop; it has no first-order effect on
-    extremes.  It is what the load cell felt that is late: the inertia that was taken off with it.
+    extremes, but where a wave ``has_corners`` that its other channel is read at.  It is what the
+    load cell felt that is late: the inertia that was taken off with it.
     Inertia goes with the position and does no work over a cycle, so that an error of its mass
     leaves the energy alone.  Splices that are longer on the way down widen the loop by the
     difference of strain, over the range of tension.
@@ -938,7 +940,9 @@ def loop_contributions(
             of_lag["loss_spring_constant"] = of_lag["hysteresis_energy"] / (
                 np.pi * strain_amplitude**2
             )
-        if waveform == "other":  # readings beside a corner and the approach to it are late alike
+        if (
+            waveform == "other" and has_corners
+        ):  # readings beside a corner and the approach to it are late alike
             of_approach = 4 * frequency * errors.lag * ramps
             of_lag |= {
                 "apparent_spring_constant": -of_approach * apparent_spring_constant,

@@ -63,6 +63,9 @@ from reduction.stages.channel_lag import (
     lag_by_turns,
 )
 from reduction.stages.cycles.cycle_product import Cycles, Loops
+from reduction.stages.cycles.cycle_search import control_channel
+from reduction.stages.cycles.loops import reading_noise
+from reduction.stages.cycles.turns import kind_of_turns
 from reduction.stages.holds.relaxation_and_creep import HoldResult, hold_numbers
 from reduction.stages.moduli.elastomer_laws import LAWS
 from reduction.stages.moduli.modulus_product import (
@@ -345,8 +348,24 @@ def _of_loops(
         waveform="sinusoidal" if over_time else settings.waveform,
         control=settings.control,
         speed_ratio=_speed_ratio(loops, index, model, cycles, settings, record),
+        has_corners=_has_corners(cycles, settings, record),
         inertia=_inertia_of(_train_of(record), loops, index, errors),
     )  # fmt: skip
+
+
+_CYCLES_LOOKED_AT = 10
+
+
+def _has_corners(cycles: Cycles, settings: CycleSettings, record: Record | None) -> bool:
+    """Whether the driven channel turns at corners, as far as its first cycles show."""
+    if record is None or not cycles.n_cycles:
+        return True
+    last = min(cycles.n_cycles, _CYCLES_LOOKED_AT) - 1
+    begin = int(cycles.first[0])
+    part = slice(begin, int(cycles.last[last]) + 1)
+    driven = control_channel(record.crosshead_position[part], record.tension[:, part], settings)
+    peaks = cycles.branch_last[: last + 1, 0] - begin
+    return kind_of_turns(driven, peaks, noise=reading_noise(driven)) != "rounded"
 
 
 def _of_dynamic_modulus(

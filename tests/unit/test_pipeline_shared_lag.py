@@ -14,7 +14,7 @@ from reduction.stages.cycles.cycle_product import Cycles
 from reduction.stages.reduced_test import TestDescription
 from reduction.stages.strain.strain_model import StrainModel
 from reduction.uncertainty.propagation import loop_contributions
-from reduction.uncertainty.shared_contributions import lag_of_test
+from reduction.uncertainty.shared_contributions import _has_corners, lag_of_test
 
 TIME = np.arange(0, 118, 0.1)
 TURNS = np.arange(50, 1151, 50)
@@ -133,3 +133,35 @@ def test_a_filter_takes_its_share_of_an_amplitude():
     wave = 1 - 4 * np.abs(np.mod(0.2 * time, 1) - 0.5)
     behind = lfilter([1 - np.exp(-1e-2)], [1, -np.exp(-1e-2)], wave)[-10_000:]
     assert lost == pytest.approx([1 - 1 / np.hypot(1, 0.04 * np.pi), 1 - behind.max()], rel=0.01)
+
+
+def test_a_late_tension_moves_what_is_read_at_corners_and_no_rounded_turn():
+    phase = TIME / 10
+    waves = {
+        "rounded": 1 - 0.5 * np.cos(2 * np.pi * phase),
+        # ramps that rest for a tenth of the time at both ends
+        "corners": 0.5 + np.clip(1.25 * (1 - 2 * np.abs(np.mod(phase, 1) - 0.5)) - 0.125, 0, 1),
+    }
+    first = np.arange(0, 1000, 100)
+    halves = np.column_stack([first, first + 50]), np.column_stack([first + 50, first + 100])
+    none = np.zeros(TIME.size, np.int8)
+    cycles = Cycles(first, first + 100, *halves, np.ones((10, 2)), none, none, none > 0, 0.01)
+    line = StrainModel("rope", "gauge-length", {"reference_position": 0.0, "gauge_length": 1.0})
+    known = {
+        "mean_tension": 1e3, "tension_amplitude": 500.0, "mean_strain": 1.0,
+        "strain_amplitude": 0.5, "apparent_spring_constant": 1e3, "hysteresis_energy": 1.0,
+        "storage_spring_constant": 1e3, "loss_spring_constant": 1.0, "closed_loop_energy": 1.0,
+    }  # fmt: skip
+    moved = {}
+    for name, wave in waves.items():
+        record = Record(
+            "T", ("rope",), TIME, wave, 1e3 * wave[None], np.zeros((1, TIME.size)), none
+        )
+        found = loop_contributions(
+            InstrumentErrors("rope", lag=0.02), line, frequency=np.full(1, 0.1),
+            **{key: np.full(1, value) for key, value in known.items()}, waveform="other",
+            has_corners=_has_corners(cycles, CycleSettings(waveform="other"), record),
+        )  # fmt: skip
+        moved[name] = float(found.values["apparent_spring_constant"][0, 0])
+    # the approach to a corner goes on for the lag at the speed of straight ramps
+    assert moved == pytest.approx({"rounded": 0.0, "corners": -4 * 0.1 * 0.02 * 1e3})
