@@ -389,6 +389,12 @@ def _results(content: ClientContent) -> list[PageTable]:
         for section, part in _chosen_parts(content.tests, content.sections, _TABLES)
         for table in part.tables
     ]
+    found += [
+        replace(table, caption=f"{section.title}: {table.caption}")
+        for _, section in content.whole.ropes
+        for part in section.parts
+        for table in part.tables
+    ]
     return [*found, *content.whole.answers]
 
 

@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import plotly.graph_objects as go
@@ -14,6 +15,7 @@ from reduction.record.contributions import Component
 from reduction.record.measurement import Origin, Source, Step
 from reduction.report.campaign_page import write_report
 from reduction.report.campaign_sections import _make_rope_section, _rope_tiles
+from reduction.report.client_report import _results
 from reduction.report.figures.hold_figures import draw_creep, draw_held_pairs, draw_stiffness
 from reduction.report.outcome_tables import (
     answer_of_ropes,
@@ -132,6 +134,17 @@ def test_a_rope_has_its_steps_in_order_and_those_without_an_archive_are_left_out
     assert [test.id for test in first.tests] == ["D", "Q"]
     assert second.tests == ()
     assert "D, Q" in _make_rope_section(first).subtitle
+
+
+def test_the_report_to_a_client_has_each_step_of_the_programme(ropes):
+    section = _make_rope_section(ropes[0])
+    whole = SimpleNamespace(ropes=((ropes[0], section),), answers=[])
+    content = SimpleNamespace(tests=(), sections=(), whole=whole)
+    of_rope = [table for part in section.parts for table in part.tables]
+    assert len(of_rope) > 2
+    found = _results(content)
+    assert [table.rows for table in found] == [table.rows for table in of_rope]
+    assert all(table.caption.startswith(f"{section.title}: ") for table in found)
 
 
 def test_every_property_is_a_row_and_a_missing_one_has_its_reason(ropes):
