@@ -34,6 +34,32 @@ def test_a_hold_has_its_samples_and_the_ramp_before_it():
     assert (one.notes, one.refusals) == ([], [])
 
 
+@pytest.mark.parametrize("cycled", [False, True])
+def test_a_controller_that_overshoots_and_settles_does_not_hide_its_ramp(cycled):
+    # 100 N, then in 4 s to 10 % beyond 300 N, from where it swings to it; or it cycles for long
+    time = np.arange(0.0, 400.0, 0.25)
+    since = np.clip(time - 44.0, 0, None)
+    swing = 20 * np.exp(-since / 2) * np.cos(1.5 * since) * (time > 44)
+    load = np.interp(time, [0, 40, 44, 400], [100, 100, 320, 320]) - 20 * (time > 44) + swing
+    begin = 50.0
+    if cycled:
+        on = (time > 44) & (time <= 194)
+        load = np.where(time > 44, 300.0, load) + 40 * on * np.sin(0.2 * np.pi * (time - 44))
+        begin = 194.0
+    first = int(np.argmax(time >= begin))
+    stand = replace(
+        STAND, first=np.array([0, first]), last=np.array([159, time.size - 1]),
+        start_time=np.array([0.0, begin]), end_time=np.array([39.75, time[-1]]),
+        mean_tension=np.array([[100.0, 300.0]]), tension_tolerance=1.0,
+    )  # fmt: skip
+    ramp = select(1, time=time, position=load / 100, tension=load, stand=stand).ramp
+    if cycled:  # the hold comes after the cycles, and not after the ramp to them
+        assert ramp.centre_time > 185
+    else:
+        # half of the 200 N are there after 4 * 100 / 220 s; what swings comes to nothing
+        assert ramp.centre_time == pytest.approx(40 + 4 * 100 / 220, abs=0.5)
+
+
 def test_the_ramp_of_a_later_hold_begins_after_the_one_before():
     ramp = select(1).ramp
     assert ramp.centre_time == pytest.approx(40.5)

@@ -1213,6 +1213,34 @@ def _ramp_before(time: Floats, moved: Floats, answer: Floats, *, band: float) ->
     return _find_ramp(*before, band=band) if before[0].size > 2 else None
 
 
+_SETTLES = 0.5  # of the way between two holds: a last motion of less is a controller that settles
+
+_SETTLING_RAMPS = 3.0  # longer than so many ramps no controller takes: the machine cycled
+
+
+def _without_settling(
+    ramp: _Ramp,
+    time: Floats,
+    moved: Floats,
+    answer: Floats,
+    *,
+    band: float,
+    left: float,
+    level: float,
+) -> _Ramp:
+    """The ramp that led to the level of a hold at first, where the controller overshot it."""
+    begins = moved[np.searchsorted(time, ramp.start_time)]
+    if not abs(level - begins) < _SETTLES * abs(level - left):
+        return ramp
+    sign = np.sign(level - left)
+    reached = np.fmin(np.fmax.accumulate(sign * moved), sign * level)
+    found = _ramp_before(time, sign * reached, answer, band=band)
+    at_level = time[np.argmax(reached)]
+    if found is None or time[-1] - at_level > _SETTLING_RAMPS * (at_level - found.start_time):
+        return ramp
+    return found
+
+
 def _with_time_to_stop(
     ramp: _Ramp, time: Floats, position: Floats, first: int, held_at: float
 ) -> _Ramp:
@@ -1275,6 +1303,12 @@ def select_hold(
         last -= seconds.size - n_held
         seconds, place, load, stretch = (one[:n_held] for one in (seconds, place, load, stretch))
     ramp = _ramp_before(*(one[begin : first + 1] for one in (time, moved, answer)), band=band)
+    if ramp is not None and moved is tension and place.size:
+        left = moved[begin : int(standstills.last[index - 1]) + 1 if index else begin + 1]
+        ramp = _without_settling(
+            ramp, *(one[begin : first + 1] for one in (time, moved, answer)), band=band,
+            left=float(np.median(left[-_LOOKED_BACK:])), level=float(np.median(load)),
+        )  # fmt: skip
     earlier, on_ramp, peak = (
         (np.nan,) * 3 if ramp is None else _logged_peaks(time, tension, ramp, first, last)
     )
