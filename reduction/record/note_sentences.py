@@ -1214,7 +1214,9 @@ _OF_LINE: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "tensile strength not given: {how}: the line carried {tension:.4g} N or more",
     ),
     "no-strain-at-failure": (
-        "refusal", "strain at failure not given: the strain at the peak is not known",
+        "refusal",
+        "strain at failure not given: the strain at the peak is not known, or stood still while the"
+        " load rose to it, as of an extensometer that was taken off",
     ),
     "no-break-strength": (
         "note", "no rated break strength is stated: results relative to it are not given",

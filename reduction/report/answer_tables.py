@@ -314,6 +314,7 @@ def _pull_rows(view: TestView, *, is_of_lines: bool) -> Iterator[list[TableCell]
     areas, broke = view.array("area"), view.array("pull_is_break")
     for place, name in enumerate(view.specimens):
         curve = _rise(view, place)
+        is_break = broke is not None and broke[place] == 1
         known = [_pull_peak(view, peak, place) for peak in ("strain", "tension")]
         if curve is None and not all(known):  # a break is one without a curve before it, too
             continue
@@ -323,7 +324,8 @@ def _pull_rows(view: TestView, *, is_of_lines: bool) -> Iterator[list[TableCell]
             strain, load, stiffness, is_modulus = curve
             at_end = int(np.nanargmax(load.values))
             reached = known[0].values[0] if known[0] else strain[at_end]
-            ends = [_Series.known(strain).cell(at_end, strain_unit), load.cell(at_end, force)]
+            if not is_break:  # whose own strain is not known where it is not given
+                ends = [_Series.known(strain).cell(at_end, strain_unit), load.cell(at_end, force)]
             usable = np.flatnonzero(np.isfinite(stiffness.values))
             if usable.size:
                 half_way = reached / 2
@@ -337,7 +339,6 @@ def _pull_rows(view: TestView, *, is_of_lines: bool) -> Iterator[list[TableCell]
             cell if own is None else own.cell(0, unit)
             for own, cell, unit in zip(known, ends, (strain_unit, force), strict=True)
         ]
-        is_break = broke is not None and broke[place] == 1
         yield [
             words(name), words(f"{view.id} (earlier run)" if view.is_of_earlier_run else view.id),
             words("break" if is_break else "peak load"), *ends, line,

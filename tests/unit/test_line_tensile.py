@@ -88,3 +88,25 @@ def test_series_that_do_not_fit_are_refused():
         tensile_pull(position, load, strain[:-1], rated_break_strength=1e4)
     with pytest.raises(DataError, match="too few readings of tension"):
         tensile_pull(position, load * np.nan, strain, rated_break_strength=1e4)
+
+
+@pytest.mark.parametrize("left", [np.nan, 0.0, 0.4, 1.0])
+@pytest.mark.parametrize("noise", [0.0, 2e-5])
+def test_an_extensometer_that_is_taken_off_knows_no_strain_at_failure(left, noise):
+    # at 70 % of the load; what it reads then is a share of its last reading, or nothing
+    position = np.linspace(10, 11, 400)
+    load = np.append(np.linspace(0, 5000, 350), np.zeros(50))
+    strain = np.linspace(0, 0.05, 400) + np.random.default_rng(1).normal(0, noise, 400)
+    whole = tensile_pull(position, load, strain, rated_break_strength=1e4)
+    assert whole.strain_at_peak[0] == pytest.approx(0.05 * 349 / 399, abs=3 * noise + 1e-9)
+    strain[245:] = left * strain[244]
+    found = tensile_pull(position, load, strain, rated_break_strength=1e4)
+    assert np.isnan(found.strain_at_peak[0])
+    assert found.peak_tension[0] == 5000
+
+
+def test_a_pull_of_few_readings_has_its_strain_at_failure():
+    position = np.linspace(10, 11, 40)
+    load = np.append(np.linspace(0, 5000, 14), np.zeros(26))
+    found = tensile_pull(position, load, (position - 10) / 10, rated_break_strength=1e4)
+    assert found.strain_at_peak[0] == pytest.approx(0.1 * 13 / 39)

@@ -253,6 +253,14 @@ def test_a_break_without_a_curve_before_it_has_its_load_and_strain():
     assert row == ["new", "P-1", "break", "45.0 ± 2.0", "600 ± 20", NOT_GIVEN, "reduced"]
 
 
+def test_a_break_whose_strain_is_not_known_has_not_that_of_its_curve():
+    more = {name: (S, [value]) for name, value in {
+        "pull_is_break": 1, "pull_peak_strain": NAN, "pull_peak_tension": 600.0,
+    }.items()}  # fmt: skip
+    (row,) = texts(pull_table([pulled("tensile", of="rope", **more)]))
+    assert row[2:5] == ["break", NOT_GIVEN, "600.0"]
+
+
 def test_breaks_of_one_kind_have_their_mean_deviation_and_least():
     def broken(load, material="nylon"):
         return pulled(

@@ -34,6 +34,7 @@ from reduction.record.arrays import as_same_shape
 from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import Bools, Floats, Integers, read_only_arrays
 from reduction.record.notes import Note, note
+from reduction.record.samples import step_of_codes
 from reduction.stages.cycles.cycle_product import Loops
 from reduction.stages.cycles.loops import reading_noise
 from reduction.stages.moduli.least_squares import lag_one_inflation
@@ -668,12 +669,27 @@ def _strain_there(load: Floats, stretch: Floats, peak: int, noise: float) -> tup
     rise = stretch[: peak + 1]
     top = np.flatnonzero(load[: peak + 1] >= load[peak] - _PEAK_FACTOR * noise)
     there = rise[top][np.isfinite(rise[top])]
-    if not there.size:
+    if not there.size or _stands_still(load[: peak + 1], rise, float(there[-1])):
         return np.nan, np.nan
     flat = (there.max() - there.min()) / 2 / np.sqrt(3)
     spread = np.sqrt(flat**2 + reading_noise(rise) ** 2 + _gain(rise) ** 2 / 12)
     # where the reading at the peak itself is missing, the nearest one before it
     return float(there[-1]), float(spread)
+
+
+_STOOD_STILL = 0.02  # of the greatest load, gained without strain
+
+
+def _stands_still(load: Floats, rise: Floats, reached: float) -> bool:
+    """Whether the load rose on to its peak while the strain did not: an extensometer taken off."""
+    # what noise and the steps of a converter hide of the last part of a rise
+    hidden = _PEAK_FACTOR * reading_noise(rise) + step_of_codes(rise)
+    known = np.flatnonzero(np.isfinite(rise) & np.isfinite(load))
+    below = np.flatnonzero(rise[known] < reached - hidden)
+    if not below.size or not reached > 0:
+        return bool(rise[known].max() > reached + hidden)
+    since = known[min(below[-1] + 1, known.size - 1)]
+    return bool(1 - load[since] / load[-1] > max(_STOOD_STILL, 2 * hidden / reached))
 
 
 @dataclass(frozen=True)
