@@ -10,6 +10,7 @@ from typing import Literal
 
 import numpy as np
 
+from reduction.quantities.digits import fixed_number
 from reduction.record.note_sentences import CAUSES
 from reduction.record.note_sentences import Severity as NoteSeverity
 from reduction.record.notes import SEVERITIES, full_note, urgency
@@ -17,6 +18,7 @@ from reduction.report.test_view import OF_NO_TEST, Status, TestView, all_specime
 from reduction.report.text_style import (
     NOT_GIVEN,
     PageTable,
+    Shown,
     TableCell,
     count,
     make_table,
@@ -243,7 +245,7 @@ def _is_by_load(tests: Sequence[TestView]) -> bool:
 def _tension(view: TestView) -> TableCell:
     mean, amplitude = view.array("mean_tension"), view.array("tension_amplitude")
     if mean is None or amplitude is None or not np.isfinite(mean).any():
-        return words("")
+        return _up_to(view, "pull_peak_tension", shown("tension", view.units), places=0)
     ends = float(np.nanmean(mean - amplitude)), float(np.nanmean(mean + amplitude))
     return span(*ends, shown("tension", view.units), places=0)
 
@@ -258,7 +260,15 @@ def _reached(view: TestView) -> TableCell:
         return span(*ends, percent, places=1)
     if strain is not None and np.isfinite(strain).any():
         return span(float(np.nanmin(strain)), float(np.nanmax(strain)), percent, places=1)
-    return words("")
+    return _up_to(view, "pull_peak_strain", percent, places=1)
+
+
+def _up_to(view: TestView, name: str, unit: Shown, *, places: int) -> TableCell:
+    """Return where a pull ended, mean over its specimens; empty of a test that is none."""
+    peak = view.array(name)
+    if peak is None or not np.isfinite(peak).any():
+        return words("")
+    return words(f"to {fixed_number(float(np.nanmean(peak)) * unit.factor, places)}")
 
 
 def _test_row(view: TestView, *, is_by_load: bool) -> list[TableCell]:

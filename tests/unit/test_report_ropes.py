@@ -128,6 +128,16 @@ def test_ropes_are_listed_by_the_tension_of_their_cycles(view):
     assert float(table.rows[0][place].value.split()[0]) == pytest.approx(low)
 
 
+def test_a_pull_is_listed_by_how_far_it_went(view):
+    rope = as_rope(view)
+    bare = rope.data.drop_vars(["mean_tension", "tension_amplitude", "mean_strain", "strain"])
+    peaks = {"pull_peak_tension": 4.7e5, "pull_peak_strain": 0.358}
+    bare = bare.assign({name: ("specimen", np.full(bare.sizes["specimen"], peak))
+                        for name, peak in peaks.items()})  # fmt: skip
+    (row,) = test_table([replace(rope, data=bare)], []).rows
+    assert [cell.text for cell in row[3:5]] == ["to 470,000", "to 35.8"]
+
+
 def test_a_table_of_means_without_a_mean_is_not_shown(view):
     data = view.data[["slack_strain_at_unloading", "specimen"]].copy()
     data["slack_strain_at_unloading"][:] = np.nan
