@@ -159,6 +159,39 @@ def test_a_sine_without_its_form_misses_its_turns_by_no_more_than_a_sine_can(per
     assert stated < 2 * 0.005 * (1 - np.cos(np.pi / per_cycle))
 
 
+@pytest.mark.parametrize("waveform", ["triangular", "other"])
+@pytest.mark.parametrize("over", [2.0, 2.5, 3.0])
+def test_ramps_that_a_machine_rounds_over_some_readings_in_step_with_the_log(over, waveform):
+    # two of these readings are nearly level, as those of a machine that rests for one interval
+    fine, per_cycle = 100, 30
+    at = np.arange(31 * per_cycle * fine) / fine
+    phase = at / per_cycle % 1
+    width = int(over * fine)
+    ramps = np.convolve(2 * np.abs(2 * phase - 1) - 1, np.ones(width) / width, "same")
+    kept = slice(per_cycle * fine // 2, -width)
+    driven = 1 - 0.3 * ramps[kept]
+    decay = np.exp(-6 / fine / per_cycle)
+    answer = driven + 0.12 * lfilter([1 - decay], [1, -decay], driven, zi=[decay * driven[0]])[0]
+    tension, strain = 200 * driven, 0.01 * answer
+    cycle = slice(20 * per_cycle * fine, 21 * per_cycle * fine)
+    true = np.ptp(tension[cycle]) / np.ptp(strain[cycle])
+    rng = np.random.default_rng(3)
+    for place in (0.03, 0.31, 0.49, 0.62, 0.75):
+        log = slice(int(place * fine), None, fine)
+        load = tension[log] + rng.normal(0, 0.05, tension[log].size)
+        stretch = strain[log] + rng.normal(0, 3e-6, load.size)
+        time, length = 0.5 * np.arange(load.size), 8 * (1 + stretch)
+        settings = CycleSettings(waveform=waveform, control="load")
+        stands = find_standstills(time, length, load[None], settings=PhaseSettings())
+        cycles = find_cycles(time, length, load[None], stands, settings=settings)
+        loops = close_loops(
+            time, load[None], stretch[None], cycles, waveform=waveform, control="load", driven=load
+        )
+        mean = summarise_amplitude(loops, area=np.array([np.nan]), break_in_cycles=3)
+        spread = mean.uncertainty["apparent_spring_constant"][0]
+        assert abs(mean.apparent_spring_constant[0] - true) < 2.5 * spread < 0.15 * true
+
+
 def test_a_short_series_is_refused():
     with pytest.raises(DataError, match="a loop is too short; found 2 samples"):
         _loop_energy([1.0, 2.0], [0.0, 1.0], np.array([0]), np.array([1]))

@@ -1343,12 +1343,13 @@ def _readings_at_turns(
         )
         # lines beside a rest cross above it, and of its readings noise makes one the greatest
         step = (top - last) / (end - peak)
-        if rests:
-            above = np.zeros(top.size)
+        bow = np.zeros(top.size)
+        if rests:  # or what seems one is a turn that a machine rounds over two readings or three
+            above, bow = np.zeros(top.size), _bow(values, at_top)
             if not answers:
                 top = _mean_of_rest(values, at_top, top, within=_OF_A_STEP * step)
         if rests_below:
-            below = np.zeros(top.size)
+            below, bow = np.zeros(top.size), bow + _bow(-values, at_last)
             if not answers:
                 last = -_mean_of_rest(-values, at_last, -last, within=_OF_A_STEP * step)
         if answers:
@@ -1363,7 +1364,9 @@ def _readings_at_turns(
             if lower is not None:  # it is held at one level at both ends of a cycle
                 first = np.append(-lower[0][0], -lower[0][:-1])
             last, below = (last, below) if lower is None else (-lower[0], 0 * below)
-        top, last, missed = top + above / 2, last - below / 2, missed + (above + below) / 2
+        # the readings of a rounded turn are the lower end of it, and not its middle
+        missed = missed + (above + below) / 2 + bow
+        top, last = top + above / 2, last - below / 2
     elif turn == "rounded":
         above = missed_by_extreme(values, peak, top, sign=1)
         below = missed_by_extreme(values, end, last, sign=-1)
@@ -1622,6 +1625,14 @@ _UNEVEN = 2.0  # times the faster stroke, which the slower one of a saw lasts
 _OF_A_STEP = 0.05  # of the mean step of a branch
 
 _CLEAR = 3.0  # noise of a reading, and standard errors of a mean, that show a ramp or a rounding
+
+
+def _bow(values: Floats, at: Integers) -> Floats:
+    """By how much a parabola through a greatest reading and those beside it lies above it."""
+    before, beside, after = (values[np.clip(at + k, 0, values.size - 1)] for k in (-1, 0, 1))
+    bend, slope = 2 * beside - before - after, (after - before) / 2
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(bend > 0, np.minimum(slope**2 / (2 * bend), bend / 8), 0.0)
 
 
 def _farther(values: Floats, one: Integers, other: Integers) -> Integers:
