@@ -27,6 +27,7 @@ from reduction.lines.export_line import (
     CYLINDER,
     ExportLine,
     Hydrodynamics,
+    beside_dashpot,
     curve_from_zero,
     guards_of,
     siblings_of,
@@ -315,6 +316,8 @@ def write_export(request: ExportRequest) -> ExportedFiles:
         form=form,
         rated_break_strength=_strength_of_shares(sources, values),
     )
+    if form == "damped-table":
+        line = beside_dashpot(line)
     paths = export_line(line, to, out, form=form, units=request.units)
     checks: list[ClientCheck] = []
     if request.verify:

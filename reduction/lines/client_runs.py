@@ -27,7 +27,12 @@ import numpy as np
 
 from reduction.lines.deck_moordyn import deck_length, working_frequency
 from reduction.lines.export_dynamics import Syrope, Viscoelasticity
-from reduction.lines.export_line import ExportLine, continued_tension, straight_cycle
+from reduction.lines.export_line import (
+    ExportLine,
+    continued_tension,
+    loop_stiffness,
+    straight_cycle,
+)
 from reduction.quantities.digits import plain_number
 from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import Floats
@@ -177,8 +182,8 @@ def _cycle_of(line: ExportLine, form: str) -> _Cycle | None:
         return _cycle_on_a_working_curve(line.syrope, line)
     if form == "damped-table" and line.damping is not None and (of := straight_cycle(line)):
         return _Cycle(
-            of.strain, of.strain_amplitude, line.damping.frequency, _GROWN + 3, of.stiffness,
-            of.hysteresis_energy,
+            of.strain, of.strain_amplitude, line.damping.frequency, _GROWN + 3,
+            loop_stiffness(line, line.damping), of.hysteresis_energy,
         )  # fmt: skip
     part = line.viscoelasticity
     if form not in ("static-dynamic", "load-dependent") or part is None:
@@ -268,8 +273,7 @@ for strain, rate in zip(job["strain"], job["rate"]):
     moordyn.Step(system, at(strain), [0.0, 0.0, rate * length], time, step)
     time += step
     top, bottom = moordyn.GetLineFairTen(line), math.hypot(*moordyn.GetLineNodeTen(line, 0))
-    # of accelerations that grow along the line: this mean is the tension without inertia
-    out.append((top + 2 * bottom) / 3)
+    out.append(bottom + job["share"] * (top - bottom))
 moordyn.Close(system)
 json.dump(out, open("out.json", "w"))
 """
@@ -296,12 +300,17 @@ json.dump({name: float(found[name]) for name in ("EA", "EAd", "EAd_Lm")}, open("
 """
 
 
-def _deck_numbers(text: str) -> tuple[float, float]:
-    """Unstretched length of the line of a deck, and height of its lower end. [m]."""
+def _deck_numbers(text: str) -> tuple[float, float, float]:
+    """Unstretched length of the line of a deck, height of its lower end; share of its upper end.
+
+    Of accelerations that grow along a line of N segments, that share (N + 1)/(3 N) of the tension
+    of the last segment, and the rest of that of the first, is the mean of all, without inertia.
+    """
     rows = [row.split() for row in text.split("\n")]
     anchor = next(row for row in rows if row[:2] == ["1", "Fixed"])
     head = next(place for place, row in enumerate(rows) if "UnstrLen" in row)
-    return float(rows[head + 2][4]), float(anchor[4])
+    segments = int(rows[head + 2][5])
+    return float(rows[head + 2][4]), float(anchor[4]), (segments + 1) / (3 * segments)
 
 
 def _in_python(driver: str, folder: Path, deck: str, what: str, **job: object) -> Any:
@@ -318,11 +327,11 @@ def _by_moordyn(form: str) -> Callable[[ExportLine, Path, str], list[ClientCheck
     def run(line: ExportLine, folder: Path, deck: str) -> list[ClientCheck]:
         _needed("MoorDyn", importlib.util.find_spec("moordyn"), "pip install moordyn")
         program = f"MoorDyn {version('moordyn')}"
-        length, low = _deck_numbers((folder / deck).read_text())
+        length, low, share = _deck_numbers((folder / deck).read_text())
 
         def stretch(strain: Floats, step: float) -> tuple[Floats, Floats]:
             found = _in_python(
-                _MOORDYN, folder, deck, program, length=length, low=low, step=step,
+                _MOORDYN, folder, deck, program, length=length, low=low, step=step, share=share,
                 strain=strain[:-1].tolist(), rate=(np.diff(strain) / step).tolist(),
             )  # fmt: skip
             return strain[1:], np.array(found)
@@ -419,7 +428,7 @@ def _by_openfast(form: str) -> Callable[[ExportLine, Path, str], list[ClientChec
         driver = shutil.which("moordyn_driver")
         _needed("moordyn_driver, of OpenFAST,", driver, "on the path; benchmarks/build_clients.sh")
         text = (folder / deck).read_text()
-        length, low = _deck_numbers(text)
+        length, low, share = _deck_numbers(text)
         depth = re.search(r"^(\S+) WtrDpth$", text, re.MULTILINE)
 
         (folder / deck).write_text(text.replace("\nFairTen1\n", "\nFairTen1\nPoint2Pz\n"))
@@ -443,8 +452,7 @@ def _by_openfast(form: str) -> Callable[[ExportLine, Path, str], list[ClientChec
                 np.interp(time[1:], table[:, 0], table[:, names.index(name)])
                 for name in ("point2pz", "fairten1", "anchten1")
             )
-            # of accelerations that grow along the line: this mean is the tension without inertia
-            return (place - low) / length - 1, (top + 2 * bottom) / 3
+            return (place - low) / length - 1, bottom + share * (top - bottom)
 
         return _stretched(
             "moordyn_driver", line, form, stretch, in_a_cycle=20 * _IN_A_CYCLE, least_rest=60.0
@@ -456,7 +464,7 @@ def _by_openfast(form: str) -> Callable[[ExportLine, Path, str], list[ClientChec
 def _by_moorpy(line: ExportLine, folder: Path, deck: str) -> list[ClientCheck]:
     _needed("MoorPy", importlib.util.find_spec("moorpy"), "pip install moorpy")
     program, strain = f"MoorPy {version('moorpy')}", _SHARES * float(line.strain[-1])
-    length, low = _deck_numbers((folder / deck).read_text())
+    length, low, _ = _deck_numbers((folder / deck).read_text())
     found = _in_python(
         _MOORPY, folder, deck, program, length=length, low=low, strain=strain.tolist()
     )

@@ -98,6 +98,8 @@ _COURANT = 0.1
 
 _DEPTH = 100.0
 
+_OF_WAVE = 0.2  # of the way of a wave in 1/(2 pi) of a cycle, at most, of the line of a deck
+
 _SHORTEST_STEP, _LONGEST_STEP = 1e-4, 0.02
 
 _SHARE_OF_LAG = 0.02
@@ -111,8 +113,18 @@ _COLUMNS = (
 
 
 def deck_length(line: ExportLine) -> float:
-    """Of the line of a deck: its own where it has one. [m]."""
-    return line.unstretched_length if math.isfinite(line.unstretched_length) else _LENGTH
+    """Of the line of a deck: its own where it has one. [m].
+
+    Else so short that a wave is along it well within the measured cycle: of a soft line that is
+    moved fast, inertia would be part of what a run of the deck shows.
+    """
+    if math.isfinite(line.unstretched_length):
+        return line.unstretched_length
+    speed = math.inf
+    if line.damping is not None and line.linear_density > 0:
+        rate = 2 * math.pi * line.damping.frequency
+        speed = math.sqrt(line.damping.apparent_stiffness / line.linear_density) / rate
+    return min(_LENGTH, _OF_WAVE * speed) if speed > 0 else _LENGTH
 
 
 def segment_length(line: ExportLine) -> float:

@@ -27,7 +27,7 @@ import math
 import re
 import unicodedata
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Protocol
 
 import numpy as np
@@ -167,6 +167,8 @@ class CycleDamping:
         Of one cycle. [J m-1]
     standard_uncertainty : float
         Of that energy. [J m-1]
+    apparent_stiffness : float
+        K_ap of the test; NaN where not known. [N]
     """
 
     coefficient: float
@@ -174,6 +176,7 @@ class CycleDamping:
     strain_amplitude: float
     hysteresis_energy: float
     standard_uncertainty: float
+    apparent_stiffness: float = math.nan
 
 
 def cycle_damping(
@@ -181,6 +184,7 @@ def cycle_damping(
     frequency: float,
     strain_amplitude: float,
     standard_uncertainty: float = math.nan,
+    apparent_stiffness: float = math.nan,
 ) -> CycleDamping:
     r"""Dashpot of a line whose sinusoidal cycle has a hysteresis energy.
 
@@ -199,6 +203,8 @@ def cycle_damping(
         Half the range. [1]
     standard_uncertainty : float, optional
         Of the energy. [J m-1]
+    apparent_stiffness : float, optional
+        K_ap of the cycle. [N]
 
     Returns
     -------
@@ -227,7 +233,12 @@ def cycle_damping(
         )
     coefficient = hysteresis_energy / (2 * math.pi**2 * frequency * strain_amplitude**2)
     return CycleDamping(
-        coefficient, frequency, strain_amplitude, hysteresis_energy, standard_uncertainty
+        coefficient,
+        frequency,
+        strain_amplitude,
+        hysteresis_energy,
+        standard_uncertainty,
+        apparent_stiffness,
     )
 
 
@@ -629,7 +640,84 @@ class _StraightCycle:
         return self.strain - self.tension / self.stiffness
 
 
-_IN_A_CYCLE = 200
+_IN_A_CYCLE = 2000
+
+
+def _loop_tensions(line: ExportLine, damping: CycleDamping) -> Floats:
+    """Tensions of a curve and its dashpot over a sine up to the end of the curve. [N]."""
+    phase = 2 * np.pi * np.arange(_IN_A_CYCLE) / _IN_A_CYCLE
+    strain = float(line.strain[-1]) + damping.strain_amplitude * (np.sin(phase) - 1)
+    rate = 2 * np.pi * damping.frequency * damping.strain_amplitude * np.cos(phase)
+    return continued_tension(line, strain) + damping.coefficient * rate
+
+
+def loop_stiffness(line: ExportLine, damping: CycleDamping) -> float:
+    """K_ap of a curve with its dashpot, in the cycle of the dashpot. [N]."""
+    return float(np.ptp(_loop_tensions(line, damping))) / (2 * damping.strain_amplitude)
+
+
+def beside_dashpot(line: ExportLine) -> ExportLine:
+    """The curve of a test with its ends such that with the dashpot it has the K_ap of the test.
+
+    Parameters
+    ----------
+    line : ExportLine
+        The mean curve of a test, which goes on straight from the ends of its branches to the
+        greatest and least tension of the cycle.
+
+    Returns
+    -------
+    line : ExportLine
+        The same where there is no dashpot, or no straight end.
+
+    Raises
+    ------
+    DataError
+        If the curve cannot be exported; see `curve_from_zero`.
+
+    Notes
+    -----
+    What the dashpot adds is part of the greatest and least tension. Beside a curve that ends at
+    them it would count twice: with a loss factor of 0.3, K_ap would be 3 % too high. The end of
+    the straight line is therefore that at which curve and dashpot together reach as far.
+
+    Examples
+    --------
+    A spring of 100 N with a dashpot of 30 N at the frequency, known up to 0.8 of the amplitude.
+
+    >>> strain, reach = np.array([1.0, 1.1, 1.9, 2.0]), 50 * math.hypot(1, 0.3)
+    >>> tension = np.array([150 - reach, 110.0, 190.0, 150 + reach])
+    >>> damping = cycle_damping(math.pi * 30 * 0.25, 1 / (2 * math.pi), 0.5)
+    >>> line = ExportLine("a", strain, tension, "mean", (1.1, 1.9), sources=("none",),
+    ...                   damping=damping)
+    >>> print(beside_dashpot(line).tension.round(2))
+    [100. 110. 190. 200.]
+    """
+    damping = line.damping
+    if damping is None:
+        return line
+    turns, made = line.tension[[0, -1]], line
+    for end, inner, side in ((0, 1, -1), (-1, -2, 1)):
+        if not (side * (line.strain[end] - line.tested[end]) > 0 and turns[end] > 0):
+            continue
+        low, high = sorted((float(line.tension[inner]), float(turns[end])))
+        for _ in range(_HALVINGS):
+            tension = made.tension.copy()
+            tension[end] = (low + high) / 2
+            made = replace(line, tension=tension)
+            if side * np.max(side * _loop_tensions(made, damping)) > turns[end]:
+                high = float(tension[end])
+            else:
+                low = float(tension[end])
+    begins, ends = made.tension[[0, -1]] - turns
+    if made is line:
+        return line
+    said = (
+        f"beside its dashpot the table begins {plain_number(begins, 3)} N above the least tension "
+        f"of the cycle and ends {plain_number(-ends, 3)} N below the greatest: with both, K_ap of "
+        f"that cycle is {plain_number(loop_stiffness(made, damping), 6)} N"
+    )
+    return replace(made, notes=(*line.notes, said))
 
 
 def straight_cycle(line: ExportLine) -> _StraightCycle | None:
@@ -654,12 +742,10 @@ def straight_cycle(line: ExportLine) -> _StraightCycle | None:
         amplitude = damping.strain_amplitude
         mean = float(line.strain[-1]) - amplitude
         turns = continued_tension(line, np.array([mean - amplitude, mean + amplitude]))
-        phase = 2 * np.pi * np.arange(_IN_A_CYCLE) / _IN_A_CYCLE
-        rate = 2 * np.pi * damping.frequency * amplitude * np.cos(phase)
-        loop = continued_tension(line, mean + amplitude * np.sin(phase))
-        reach = max(float(np.ptp(loop + damping.coefficient * rate)), float(np.ptp(turns)))
+        known = math.isfinite(damping.apparent_stiffness)
         return _StraightCycle(
-            mean, float(turns.mean()), amplitude, reach / (2 * amplitude),
+            mean, float(turns.mean()), amplitude,
+            damping.apparent_stiffness if known else loop_stiffness(line, damping),
             damping.hysteresis_energy,
             f"{damping.frequency:.4g} Hz, strain {mean:.4g} +- {amplitude:.4g}",
         )  # fmt: skip

@@ -245,18 +245,19 @@ def _of_test(archive: xr.Dataset, curve: CurveName, name: str | None) -> dict[st
 
 def _damping_of(archive: xr.Dataset, place: int) -> CycleDamping | None:
     """Dashpot of the cycles of a test; None where their loop has no energy that is known."""
-    energy, frequency, amplitude, uncertainty = (
+    energy, frequency, amplitude, uncertainty, stiffness = (
         _number(archive, name, place)
         for name in (
             "test_hysteresis_energy",
             "test_frequency",
             "test_strain_amplitude",
             "test_hysteresis_energy_standard_uncertainty",
+            "test_apparent_spring_constant",
         )
     )
     if not (energy > 0 and frequency > 0 and amplitude > 0):
         return None
-    return cycle_damping(energy, frequency, amplitude, uncertainty)
+    return cycle_damping(energy, frequency, amplitude, uncertainty, stiffness)
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from export_lines import constant, growing, line, syrope
 
 from reduction.lines.client_runs import in_words, verify_deck
 from reduction.lines.deck_formats import export_line
-from reduction.lines.export_line import CycleDamping
+from reduction.lines.export_line import CycleDamping, cycle_damping
 from reduction.record.errors import SettingsError
 
 NEEDED = {
@@ -117,6 +117,18 @@ def test_a_line_for_raft_is_the_straight_one_through_the_turns(tmp_path):
     drag = kind["transverse_drag"] * kind["diameter"] * made["length"]
     assert drag == pytest.approx(1.2 * one.diameter * 10)
     assert f"{LOST:.4g} J/m, is NOT included" in " ".join(path.read_text().replace("#", "").split())
+
+
+def test_inertia_of_a_soft_line_is_not_taken_for_stiffness(tmp_path):
+    """A tether of 300 N moved by its own length."""
+    needs("moordyn")
+    strain, rate = np.array([0.5, 1.5]), 0.8
+    damping = cycle_damping(2 * np.pi**2 * rate * 0.25 * 2.0, rate, 0.5, apparent_stiffness=300.0)
+    one = line(strain=strain, tension=300 * strain, damping=damping, tested=(0.5, 1.5))
+    paths = export_line(one, "moordyn", tmp_path / "deck.dat", form="damped-table")
+    checks = verify_deck(one, "moordyn", "damped-table", paths)
+    assert {check.quantity for check in checks} == {"tension", "K_ap", "H"}
+    assert {check.quantity: round(check.error, 4) for check in checks if not check.is_kept} == {}
 
 
 @pytest.mark.parametrize(("first", "factor"), [(3, 1.02), (-1, 0.9)])

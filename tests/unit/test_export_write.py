@@ -1,11 +1,14 @@
+import math
 from typing import get_args
 
+import numpy as np
 import pytest
+import yaml
 from export_lines import constant, line
 
 from reduction.lines.deck_formats import FORMATS, FORMS, WhoiCableForm, export_line
 from reduction.lines.deck_moordyn import MoorDynForm, MoorPyForm, OpenFastForm
-from reduction.lines.export_line import cycle_damping
+from reduction.lines.export_line import ExportLine, beside_dashpot, cycle_damping, loop_stiffness
 from reduction.record.errors import SettingsError
 
 
@@ -62,3 +65,45 @@ def test_every_deck_of_a_folder_has_a_table_of_its_own(tmp_path):
     for name, table in zip(names, tables, strict=True):
         assert f" {table.name} " in (tmp_path / name).read_text()
     assert export_line(line(), "moordyn", tmp_path / "leg 1.dat")[0] == tables[0]
+
+
+K, LOSS = 100.0, 0.3  # a spring [N], and the loss factor of the dashpot beside it
+REACH = K * math.hypot(1, LOSS) / 2  # half the range of tension in a sine of strain 1 +- 0.5
+
+
+def viscous_test(**changed):
+    """The mean curve of spring and dashpot, cut off at 0.8 of the amplitude, and its turns."""
+    strain = np.array([0.5, 0.6, 1.4, 1.5])
+    tension = np.array([100 - REACH, 60.0, 140.0, 100 + REACH])
+    damping = cycle_damping(
+        math.pi * LOSS * K * 0.25, 0.2, 0.5, apparent_stiffness=K * math.hypot(1, LOSS)
+    )
+    fields = {
+        "turns": (0.5, 1.5), "tested": (0.6, 1.4), "linear_density": 0.6, "diameter": 0.03,
+        "damping": damping,
+    }  # fmt: skip
+    return ExportLine("a", strain, tension, "mean", sources=("none",), **fields | changed)
+
+
+def test_what_the_dashpot_pulls_is_not_in_its_table_as_well():
+    one = viscous_test()
+    made = beside_dashpot(one)
+    assert made.tension == pytest.approx([50.0, 60.0, 140.0, 150.0], rel=1e-4)
+    assert loop_stiffness(made, one.damping) == pytest.approx(K * math.hypot(1, LOSS), rel=1e-5)
+    assert "K_ap of that cycle is 104.4" in made.notes[-1]
+
+
+def test_a_curve_without_a_straight_end_or_a_dashpot_stays_as_it_is():
+    for one in (viscous_test(damping=None), viscous_test(tested=(0.5, 1.5))):
+        assert beside_dashpot(one) is one
+
+
+def test_a_code_with_one_stiffness_takes_k_ap_of_the_test(tmp_path):
+    export_line(viscous_test(), "raft", tmp_path / "a.yml")
+    mooring = yaml.safe_load((tmp_path / "a.yml").read_text())["mooring"]
+    (kind,), (whole,) = mooring["line_types"], mooring["lines"]
+    # the anchor lies under the fairlead by the length of the line at the middle of the cycle
+    length = -mooring["points"][0]["location"][2] / 2
+    assert kind["stiffness"] * length / whole["length"] == pytest.approx(
+        K * math.hypot(1, LOSS), rel=1e-6
+    )
