@@ -29,6 +29,7 @@ from reduction.lines.export_line import (
     Hydrodynamics,
     beside_dashpot,
     curve_from_zero,
+    doubts_first,
     guards_of,
     siblings_of,
 )
@@ -325,10 +326,10 @@ def write_export(request: ExportRequest) -> ExportedFiles:
         line = replace(line, notes=(*line.notes, *in_words(checks)))
         # the header carries what the program gave
         paths = export_line(line, to, out, form=form, units=request.units)
-    notes = (
-        *_stiffness_said(request), *guards_of(line), *closeness_of(line, to, form), *line.notes
-    )  # fmt: skip
-    return ExportedFiles(line, tuple(paths), notes, tuple(checks))
+    doubts, notes = doubts_first(line.notes)
+    about = (*_stiffness_said(request), *guards_of(line), *closeness_of(line, to, form))
+    guards, others = doubts_first(about)
+    return ExportedFiles(line, tuple(paths), (*doubts, *guards, *others, *notes), tuple(checks))
 
 
 _DYNAMIC = ("static-dynamic", "load-dependent", "syrope", "library")
@@ -406,7 +407,8 @@ def export_source(request: ExportRequest, *, output: CommandOutput) -> None:
         output.say(f"{what.name}: {what.curve}")
     else:
         output.say(what.title if isinstance(what, ValueTable) else what)
-    for text in (*sources, *(f"note: {note}" for note in done.notes)):
+    doubts, others = ([f"note: {note}" for note in some] for some in doubts_first(done.notes))
+    for text in (*doubts, *sources, *others):
         output.say(f"  {text}")
     for path in done.paths:
         output.say(f"{'written over' if path in there else 'written'}: {path}")

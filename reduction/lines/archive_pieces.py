@@ -10,7 +10,7 @@ import xarray as xr
 
 from reduction.archive.shared_errors import components_of
 from reduction.archive.test_dataset import strain_model_of
-from reduction.archive.variables import stored
+from reduction.archive.variables import read_notes, stored
 from reduction.lines.composite import (
     CurvePiece,
     PieceBranch,
@@ -41,6 +41,19 @@ def alignment_words(dataset: xr.Dataset, place: int) -> tuple[str, ...]:
         f"the cycles are shifted to a mean strain of {100 * at:.3f} %, and theirs drifts by"
         f" {100 * drift:+.3f} % from the first to the last: a cycle differs from this curve by"
         " that much strain",
+    )
+
+
+def check_words(dataset: xr.Dataset, specimen: str) -> tuple[str, ...]:
+    """Why a test has the status `check`, of one specimen or of the whole test; nothing if not."""
+    others = [name for name in specimens_of(dataset) if name != specimen]
+    return tuple(
+        f"{dataset.attrs.get('test', 'the test')} has the status check: {one}"
+        for one in read_notes(dataset)
+        if one.severity == "warning"
+        and not any(
+            str(one).startswith(f"{name}: ") or one.stage.endswith(f" {name}") for name in others
+        )
     )
 
 
@@ -194,6 +207,7 @@ def source_of_tests(
             continue
         pieces += found
         piece_sources += [_said(one)] * len(found)
+        notes += [f"DOUBTFUL: {text}" for text in check_words(one, specimen)]
         place = specimens_of(one).index(specimen)
         slips = int(one["n_slips"].values[place]) if "n_slips" in one else 0
         if slips > 0:

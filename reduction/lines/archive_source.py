@@ -25,7 +25,7 @@ from reduction.archive.variables import stored
 from reduction.experiments.fit_results import FIT_REASONS, ResponseSurfaces
 from reduction.experiments.surface_discrepancy import discrepancy_of
 from reduction.experiments.surface_points import greatest_leverage
-from reduction.lines.archive_pieces import alignment_words
+from reduction.lines.archive_pieces import alignment_words, check_words
 from reduction.lines.line_lookup import Branch
 from reduction.lines.line_search import joined_conditions
 from reduction.lines.lookup_product import LineCurve, LineLevels, LineSource, LineSurface
@@ -107,9 +107,14 @@ def _branches(dataset: xr.Dataset, name: str, place: int) -> list[LineCurve]:
                     ),
                     *alignment_words(dataset, place),
                 ),
+                warnings=_checks(dataset, place),
             )
         )
     return curves
+
+
+def _checks(dataset: xr.Dataset, place: int) -> tuple[str, ...]:
+    return check_words(dataset, str(dataset.variables["specimen"].values[place]))
 
 
 def _uncertainty(dataset: xr.Dataset, name: str, place: tuple[int, ...], seen: Bools) -> _Parts:
@@ -156,6 +161,7 @@ def _of_pull(dataset: xr.Dataset, place: int) -> list[LineCurve]:
             at=np.array(dataset.variables["tension_grid"].values),
             **_uncertainty(dataset, stored, (place,), everywhere),
             spread_of="the curve of this one pull",
+            warnings=_checks(dataset, place),
         )
         for stored, (name, variable) in _OVER_TENSION.items()
     ]
@@ -409,6 +415,7 @@ def _one_level(dataset: xr.Dataset, place: int, name: str, at: Floats) -> LineLe
         component=tuple(known),
         contribution=np.array(list(known.values()), dtype=np.float64).reshape(len(known), 1),
         conditions=(_conditions(dataset),),
+        warnings=(_checks(dataset, place),),
     )
 
 
@@ -436,6 +443,7 @@ def _joined(parts: Sequence[LineLevels]) -> LineLevels:
         component=shared.component,
         contribution=shared.values["value"].reshape(len(shared.component), rows("value").size),
         conditions=tuple(own for one in parts for own in one.conditions),
+        warnings=tuple(own for one in parts for own in one.warnings),
         notes=tuple(dict.fromkeys(text for one in parts for text in one.notes)),
     )
 
@@ -558,11 +566,26 @@ def lines_of_folder(folder: Path) -> list[LineSource]:
     for line in named:
         if line.surfaces:
             runs = [one for one in named if one.levels and set(one.specimens) & set(line.specimens)]
-            lines.append(replace(line, conditions=joined_conditions(r.conditions for r in runs)))
+            lines.append(
+                replace(
+                    line,
+                    conditions=joined_conditions(r.conditions for r in runs),
+                    warnings=_checks_of_runs(runs),
+                )
+            )
         else:
             is_pooled = line.specimens[0] in pooled
             lines.append(_without_pooled(line, ropes) if is_pooled else line)
     return [*ropes, *(line for line in lines if line.surfaces or line.curves or line.levels)]
+
+
+def _checks_of_runs(runs: Sequence[LineSource]) -> tuple[str, ...]:
+    """How many runs of an experiment have the status `check`, and why the first of them has it."""
+    doubted = [texts for line in runs if (texts := line.levels[0].warnings[0])]
+    if not doubted:
+        return ()
+    first = doubted[0][0].replace(" has the status check", "", 1)
+    return (f"{len(doubted)} of {len(runs)} runs have the status check; {first}",)
 
 
 def ropes_with_pulls(folder: Path) -> list[LineSource]:
@@ -669,6 +692,7 @@ def _one_change(archive: xr.Dataset, place: int, name: str) -> LineLevels:
         component=tuple(known),
         contribution=np.array(list(known.values()), dtype=np.float64).reshape(len(known), 1),
         conditions=({},),
+        warnings=((),),
         notes=(
             f"a chord between {plain_number(ends[0], 4)} and {plain_number(ends[1], 4)} N",
             *((remark,) if remark else ()),

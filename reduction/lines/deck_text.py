@@ -12,6 +12,7 @@ from reduction import __version__
 from reduction.lines.export_line import (
     ExportLine,
     ThinnedCurve,
+    doubts_first,
     guards_of,
     local_words,
     range_of,
@@ -47,6 +48,7 @@ def header_lines(line: ExportLine, curve: ThinnedCurve | None, *remarks: str) ->
     told = [f"Line {line.name}, written by reduction {__version__}"]
     if line.is_synthetic:
         told.append("SYNTHETIC: generated from a formula, nothing was tested")
+    told += [f"Note: {text}" for text in doubts_first((*line.notes, *guards_of(line)))[0]]
     if curve is not None:
         told += [
             f"Curve: {line.curve}",
@@ -58,8 +60,7 @@ def header_lines(line: ExportLine, curve: ThinnedCurve | None, *remarks: str) ->
         if curve.words:
             told.append(f"At the start: {curve.words}")
     told += [f"Source: {text}" for text in line.sources]
-    told += [f"Note: {text}" for text in line.notes]
-    told += [f"Note: {text}" for text in guards_of(line) if text.startswith("DOUBTFUL")]
+    told += [f"Note: {text}" for text in doubts_first(line.notes)[1]]
     told += [f"Remark: {text}" for text in remarks if text]
     return [
         part

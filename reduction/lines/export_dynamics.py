@@ -675,6 +675,9 @@ def line_dynamics(
     texts = dict.fromkeys(text for found in every for text in found.notes)
     for text in (one for one in texts if one not in source.notes):
         notes.append(f"{', '.join(one.quantity for one in every if text in one.notes)}: {text}")
+    if not source.surfaces:
+        doubts = dict.fromkeys(text for one in measured.values() for text in one.warnings)
+        notes += [f"DOUBTFUL: {text}" for text in doubts]
     part = replace(
         part,
         dynamic_stiffness=part.fast_stiffness - slope * float(levels["mean_tension"]),

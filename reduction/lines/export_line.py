@@ -919,6 +919,8 @@ def _written(values: Floats) -> Floats:
 
 _SAME = 1e-9
 
+_GREATEST_FILL = 1.02  # of the diameter: it and a wet mass, of fresh water perhaps, are rounded
+
 _LEAST_FILL = 0.6  # of the diameter: a third of the area, where ropes have two thirds
 
 
@@ -953,6 +955,18 @@ def range_of(line: ExportLine) -> str:
             " curve"
         )
     return words
+
+
+def doubts_first(notes: Sequence[str]) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Notes that say what is in doubt, and the others, each in their order.
+
+    Examples
+    --------
+    >>> doubts_first(["a join", "DOUBTFUL: the line floats"])
+    (('DOUBTFUL: the line floats',), ('a join',))
+    """
+    doubts = tuple(text for text in notes if text.startswith("DOUBTFUL"))
+    return doubts, tuple(text for text in notes if text not in doubts)
 
 
 def guards_of(line: ExportLine) -> tuple[str, ...]:
@@ -991,7 +1005,7 @@ def guards_of(line: ExportLine) -> tuple[str, ...]:
             f"{SEA_WATER * math.pi / 4 * volume**2:.4g} kg/m of water. Unless it does, state "
             "--wet-linear-density"
         )
-    elif volume > (1 + _SAME) * diameter:
+    elif volume > (_GREATEST_FILL if is_stated else 1 + _SAME) * diameter:
         words.append(
             f"DOUBTFUL: the displaced volume has a diameter of {1000 * volume:.4g} mm, above the "
             f"nominal one of {1000 * diameter:.4g} mm: mass per length and diameter disagree"

@@ -34,7 +34,7 @@ from numpy.typing import NDArray
 
 from reduction.archive.open import reading
 from reduction.archive.variables import stored
-from reduction.lines.archive_pieces import alignment_words, parts_of
+from reduction.lines.archive_pieces import alignment_words, check_words, parts_of
 from reduction.lines.assembly import DeployedLine
 from reduction.lines.composite import CompositeCurve, PieceSource, tests_of_curve, used_of
 from reduction.lines.cycle_stiffness import LoadedTest, stiffness_of_cycles
@@ -187,7 +187,8 @@ def _of_test(archive: xr.Dataset, curve: CurveName, name: str | None) -> dict[st
         "descending": f"descending branch, mean over {cycles}",
     }[curve]
     specimen = str(archive.variables["specimen"].values[place])
-    notes = [
+    notes = [f"DOUBTFUL: {text}" for text in check_words(archive, specimen)]
+    notes += [
         f"{key.removeprefix('specimen_')}: {archive[key].values[place]}"
         for key in ("specimen_material", "specimen_condition")
         if key in archive and str(archive[key].values[place])
@@ -707,7 +708,8 @@ def line_from_lookup(
     curve = _trusted(source, _curve_of(source, branch))
     strain, tension, cut = _points(source, curve)
     start = start_against(strain, tension, curve.branch, siblings)
-    notes = [*source.notes, *curve.notes, curve.range_note, *cut, *start]
+    doubts = [f"DOUBTFUL: {text}" for text in (*source.warnings, *curve.warnings)]
+    notes = [*doubts, *source.notes, *curve.notes, curve.range_note, *cut, *start]
     words = "of a pull" if not curve.branch else f"{curve.branch} branch"
     sources = [f"{source.source}: {curve.quantity} over {curve.variable}, {words}"]
     if curve.errata:

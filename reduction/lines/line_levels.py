@@ -40,7 +40,7 @@ class _LevelPoints:
     """Tested levels at points; arrays have the shape (n_points,), contributions a row per error.
 
     ``low`` and ``high`` are of one more test, NaN where a level has a single one; ``notes`` name
-    the tests that were used.
+    the tests that were used, ``warnings`` are of those.
     """
 
     value: Floats
@@ -53,6 +53,7 @@ class _LevelPoints:
     low: Floats
     high: Floats
     notes: tuple[str, ...]
+    warnings: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -68,6 +69,7 @@ class _Level:
     interval: tuple[float, float]
     run_interval: tuple[float, float]
     words: str
+    warnings: tuple[str, ...]
 
 
 def _is_same(a: Floats, b: Floats) -> Bools:
@@ -192,6 +194,7 @@ def _together(levels: LineLevels, at: Floats, tests: tuple[int, ...]) -> _Level:
     return _Level(
         at, value, random, freedom, run_random, shared, ends(random), ends(run_random),
         f"{names} ({_level_words(levels, at.tolist())})",
+        tuple(text for row in rows if levels.warnings for text in levels.warnings[row]),
     )  # fmt: skip
 
 
@@ -251,6 +254,7 @@ def evaluate_levels(levels: LineLevels, at: Floats, name: str) -> _LevelPoints:
     rows = np.zeros((len(levels.component), size))
     is_found = np.zeros(size, dtype=bool)
     said: list[str] = []
+    used: list[_Level] = []
     for one in known:
         here = _is_same(at, one.at) & ~is_found
         if not here.any():
@@ -262,8 +266,10 @@ def evaluate_levels(levels: LineLevels, at: Floats, name: str) -> _LevelPoints:
         rows[:, here] = one.contribution[:, None]
         is_found |= here
         said.append(f"tested: {one.words}")
+        used.append(one)
     if not is_found.all():
-        said += _fill_between(levels, known, at, out, rows, is_found)
+        between, ends = _fill_between(levels, known, at, out, rows, is_found)
+        said, used = said + between, used + ends
     if not is_found.all():
         first = at[np.flatnonzero(~is_found)[0]]
         near = min(known, key=lambda one: _distance(levels, one.at, first))
@@ -275,7 +281,10 @@ def evaluate_levels(levels: LineLevels, at: Floats, name: str) -> _LevelPoints:
             needed=f"one of the {len(known)} tested levels; the nearest is {near.words}",
             hint="`--list` shows every level; nothing is extrapolated, not even flagged.",
         )
-    return _LevelPoints(**out, contribution=rows, notes=tuple(dict.fromkeys(said)))
+    told = dict.fromkeys(text for one in used for text in one.warnings)
+    return _LevelPoints(
+        **out, contribution=rows, notes=tuple(dict.fromkeys(said)), warnings=tuple(told)
+    )
 
 
 def _distance(levels: LineLevels, a: Floats, b: Floats) -> float:
@@ -292,11 +301,12 @@ def _fill_between(
     out: Mapping[str, Floats],
     rows: Floats,
     is_found: Bools,
-) -> list[str]:
-    """Interpolate at points between two levels, closest pairs first; what is said of them."""
+) -> tuple[list[str], list[_Level]]:
+    """Interpolate at points between two levels, closest pairs first; what is said, and of which."""
     scaled = _scaled(levels, at)
     pairs = sorted(combinations(known, 2), key=lambda two: _distance(levels, two[0].at, two[1].at))
-    said = []
+    said: list[str] = []
+    used: list[_Level] = []
     for one, other in pairs:
         start, way = _scaled(levels, one.at), _scaled(levels, other.at) - _scaled(levels, one.at)
         # a variable in which both agree says nothing of how far along a point is
@@ -321,4 +331,5 @@ def _fill_between(
             f"{INTERPOLATED} {one.words} and {other.words}: the interval spans"
             f" both, and holds where {levels.quantity} is monotonic between them"
         )
-    return said
+        used += [one, other]
+    return said, used

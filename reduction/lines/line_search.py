@@ -202,6 +202,7 @@ def _only(levels: LineLevels, rows: list[int]) -> LineLevels:
         contribution=levels.contribution[:, rows] if levels.component else levels.contribution,
         tests=tuple(levels.tests[row] for row in rows),
         conditions=tuple(levels.conditions[row] for row in rows),
+        warnings=tuple(levels.warnings[row] for row in rows if levels.warnings),
     )  # fmt: skip
 
 

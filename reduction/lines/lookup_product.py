@@ -228,6 +228,8 @@ class LineLevels:
         In which each test was made, as `LineSource`.
     notes : tuple of str
         What else to know.
+    warnings : tuple of tuple of str, length n_tests
+        What of each test has to be read before its value.
     """
 
     quantity: str
@@ -241,6 +243,7 @@ class LineLevels:
     contribution: Floats = field(default_factory=lambda: np.empty((0, 0)))
     conditions: tuple[dict[str, str], ...] = ()
     notes: tuple[str, ...] = ()
+    warnings: tuple[tuple[str, ...], ...] = ()
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ import importlib.util
 import json
 import shutil
 
+import netCDF4
 import numpy as np
 import pytest
 from commandruns import ROOT, run_once, shared_by_processes
@@ -293,3 +294,28 @@ def test_a_rope_without_a_diameter_is_looked_up_at_its_levels(without_diameter):
     found = look_up(line, K_AP, frequency=0.1, mean_tension=[12e3, 18e3], tension_amplitude=6e3)
     assert found.value == pytest.approx(600e3, rel=2e-3)
     assert np.all(found.surface_low < found.value) and np.all(found.value < found.surface_high)
+
+
+def test_a_value_brings_along_why_its_own_test_has_the_status_check(rope, command, tmp_path):
+    """The reason that `run` prints is above the value and in the header of a deck."""
+    doubted = tmp_path / "rope"
+    shutil.copytree(rope, doubted)
+    with netCDF4.Dataset(doubted / "R11.nc", "a") as archive:
+        archive["notes/note_severity"][0] = "warning"
+        reason = str(archive["notes/note"][0])
+    (line, *_) = lines_of_folder(doubted)
+    said = f"R11 has the status check: {reason}"
+    assert look_up(line, K_AP, **at(0.3, 0.30, 0.05)).warnings == (said,)
+    assert look_up(line, K_AP, **at(0.3, 0.18, 0.05)).warnings == (said,)  # between R01 and R11
+    assert look_up(line, K_AP, **CENTRE).warnings == ()
+    levels = ("--frequency", "0.3 Hz", "--mean-tension", "30 %RBS", "--tension-amplitude", "5 %RBS")
+    done = command("lookup", doubted, "--line", "line-1", "--quantity", "K_ap", *levels)
+    assert done.stdout.split("\n")[0] == f"warning: {said}"
+    out = tmp_path / "a.dat"
+    mass = ("--linear-density", "0.1 kg/m", "--out", out)
+    done = command("export", doubted, "--to", "moordyn", "--form", "static-dynamic", *levels, *mass)
+    assert f"note: DOUBTFUL: {said}" in done.stdout.split("\n")[1]
+    assert "Note: DOUBTFUL: R11 has the status check" in "\n".join(out.read_text().split("\n")[2:6])
+    done = command("export", doubted / "R11.nc", "--to", "csv", "--out", tmp_path / "a.csv")
+    assert f"note: DOUBTFUL: {said}" in done.stdout
+    assert "has the status check" in (tmp_path / "a.csv").read_text()

@@ -4,9 +4,16 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from reduction.lines.archive_pieces import _pieces_of_test, source_of_tests, specimens_of
+from reduction.archive.variables import note_values
+from reduction.lines.archive_pieces import (
+    _pieces_of_test,
+    check_words,
+    source_of_tests,
+    specimens_of,
+)
 from reduction.lines.composite import CompositeRule, compose, used_of
 from reduction.record.errors import DataError, SettingsError
+from reduction.record.notes import Note
 
 BINS = np.array([0.5, 0.6, 0.7, 0.8])
 COEFFICIENTS = {
@@ -288,3 +295,19 @@ def test_only_tests_with_a_piece_in_the_curve_are_its_sources():
     assert used_of(used, curve) is used
     whole = compose(found, CompositeRule())
     assert used_of(found, whole) is found
+
+
+def doubted(*texts, severity="warning", **fields):
+    """A test with notes, as an archive keeps them."""
+    notes = [Note("a-code", severity, stage="test", text=text) for text in texts]
+    values = note_values(notes)
+    return cyclic(**fields).assign({name: ("note", value) for name, value in values.items()})
+
+
+def test_why_a_test_has_the_status_check_goes_on_with_its_curve():
+    test = doubted("new: its zero drifts", "old: its zero drifts", specimens=("new", "old"))
+    assert check_words(test, "new") == ("T-1 has the status check: new: its zero drifts",)
+    said = [one for one in source_of_tests([test], "old", branch="mean").notes if "zero" in one]
+    assert said == ["DOUBTFUL: T-1 has the status check: old: its zero drifts"]
+    assert check_words(doubted("a hint", severity="note"), "new") == ()
+    assert check_words(cyclic(), "new") == ()

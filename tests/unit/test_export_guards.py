@@ -29,6 +29,9 @@ def test_a_line_that_floats_or_is_heavier_than_a_rod_of_its_fibre_is_doubtful():
     # who states a wet mass below zero has a line that floats
     floating = guards_of(line(linear_density=0.5, wet_linear_density=-0.04))
     assert not any("floats" in one for one in floating)
+    # a solid line whose masses and diameter are rounded, and one whose masses are of another
+    assert not any("DOUBTFUL" in one for one in guards_of(line(wet_linear_density=0.054)))
+    assert "disagree" in guards_of(line(wet_linear_density=0.03))[-1]
     # a rod of nylon of 26 mm has 1140 * 5.309e-4 m2 = 0.605 kg/m
     heavy = guards_of(line(linear_density=0.61, material="nylon"))
     assert "disagree" in heavy[-1]
