@@ -142,22 +142,19 @@ def _uncertainty(dataset: xr.Dataset, name: str, place: tuple[int, ...], seen: B
 
 
 def _of_pull(dataset: xr.Dataset, place: int) -> list[LineCurve]:
-    """K_0 of a slow pull at its tensions, and its strain by the cubic, over its range of use."""
+    """K_0 and strain of a slow pull at its tensions, over its range of use."""
     if "pull_strain_coefficient" not in dataset:
         return []
-    coefficient = np.array(dataset.variables["pull_strain_coefficient"].values[place])
-    if not np.isfinite(coefficient).all():
+    if not np.isfinite(dataset.variables["pull_strain_coefficient"].values[place]).all():
         return []
     everywhere = np.ones(dataset.sizes["tension_grid"], dtype=bool)
-    constant = np.array(dataset.variables[_K_0].values[place])
     return [
         LineCurve(
             quantity=name,
             variable=variable,
             low=float(dataset.variables["pull_tension_low"].values[place]),
             high=float(dataset.variables["pull_tension_high"].values[place]),
-            coefficient=coefficient if name == "strain" else np.empty(0),
-            value=np.empty(0) if name == "strain" else constant,
+            value=np.array(dataset.variables[stored].values[place]),
             at=np.array(dataset.variables["tension_grid"].values),
             **_uncertainty(dataset, stored, (place,), everywhere),
             spread_of="the curve of this one pull",

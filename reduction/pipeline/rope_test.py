@@ -94,11 +94,7 @@ def pull_specimens(
             )
             pulls.append(None)
             continue
-        for one in pull.notes:
-            # K_0 by a cubic is an answer of lines; of a coupon or a tether it is a by-product
-            is_by_product = one.code == "pull-misfit" and not specimens[index].is_rope
-            severity = "note" if is_by_product else one.severity
-            notes.append(replace(one, subject=name, severity=severity))
+        notes += [replace(one, subject=name) for one in pull.notes]
         pulls.append(pull)
     return tuple(pulls), notes
 

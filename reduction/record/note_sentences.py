@@ -1132,9 +1132,9 @@ _OF_LINE: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         " its slope is in a comparison with a predicted hose",
     ),
     "pull-misfit": (
-        "warning",
+        "note",
         "a cubic misses the load-strain curve by {misfit:.1%} of its strain (rms). Do not use its"
-        " strain for design; K_0 is the slope of a spline and is not off by that",
+        " coefficients for design; strain and K_0 are those of a spline and are not off by that",
     ),
     "pull-falls": (
         "warning",

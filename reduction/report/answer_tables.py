@@ -395,10 +395,7 @@ def _rise(view: TestView, place: int) -> tuple[Floats, _Series, _Series, bool] |
         if view.is_rope:  # of which it is the law; the curve of a rubber bends twice
             return cubic
         if any(
-            one.code == "pull-misfit"
-            and one.severity == "note"
-            and _is_of(one, view.specimens[place])
-            for one in view.notes
+            one.code == "pull-misfit" and _is_of(one, view.specimens[place]) for one in view.notes
         ):
             unknown = np.full(load.values.shape, np.nan)
             cubic = (unknown, load, _Series.known(unknown), False)

@@ -440,7 +440,7 @@ def make_contributions(rng):
     """Two errors of every quantity that has them."""
     size = {
         "specimen": 2, "branch_name": 2, "segment": N_SEGMENTS, "strain_bin": N_BINS,
-        "first_loading_strain_bin": N_BINS, "tension_grid": 41, "break_share": 8, "held_pair": 2,
+        "first_loading_strain_bin": N_BINS, "tension_grid": 201, "break_share": 8, "held_pair": 2,
         "pull_term": 4,
         "hold": 3, "hold_time": 4, "prony_term": 2, "strain_level": 2, "comparison": 2,
         "ratio_strain_bin": 3, "slip": 2, "elastomer_parameter": 3, "interval": 2,

@@ -249,9 +249,23 @@ class TestPull:
         pull = fit_pull(*rising(seed=1, noise=20.0))
         row = 4000.0 ** np.arange(4)
         spread = np.sqrt(row @ pull.strain_coefficient_covariance @ row)
-        strain, uncertainty = strain_at_tension(pull, 4000.0)
-        assert row @ pull.strain_coefficient == pytest.approx(float(strain))
-        assert np.hypot(spread, pull.strain_misfit) == pytest.approx(float(uncertainty), rel=1e-4)
+        scaled = ((4000.0 - pull.tension_centre) / pull.tension_half_range) ** np.arange(4)
+        assert row @ pull.strain_coefficient == pytest.approx(float(scaled @ pull.coefficient))
+        assert spread == pytest.approx(np.sqrt(scaled @ pull.covariance @ scaled), rel=1e-4)
+
+    def test_the_strain_of_a_curve_that_is_no_cubic_is_that_of_its_readings(self):
+        """Strain as a logarithm of tension, which a cubic misses by more than 2 %."""
+        random = np.random.default_rng(3)
+        load = np.linspace(400.0, 60e3, 4000)
+        strain = np.log1p(load / 1e4) / 30
+        pull = fit_pull(np.arange(4000.0), strain, load + random.normal(0, 10.0, 4000))
+        at = np.linspace(1e3, 59e3, 60)
+        found, uncertainty = strain_at_tension(pull, at)
+        wanted = np.log1p(at / 1e4) / 30
+        assert found == pytest.approx(wanted, rel=1e-3)
+        assert np.sqrt(np.mean(((found - wanted) / uncertainty) ** 2)) < 1.5
+        cubic = at[:, None] ** np.arange(4) @ pull.strain_coefficient
+        assert np.abs(cubic / wanted - 1).max() > 0.02
 
     def test_the_polynomial_of_the_spring_constant_is_as_far_off_as_it_says(self):
         pull = fit_pull(*rising())

@@ -114,9 +114,11 @@ class SlowPull:
         Root mean square of what a cubic misses of the strain, by a polynomial of sixth degree; 0
         where noise explains it. [1]
     curve_coefficient : ndarray, shape (n_pieces + 3,)
-        Of the cubic B-splines over -1 to 1 on equal knots, whose slope is K_0. [1]
+        Of the cubic B-splines over -1 to 1 on equal knots: strain, whose slope is 1/K_0. [1]
     curve_covariance : ndarray, shape (n_pieces + 3, n_pieces + 3)
         Of these coefficients, as ``covariance``. [1]
+    curve_misfit : ndarray, shape (81,)
+        What the curve misses of strain at u from -1 to 1. [1]
     slope_misfit : ndarray, shape (81,)
         What the curve misses of its slope in u, from -1 to 1. [1]
     tension_low, tension_high : float
@@ -158,6 +160,7 @@ class SlowPull:
     strain_misfit: float
     curve_coefficient: Floats
     curve_covariance: Floats
+    curve_misfit: Floats
     slope_misfit: Floats
     tension_low: float
     tension_high: float

@@ -153,7 +153,7 @@ def _find_loading(
 BREAK_SHARES = (0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5)
 """Shares of the rated break strength at which the strain of a pull is given. [1]"""
 
-_GRID_STEPS = 40
+_GRID_STEPS = 200  # straight lines between them miss a thousandth of the strain of a foot
 
 
 def tension_grid(pulls: Sequence[SlowPull | None]) -> Floats:
@@ -166,7 +166,7 @@ def tension_grid(pulls: Sequence[SlowPull | None]) -> Floats:
 
     Returns
     -------
-    tension : ndarray, shape (41,)
+    tension : ndarray, shape (201,)
         From the lowest to the highest tension of use of any. [N]
 
     Raises
@@ -185,7 +185,7 @@ def tension_grid(pulls: Sequence[SlowPull | None]) -> Floats:
     >>> pull = fit_pull(np.arange(400.0), load / 4e4, load)
     >>> grid = tension_grid([pull, None])
     >>> print(grid.size, grid[0] == pull.tension_low, grid[-1] == pull.tension_high)
-    41 True True
+    201 True True
     """
     given = [one for one in pulls if one is not None]
     if not given:
@@ -350,15 +350,16 @@ def _rows_of_slope(scaled: Floats, n_coefficients: int) -> Floats:
 
 @dataclass(frozen=True)
 class _PulledCurve:
-    """Cubic spline through the blocks, and what its slope misses at `MISFIT_AT`."""
+    """Cubic spline through the blocks, and what it and its slope miss at `MISFIT_AT`."""
 
     coefficient: Floats
     covariance: Floats
+    misfit: Floats
     slope_misfit: Floats
 
 
 MISFIT_AT = np.linspace(-1, 1, 81)
-"""Where what a curve misses of its slope is given, in u."""
+"""Where what a curve and its slope miss is given, in u."""
 
 
 @cache
@@ -431,8 +432,8 @@ def _curve_of_pull(blocks: _PullBlocks) -> _PulledCurve:
     Its pieces are short where the curve bends, at the foot and beside kinks, and long elsewhere:
     one is halved as long as that changes the curve on it by more than noise does, and then all of
     them once more, so that what they miss is small beside what noise does to them.  What they miss
-    of the slope is a share of what that last step changes, squared, less what noise makes the two
-    curves differ by, as a mean over one piece to both sides.  The coefficients are those on the
+    of strain and slope is a share of what that last step changes, squared, less what noise makes
+    the two curves differ by, as a mean over one piece to both sides.  The coefficients are on the
     finest knots, on which each choice of pieces is exact.
 
     Examples
@@ -477,8 +478,11 @@ def _curve_of_pull(blocks: _PullBlocks) -> _PulledCurve:
     # one step finer than noise asks for, so that what pieces miss is small beside what it does
     residual = strain - finer.rows @ (finer.inverse @ strain)
     covariance = finer.insertion @ _covariance_of_blocks(finer.rows, residual) @ finer.insertion.T
-    slope_at = _rows_of_slope(MISFIT_AT, _FINEST + _DEGREE)
-    apart = slope_at @ (finer.to_finest - fit.to_finest)
+    # rows of the strain, then of its slope
+    rows_at = np.concatenate(
+        [one(MISFIT_AT, _FINEST + _DEGREE) for one in (_rows_of_strain, _rows_of_slope)]
+    )
+    apart = rows_at @ (finer.to_finest - fit.to_finest)
     at = (MISFIT_AT + 1) / 2 * _FINEST
     here = np.clip(np.searchsorted(breaks, at, side="right") - 1, 0, breaks.size - 2)
     if not may.all() and breaks.size > 2:
@@ -488,14 +492,14 @@ def _curve_of_pull(blocks: _PullBlocks) -> _PulledCurve:
             0 < one < _FINEST and one % (2 * width[max(place - 1, 0)]) != 0
             for place, one in enumerate(breaks.tolist())
         ])  # fmt: skip
-        is_short = ~may[here]
+        is_short = np.tile(~may[here], 2)
         coarser = _fitted(finest, breaks[~odd])
-        apart[is_short] = slope_at[is_short] @ (coarser.to_finest - fit.to_finest)
+        apart[is_short] = rows_at[is_short] @ (coarser.to_finest - fit.to_finest)
     apart *= _SHARE_OF_COARSER
     missed = (apart @ strain) ** 2 - inflation * (apart**2 @ own**2)
     near = np.abs(at[:, None] - at) <= np.diff(breaks)[here][:, None]
-    mean = (near @ missed) / near.sum(axis=1)
-    return _PulledCurve(finer.to_finest @ strain, covariance, np.sqrt(np.maximum(mean, 0)))
+    mean = missed.reshape(2, -1) @ near.T / near.sum(axis=1)
+    return _PulledCurve(finer.to_finest @ strain, covariance, *np.sqrt(np.maximum(mean, 0)))
 
 
 def _own_noise(fit: _Pieces, strain: Floats) -> tuple[Floats, float]:
@@ -738,10 +742,8 @@ def fit_pull(
     tension range each, and the residuals of those means carry the uncertainty, widened by
     their likeness to their neighbours: thousands of readings would hide in a root of their
     number what a fit leaves.  A curve that is no cubic has another slope than its cubic, so K_0
-    is the slope of a cubic spline of up to sixteen pieces, and what that misses locally, by a
-    curve of twice as many, is added.  The strain is that of the cubic, and what it misses of the
-    readings, by a polynomial of sixth degree, is added to it.  The standard uncertainty holds
-    these and no calibration.
+    is the slope of a cubic spline, and strain is that of the same spline, each with what the spline
+    misses there.  The standard uncertainty holds these and no calibration.
 
     App. D of [5]_ finds 4.22, 6.33 and 7.71e4 lb for K_0 of one line: at 0.071 per minute
     a day after the dynamic test, at 0.23 per minute a day after, and at 0.23 per minute at
@@ -823,6 +825,7 @@ def fit_pull(
         strain_misfit=strain_misfit,
         curve_coefficient=curve.coefficient,
         curve_covariance=curve.covariance,
+        curve_misfit=curve.misfit,
         slope_misfit=curve.slope_misfit,
         residual_deviation=float(np.sqrt((residual**2).sum() / (n_blocks - 4))),
         variance_inflation=lag_one_inflation(residual),
@@ -950,7 +953,7 @@ def strain_at_tension(pull: SlowPull, tension: ArrayLike) -> tuple[Floats, Float
     Returns
     -------
     strain, standard_uncertainty : ndarray, shape (...)
-        By the cubic, from the reference length; NaN outside the range of use. [1]
+        By the spline, from the reference length; NaN outside the range of use. [1]
 
     Raises
     ------
@@ -969,10 +972,13 @@ def strain_at_tension(pull: SlowPull, tension: ArrayLike) -> tuple[Floats, Float
     >>> print(strain_at_tension(fit_pull(np.arange(400.0), stretch, load), 1920.0)[0].round(4))
     0.1496
     """
-    scaled, _ = _scaled(pull, tension)
-    rows = np.stack([scaled**power for power in range(4)], axis=-1)
-    spread = np.hypot(_spread(rows, pull.covariance), pull.strain_misfit)
-    return rows @ pull.coefficient, spread
+    scaled, inside = _scaled(pull, tension)
+    at = np.where(inside, scaled, 0.0)
+    rows = _rows_of_strain(at, pull.curve_coefficient.size)
+    missed = np.interp(at, MISFIT_AT, pull.curve_misfit)
+    spread = np.hypot(_spread(rows, pull.curve_covariance), missed)
+    unknown = np.where(inside, 0.0, np.nan)
+    return rows @ pull.curve_coefficient + unknown, spread + unknown
 
 
 def strain_at_break_share(
