@@ -9,6 +9,7 @@ from html import escape
 from pathlib import Path
 from typing import Any, Literal, cast
 
+from reduction.archive.open import reading
 from reduction.archive.workbook import sheets_of_tables, write_workbook
 from reduction.cli.curves import deployed_line, is_of_pieces, piece_source, rule_of
 from reduction.cli.output import CommandOutput
@@ -483,9 +484,10 @@ def _line_of(
         chosen = {"--curve": curve, "--precedence": precedence}
         path = surfaces or Path(sources[0])
         return _of_levels(path, chosen, specimen, levels, extrapolate, stated)
-    if is_of_pieces(sources):
+    if is_of_pieces(sources) or _is_of_a_rise(sources):
         if levels:
-            raise _levels_choose_nothing(levels, "several tests")
+            where = "several tests" if is_of_pieces(sources) else "an archive of one test"
+            raise _levels_choose_nothing(levels, where)
         rule = rule_of(precedence)
         found = piece_source(sources, specimen=specimen, branch=curve)
         return line_from_composite(found, compose(found, rule), **stated)
@@ -527,6 +529,11 @@ def _line_of(
         said = f"levels in percent of the break strength: of {strength:.6g} N, that of {whose}"
         return replace(made, sources=(*made.sources, said))
     path = Path(source)
+    if not path.is_file() and path.suffix == ".nc":
+        raise SettingsError(
+            "there is no such archive", found=source,
+            needed="the archive of a test that `reduction run` could reduce",
+        )  # fmt: skip
     if not path.is_file():
         words = source.lower().replace("-", " ").split()
         near = [name for name in published if all(word in name for word in words)]
@@ -539,6 +546,14 @@ def _line_of(
     if levels:
         raise _levels_choose_nothing(levels, "an archive of one test")
     return line_from_archive(path, curve=curve, specimen=specimen, **stated)
+
+
+def _is_of_a_rise(sources: Sequence[str]) -> bool:
+    """Whether SOURCE is one test without cycles: a slow pull, a first loading, weights."""
+    if len(sources) > 1 or Path(sources[0]).suffix != ".nc" or not Path(sources[0]).is_file():
+        return False
+    with reading(Path(sources[0])) as archive:
+        return "specimen" in archive and "branch_tension" not in archive
 
 
 def _surfaces_of(sources: Sequence[str]) -> Path | None:

@@ -1087,7 +1087,7 @@ def _show_difference(
         )
     if output.is_text:
         output.show(_difference_table(first, found, points, unit, factor, output.system))
-    output.say("differ: the 95 % interval of the difference excludes zero")
+    output.say("where they differ, the 95 % interval of the difference excludes zero")
     output.say("the 95 % interval of the difference is for the specimens that were tested")
     output.say(
         "these specimens: the means of those tested; the kinds, another specimen of each:"

@@ -194,9 +194,11 @@ def _raft_text(line: ExportLine) -> str:
         f"K_ap {plain_number(cycle.stiffness, 6)} N about {plain_number(cycle.tension, 6)} N and "
         f"strain {cycle.strain:.6g}, {cycle.holds}",
         f"its hysteresis energy, {plain_number(cycle.hysteresis_energy, 4)} J/m, is NOT included",
-        f"it differs from the slow curve by up to {100 * float(off[inside].max(initial=0)):.2g} "
+        f"it differs from the slow curve by up to "
+        f"{plain_number(100 * float(off[inside].max(initial=0)), 2)} "
         "percent of the greatest tension within three amplitudes of the mean, and by "
-        f"{100 * float(off.max()):.2g} percent over the whole of it: export again for another mean",
+        f"{plain_number(100 * float(off.max()), 2)} percent over the whole of it: export again for"
+        " another mean",
         f"a line of {length:g} m is written as {length * share:.6g} m, the length at which the "
         f"straight line has no tension: take {share:.6g} times the length of yours, too; "
         "stiffness, mass and diameter are per length of that, so that the whole line keeps its own",

@@ -639,6 +639,7 @@ def line_from_composite(source: PieceSource, curve: CompositeCurve, **stated: An
     source = used_of(source, curve)
     given, origins = _known_of(stated)
     first = int(np.argmax(curve.piece >= 0))
+    rises = all(piece.branch == "ascending" for piece in source.pieces)
     n_tests = len(set(curve.piece_names))
     tests = f"{n_tests} tests" if n_tests > 1 else "1 test"
     joins = [
@@ -655,7 +656,8 @@ def line_from_composite(source: PieceSource, curve: CompositeCurve, **stated: An
         name=source.name,
         strain=np.array(curve.strain),
         tension=np.array(curve.tension),
-        curve=f"composite of {tests}, {_WAYS[source.branch]}; one curve, no loop",
+        curve=f"composite of {tests}, {_WAYS['ascending' if rises else source.branch]}; one curve,"
+        " no loop",
         tested=(float(curve.strain[first]), float(curve.strain[-1])),
         spread=_composite_spread(curve),
         sources=(

@@ -332,7 +332,10 @@ class LineSource:
         if self.is_tether:
             return _TETHER_RULE
         is_nylon = "nylon" in self.material.lower() or not self.material
-        taken = "" if is_nylon else f", taken over for {self.material}"
+        other = "" if is_nylon else self.material
+        if self.kind not in ("", "rope", "wire"):
+            other = f"a specimen of the kind {self.kind}"
+        taken = f", taken over for {other}" if other else ""
         return f"{_ROPE_RULE}{taken}{_OF_ROPE}"
 
     @property

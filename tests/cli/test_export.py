@@ -1,5 +1,6 @@
 """The command export: what it writes of an archive and of a published line, and how it refuses."""
 
+import csv
 import json
 from pathlib import Path
 
@@ -125,6 +126,31 @@ def test_levels_choose_nothing_in_an_archive(command, synthetic, tmp_path):
     )  # fmt: skip
     assert done.returncode == 2
     assert "have no effect for an archive" in done.stderr
+
+
+def test_a_test_without_cycles_is_exported_by_its_rise(command, nylon_campaign, tmp_path):
+    """Of a slow pull the curve of tension over strain, with K_0 as its slope."""
+    archive, out = nylon_campaign.processed / "Q01.nc", tmp_path / "pull.csv"
+    done = command("export", archive, "--to", "csv", "--out", out)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith("line-1: composite of 1 test, ascending branch")
+    with out.open() as file:
+        rows = list(csv.DictReader(file))
+    strain, tension = (
+        np.array([float(row[name]) for row in rows]) for name in ("strain [1]", "tension [N]")
+    )
+    with reading(archive) as pull:
+        at = pull["tension_grid"].values[20:-20:20]
+        slope = pull["quasi_static_spring_constant"].values[0, 20:-20:20]
+    step = 0.01 * at
+    ends = np.interp(at - step, tension, strain), np.interp(at + step, tension, strain)
+    assert 2 * step / (ends[1] - ends[0]) == pytest.approx(slope, rel=0.02)
+
+
+def test_an_archive_that_is_not_there_is_named_alone(command, tmp_path):
+    done = command("export", tmp_path / "T-9.nc", "--to", "csv", "--out", tmp_path / "x.csv")
+    assert done.returncode == 2
+    assert "there is no such archive" in done.stderr and "polyester" not in done.stderr
 
 
 NYLON = "nylon-double-braid-0.5in-new"

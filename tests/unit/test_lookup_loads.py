@@ -178,3 +178,5 @@ def test_the_rule_of_nylon_is_taken_over_and_says_so():
     lines = published_sources()
     assert "taken over" not in lines["nylon-double-braid-0.5in-new"].rule
     assert "taken over for polyester" in lines["polyester-double-braid-0.5in-new"].rule
+    hose = replace(lines["polyester-double-braid-0.5in-new"], kind="stretch hose")
+    assert "taken over for a specimen of the kind stretch hose" in hose.rule
