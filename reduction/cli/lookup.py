@@ -611,6 +611,8 @@ def look_up_ranked(source: str, wanted: LookupRequest, *, output: CommandOutput)
               for names in (one.ties, one.kind_ties)),
             said[one.line.name] or "-",
         )  # fmt: skip
+    for one in found.ranked:
+        output.say_each(f"warning of {one.line.name}", one.values.warnings)
     output.say(f"{wanted.quantity}, lowest first")
     output.show(table)
     for name, why in found.left_out:
@@ -642,6 +644,7 @@ def look_up_ranked(source: str, wanted: LookupRequest, *, output: CommandOutput)
                     "line_ties": None if one.kind_ties is None else list(one.kind_ties),
                     "inside": bool(one.values.is_inside.all()),
                     "remark": said[one.line.name],
+                    "warnings": list(one.values.warnings),
                     "source": one.values.source,
                 }
                 for one in found.ranked

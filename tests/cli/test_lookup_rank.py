@@ -45,6 +45,22 @@ def test_the_diameters_of_figure_4_with_ties_and_the_erratum(command):
     assert "88 % of its break strength" in answer["left_out"][name("0.5")]
 
 
+def test_what_has_to_be_read_before_a_value_stands_above_the_ranks(command):
+    """K_ap of the 1 1/4 in line is printed above K_0 + K_1: the look-up of the line warns of it."""
+    load = (
+        "--frequency",
+        "0.3 Hz",
+        "--mean-tension",
+        "4000 lbf",
+        "--tension-amplitude",
+        "1600 lbf",
+    )
+    kind = ("--material", "nylon", "--construction", "double braid", "--condition", "new")
+    done = command("lookup", "published", *kind, "--quantity", "K_ap", "--rank", *load)
+    first = done.stdout.split("\n")[0]
+    assert first.startswith("warning of nylon-double-braid-1.25in-new: the printed numbers are")
+
+
 def test_the_screen_says_what_is_below_the_tested_amplitudes(command):
     done = command(*ASKED, "--frequency", "0.1 Hz", "--units", "us")
     assert done.returncode == 0, done.stderr
