@@ -165,3 +165,13 @@ def test_a_specimen_that_hangs_bent_at_rest_is_told_from_a_gauge_length_that_is_
     specimen = Specimen(name="t", kind="rubber tether", gauge_length=0.5)
     said = [one.code for one in _without_marks(specimen, "gauge-length", found, None).notes]
     assert ("bent-at-rest" in said) is (begins == 0.5)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_pins_at_the_gauge_length_hang_no_specimen_bent_by_their_noise(seed):
+    """The mean of a rest is below the stated length in half of all logs."""
+    place = np.r_[np.full(100, 5.0), np.linspace(5.0, 5.3, 3000)]
+    noise = np.random.default_rng(seed).normal(0, 1, (2, place.size))
+    position, load = place + 1e-5 * noise[0], 1e5 * np.clip(place - 5.0, 0, None) + 10 * noise[1]
+    rest = ZeroStrain(float(position[:100].mean()), is_logged=True)
+    assert zero_of_bent(rest, position, load, gauge_length=5.0) is rest

@@ -89,7 +89,11 @@ def zero_of_bent(
     0.5
     0.45
     """
-    if not zero.is_logged or zero.position is None or not zero.position < gauge_length:
+    if not zero.is_logged or zero.position is None:
+        return zero
+    noise, step = estimate_noise(position)
+    # pins at the gauge length read closer half of the time
+    if not gauge_length - zero.position > max(_PULLS * noise, 2 * step):
         return zero
     noise, step = estimate_noise(tension)
     least = max(_PULLS * noise, 2 * step, _LEAST_PULL * finite_extremes(tension)[1])
@@ -104,7 +108,7 @@ def zero_of_bent(
     return ZeroStrain(gauge_length, bent_at=zero.position)
 
 
-_PULLS, _LEAST_PULL = 6.0, 0.002  # noise of a reading; of the greatest load
+_PULLS, _LEAST_PULL = 6.0, 0.002  # times the noise of a reading; of the greatest load
 
 _NEARER = 0.7  # of the way from the rest to the gauge length
 
