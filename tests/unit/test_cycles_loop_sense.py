@@ -132,6 +132,24 @@ def test_cycles_that_drift_unequally_say_whether_their_drift_is_even(at_peak, se
     assert np.pi * loss.mean() / true - 1 == pytest.approx(error, abs=5e-3)
 
 
+def test_the_creep_of_a_first_cycle_is_no_drift_of_the_cycles():
+    turn = np.arange(12 * PER + 1) / PER
+    wave = 2 * np.pi * turn
+    strain = 0.5 - 0.2 * np.cos(wave) + 0.04 * np.minimum(turn, 1)
+    tension = 1000 - 180 * np.cos(wave + 0.1)
+    first = PER * np.arange(12)
+    rise = np.column_stack([first, first + PER // 2])
+    cycles = Cycles(
+        first, first + PER, rise, rise + PER // 2, np.ones((12, 2)),
+        np.zeros(turn.size, np.int32), np.zeros(turn.size, np.int8), np.zeros(turn.size, bool), 0.1,
+    )  # fmt: skip
+    loops = close_loops(
+        turn / FREQUENCY, tension[None], strain[None], cycles, waveform="sinusoidal", control="load"
+    )
+    assert loops.closed_loop_energy[0, 0] > 1.5 * loops.hysteresis_energy[0, 0]
+    assert notes(loops) == ()
+
+
 def test_the_work_of_a_drift_is_told():
     (note,) = notes(loops_of(0.1, drift=-5.0))
     # the closing line lies at the least strain, 0.2 below the mean: 0.2 times 5 N

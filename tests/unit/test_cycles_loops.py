@@ -119,6 +119,32 @@ def test_a_drift_from_cycle_to_cycle_leaves_the_energy_of_the_steady_loop(which,
     assert abs(closed[0] / expected - 1) > 0.05
 
 
+@pytest.mark.parametrize("waveform", ["sinusoidal", "triangular"])
+def test_a_first_cycle_that_creeps_behind_its_ramp_loses_no_more_than_the_others(waveform):
+    # a tenth of the amplitude in the first cycle alone: the amplitude of the tension times that
+    # is 29 % of the energy, which the drift of the neighbours leaves in it
+    angle = 2 * np.pi * np.arange(8 * 80 + 1) / 80
+    creep = 0.1 * AMPLITUDE
+    strain = 1 - AMPLITUDE * np.cos(angle) + creep * np.minimum(angle / (2 * np.pi), 1)
+    tension = 1000 + AMPLITUDE * (-STORAGE * np.cos(angle) + LOSS * np.sin(angle))
+    expected, cycles = np.pi * LOSS * AMPLITUDE**2, cycles_of(80, 8, angle.size)
+    found = {
+        control: close_loops(
+            angle, tension[None], strain[None], cycles, waveform=waveform, control=control
+        )
+        for control in ("load", "position")
+    }
+    energy = found["load"].hysteresis_energy[0]
+    # an eighth of a cycle is compared with that of the next one, half a sixteenth of it too late
+    assert energy == pytest.approx(expected, rel=0.02)
+    work = AMPLITUDE * np.hypot(STORAGE, LOSS) * creep
+    stated = found["load"].uncertainty["hysteresis_energy"][0]
+    assert stated[0] == pytest.approx(work / np.sqrt(6), rel=0.1)
+    assert stated[4] < 0.01 * expected
+    # in a driven position the stroke would have to return
+    assert found["position"].hysteresis_energy[0, 0] > 1.2 * expected
+
+
 @pytest.mark.parametrize("per_cycle", [12.3, 13.0, 19.7, 50.0])
 def test_a_slow_log_of_a_sine_has_the_stiffness_of_the_sine(per_cycle):
     # the turn of the strain lags that of the tension and neither is logged: by extremes K_ap is

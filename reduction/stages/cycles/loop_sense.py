@@ -465,7 +465,10 @@ def notes_of_loops(
                      n_known=known.size, delay=delay, stated=stated, time_step=time_step,
                      cause=cause)
             )  # fmt: skip
-        closed = float(np.nanmean(loops.closed_loop_energy[row]))
+        # of a first cycle the ramp before it makes most of the drift, and little of the mean
+        later = np.flatnonzero(np.isfinite(energy))[int(known.size > 2) :]
+        mean = float(energy[later].mean())
+        closed = float(np.nanmean(loops.closed_loop_energy[row, later]))
         if abs(closed - mean) > max(_DRIFT_TOLD * abs(mean), _BEYOND_SCATTER * scatter):
             effect = (closed - mean) / abs(mean)
             found = note("drift-in-energy", name, energy=mean, closed=closed, effect=effect)
