@@ -290,3 +290,28 @@ def test_turns_between_the_same_two_readings_are_no_warning_and_a_late_load_is(
     (note,) = found.notes
     assert note.severity == severity
     assert ("the turn lies between the same two readings" in str(note)) is (severity == "note")
+
+
+@pytest.mark.parametrize("per_cycle", [30, 40, 50])
+def test_readings_in_step_on_a_curve_that_bends_open_no_cycle(per_cycle):
+    # a third of a reading beside the turn in every cycle: the pieces of a rise and of a fall hold
+    # readings at other strains, alike in all cycles, so that their scatter says nothing of it
+    n_cycles, late = 10, per_cycle / 2
+    at = np.arange(per_cycle * n_cycles + 1) + 0.33
+    angle = 2 * np.pi * at / per_cycle
+    strain = 0.5 - 0.3 * np.cos(angle)
+    tension = 200 * np.expm1(1.5 * strain) + 15 * np.sin(angle)
+    first = per_cycle * np.arange(n_cycles)
+    rise = np.column_stack([first, first + late]).astype(np.int64)
+    number = np.minimum(np.arange(at.size) // per_cycle + 1, n_cycles).astype(np.int32)
+    branch = np.where((np.arange(at.size) - 1) % per_cycle < late, 1, 2).astype(np.int8)
+    branch[0] = 1
+    number[first[1:]] -= 1
+    branch[first[1:]] = 2
+    cycles = Cycles(
+        first, first + per_cycle, rise, rise + int(late), np.ones((n_cycles, 2)), number, branch,
+        np.ones(at.size, dtype=bool), 0.0,
+    )  # fmt: skip
+    found = check_identity(strain[None], tension[None], area=[AREA], cycles=cycles)
+    assert abs(found.mean_identity_residual[0]) < 0.001
+    assert found.notes == ()

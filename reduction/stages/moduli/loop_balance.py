@@ -16,7 +16,7 @@ References
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -38,11 +38,17 @@ _PIECE_SAMPLES = 6
 
 _FEWEST_SAMPLES = 3  # in a piece
 
+_FEWEST_OF_BEND = 4  # in a piece
+
+_POWERS = 5  # of the place in a piece in the sums, and three of them times the tension
+
 _SIGNIFICANT = 3.0  # standard errors
 
 _WORTH_A_NOTE = 0.005
 
 _LEAST_SPREAD = 0.5  # of the variance that samples spread evenly over a piece have
+
+_LEAST_ROOM = 0.1  # of what places and their squares would have that say nothing of each other
 
 _TIE = 1e-9  # of a piece: rounding decides no side
 
@@ -54,14 +60,17 @@ _PART = 1 << 18  # samples of a longer block of which sums are taken together
 def _tension_change(
     strain: Floats, tension: Floats, *, cycles: Cycles, n_pieces: int
 ) -> tuple[Floats, Floats]:
-    """Tension change along each branch from regression slopes, and its strain; (n_cycles, 2)."""
+    """Tension change along each branch by lines and by parabolas, and its strain.
+
+    Shapes (2, n_cycles, 2) and (n_cycles, 2).
+    """
     start, end = (take_samples(strain, at) for at in (cycles.branch_first, cycles.branch_last))
     stroke = end - start
     begin, per_stroke = start.ravel(), 1 / np.where(stroke == 0, np.nan, stroke).ravel()
     first_tension = take_samples(tension, cycles.branch_first)
     known = np.isfinite(first_tension)
     reference = float(first_tension[known].mean()) if known.any() else 0.0
-    change = np.empty((cycles.n_cycles, 2))
+    change = np.empty((2, cycles.n_cycles, 2))
 
     def fit_block(block: slice) -> None:
         begins, ends = int(cycles.first[block.start]), int(cycles.last[block.stop - 1]) + 1
@@ -69,10 +78,10 @@ def _tension_change(
         for part in sample_blocks(ends - begins, *series, size=_PART):
             sums = sums + sums_of(block, slice(begins + part.start, begins + part.stop))
         of_branch = _add_shared_reversals(
-            np.asarray(sums).reshape(5, -1, n_pieces), strain, tension, cycles, block,
+            np.asarray(sums).reshape(_POWERS + 3, -1, n_pieces), strain, tension, cycles, block,
             reference=reference,
         )  # fmt: skip
-        change[block] = _mean_slope(of_branch, n_pieces)
+        change[:, block] = _mean_slope(of_branch)
 
     def sums_of(block: slice, samples: slice) -> Floats:
         number, side = cycles.cycle_number[samples], cycles.branch[samples]
@@ -93,15 +102,27 @@ def _tension_change(
         # a sample between two pieces ends both, lest a record in step with the cycles divide its
         # branches, of which one begins where the other ends, differently
         tied = np.flatnonzero(used & (piece > 0) & (at - piece < 2 * _TIE))
-        total = np.zeros((5, n_cells))
-        for into, x, load in ((cell, u, y), (cell[tied] - 1, u[tied], y[tied])):
+        total = np.zeros((_POWERS + 3, n_cells))
+        within = at - piece - 0.5
+        of_tied = np.full(tied.size, 0.5)
+        for into, x, load in ((cell, within, y), (cell[tied] - 1, of_tied, y[tied])):
             adds = sums_by_cell(into, n_cells + 1)
-            total += [(adds @ one)[:n_cells] for one in (np.ones_like(x), x, load, x * x, x * load)]
+            total += [(adds @ one)[:n_cells] for one in _to_sum(x, load)]
         return total
 
     series = (strain, tension, cycles.cycle_number, cycles.branch)
     run_blocks(fit_block, cycles.blocks(_BLOCK_SAMPLES), samples=series)
     return change, stroke
+
+
+def _to_sum(within: Floats, load: Floats) -> Iterator[Floats]:
+    """Powers of the place in a piece, and their products with the tension."""
+    power = np.ones_like(within)
+    for order in range(_POWERS):
+        yield power
+        if order < 3:
+            yield power * load
+        power = power * within
 
 
 def _add_shared_reversals(
@@ -118,28 +139,38 @@ def _add_shared_reversals(
     A reversal is labelled once.
     """
     own = np.arange(2 * block.start, 2 * block.stop).reshape(-1, 2)
-    for reversal, u_there, piece_there in (
-        (cycles.branch_first[block], 0.0, 0),
-        (cycles.branch_last[block], 1.0, -1),
+    for reversal, place, piece_there in (
+        (cycles.branch_first[block], -0.5, 0),
+        (cycles.branch_last[block], 0.5, -1),
     ):
         label = 2 * cycles.cycle_number[reversal].astype(np.int64) + cycles.branch[reversal] - 3
         load = tension[reversal]
         shared = (label != own) & np.isfinite(strain[reversal]) & np.isfinite(load)
-        y, one = load[shared] - reference, np.ones(np.count_nonzero(shared))
+        y = load[shared] - reference
         by_branch[:, own[shared] - own[0, 0], piece_there] += np.stack(
-            [one, u_there * one, y, u_there * one, u_there * y]
+            [*_to_sum(np.full(y.size, place), y)]
         )
     return by_branch
 
 
-def _mean_slope(sums: Floats, n_pieces: int) -> Floats:
-    """Mean over the pieces of each branch of the slope of tension on u, shape (n_cycles, 2)."""
-    n, su, sy, suu, suy = sums
+def _mean_slope(sums: Floats) -> Floats:
+    """Mean over the pieces of each branch of the slope of tension on u, shape (2, n_cycles, 2).
+
+    Of lines, and of parabolas where a piece has the readings for them: the slope of a line through
+    readings that lie unevenly in a piece of a curve that bends is not that of its chord, and
+    readings in step with the cycles lie alike in all of them.
+    """
+    n, y, v, vy, vv, vvy, v3, v4 = sums
     with np.errstate(divide="ignore", invalid="ignore"):
-        spread = suu - su * su / n
-        slope = (suy - su * sy / n) / spread
-        covered = (n >= _FEWEST_SAMPLES) & (spread >= _LEAST_SPREAD * n / (12 * n_pieces**2))
-    return np.asarray(np.where(covered, slope, np.nan).mean(axis=-1).reshape(-1, 2))
+        spread, rise = vv - v * v / n, vy - v * y / n
+        of_square, over_square, skew = v4 - vv * vv / n, vvy - vv * y / n, v3 - v * vv / n
+        line = rise / spread
+        room = spread * of_square - skew**2
+        parabola = (rise * of_square - over_square * skew) / room
+        has_room = (n >= _FEWEST_OF_BEND) & (room > _LEAST_ROOM * spread * of_square)
+        slopes = np.stack([line, np.where(has_room, parabola, line)])
+        covered = (n >= _FEWEST_SAMPLES) & (spread >= _LEAST_SPREAD * n / 12)
+    return np.asarray(np.where(covered, slopes, np.nan).sum(axis=-1).reshape(2, -1, 2))
 
 
 def _mean_over_cycles(residual: Floats) -> tuple[Floats, Floats]:
@@ -266,24 +297,25 @@ def check_identity(
     of [1]_, curves that cross can be true; a modulus "higher with increasing elongation"
     throughout cannot.
 
-    *A check, not a tautology.* The left side is a mean of regression slopes over up to
-    four equal pieces of each stroke, the right side is two samples; they share the record and
+    *A check, not a tautology.* The left side is a mean of slopes, of lines or of parabolas, over up
+    to four equal pieces of each stroke, the right side is two samples; they share the record and
     nothing else. It fails where strain and tension are mispaired, a branch is
     mislabelled, or tension changes while strain does not.
 
     *What is left.* Noise of standard deviation :math:`\sigma` gives a residual of about
     :math:`\sigma B \sqrt{24 / n} / (A \bar E \Delta\varepsilon)` for B pieces and n samples a
     branch: 1 % on tests of 60 lbf range with 0.26 lbf of noise at 48 samples. Within a
-    piece of width w regression and chord differ by :math:`E'' w^2 / 60`, which the
-    branches share in part. What tension falls in a dwell at the peak is taken off.
+    piece of width w a line and the chord differ by :math:`E'' w^2 / 60`, and by more where the
+    readings lie unevenly in it; a parabola and the chord by less, but for a kink. Of both those
+    are taken that leave less of the mean. What tension falls in a dwell at the peak is taken off.
 
     *Judged.* The mean over the cycles with its standard error (their scatter; two cycles or
     more): a note where it is beyond three standard errors and 0.5 %, of B pieces
     :math:`16 / B^2` times as much.  What relaxes after a turn fills a share of a stroke that goes
     inversely with the time it lasts, and cancels between strokes that last equally long: the
     bound goes with the ratio of their readings.  A curve that bends within a piece, as a hose does
-    where its cords pick up and a braid after a turn, leaves more with fewer pieces: what half as
-    many change is taken off.  A lag acts at the turn alone, in any piece.  So does a
+    where its cords pick up and a braid after a turn, leaves more with fewer pieces, and other things
+    by lines and by parabolas: what half as many change, or half the difference, is taken off.  A lag acts at the turn alone, in any piece.  So does a
     turn between two readings, which cycles out of step with the clock have at all places and those
     in step at one: of these the branches without the readings at their turns are judged, and a lag
     of less than a reading cannot be told.  Tension logged late
@@ -325,7 +357,7 @@ def check_identity(
         worth_a_note *= (_MOST_PIECES / n_pieces) ** 2 * slow / fast
 
     def sides_of(row: int, load: Floats, pieces: int = n_pieces, of: Cycles = cycles) -> Floats:
-        """Both sides and the mean slope of the branches, shape (3, n_cycles). [Pa]."""
+        """Both sides and the mean slope by lines and parabolas, shape (3, 2, n_cycles). [Pa]."""
         change, stroke = _tension_change(strains[row], load, cycles=of, n_pieces=pieces)
         per_stroke = 1 / (areas[row] * np.abs(stroke).mean(axis=1))
         lost = take_samples(load, of.first) - take_samples(load, of.last)
@@ -334,13 +366,17 @@ def check_identity(
         at_rest = take_samples(load, peak) - take_samples(load, leaves)
         lost = lost - np.where(leaves > peak + 1, at_rest, 0.0)
         rise = change * np.sign(stroke)
-        sides = np.stack([rise[:, 0] - rise[:, 1], lost, rise.mean(axis=1)])
+        apart = rise[..., 0] - rise[..., 1]
+        sides = np.stack([apart, np.broadcast_to(lost, apart.shape), rise.mean(axis=-1)])
         return np.asarray(per_stroke * sides)
+
+    def mean_of(sides: Floats) -> tuple[Floats, Floats]:
+        """Mean residual by lines and by parabolas, and their standard errors. [1]."""
+        return _mean_over_cycles((sides[0] + sides[1]) / sides[2])
 
     def change_by(row: int, sides: Floats) -> float:
         """What other sides than those of the row change its mean residual by. [1]."""
-        other, _ = _mean_over_cycles(((sides[0] + sides[1]) / sides[2])[None])
-        return float(np.nan_to_num(abs(other[0] - mean[row])))
+        return float(np.nan_to_num(abs(mean_of(sides)[0][way[row]] - mean[row])))
 
     def of_lag(row: int) -> float:
         """What twice the stated lag would add to the mean residual. [1]."""
@@ -351,23 +387,32 @@ def check_identity(
         return change_by(row, sides_of(row, late))
 
     def of_bend(row: int) -> float:
-        """What half as many pieces would change, of which the pieces taken leave no more. [1]."""
+        """What half as many pieces would change, or half of the other way. [1].
+
+        Of the bend of the curve lines and parabolas in the pieces leave no more.
+        """
         if n_pieces < _MOST_PIECES:
-            return 0.0
-        return change_by(row, sides_of(row, tensions[row], n_pieces // 2))
+            return other_way[row] / 2
+        by_pieces = change_by(row, sides_of(row, tensions[row], n_pieces // 2))
+        return max(other_way[row] / 2, by_pieces)
 
     def without_turns(row: int) -> float:
         """Mean residual without the readings at the turns, where all of them lie alike. [1]."""
         if not _is_in_step(cycles.first) or _opens(strains[row], tensions[row], cycles) < 0:
             return np.nan
-        sides = sides_of(row, tensions[row], of=_inside_turns(cycles))
-        inside, _ = _mean_over_cycles(((sides[0] + sides[1]) / sides[2])[None])
-        return float(inside[0])
+        inside, _ = mean_of(sides_of(row, tensions[row], of=_inside_turns(cycles)))
+        return float(inside[way[row]])
 
     modulus = np.full(shape, np.nan)
+    way, other_way = [0] * areas.size, [0.0] * areas.size
     if cycles.n_cycles:
         for row in range(areas.size):
-            difference[row], loss[row], modulus[row] = sides_of(row, tensions[row])
+            sides = sides_of(row, tensions[row])
+            both, _ = mean_of(sides)
+            # what is wrong with a record shows in both, where readings lie in one of them
+            way[row] = int(abs(both[1]) < abs(both[0]))
+            other_way[row] = float(np.nan_to_num(abs(both[1] - both[0])))
+            difference[row], loss[row], modulus[row] = sides[:, way[row]]
     residual = (difference + loss) / modulus
     mean, error = _mean_over_cycles(residual)
     notes = []
