@@ -314,8 +314,9 @@ def check_identity(
     :math:`16 / B^2` times as much.  What relaxes after a turn fills a share of a stroke that goes
     inversely with the time it lasts, and cancels between strokes that last equally long: the
     bound goes with the ratio of their readings.  A curve that bends within a piece, as a hose does
-    where its cords pick up and a braid after a turn, leaves more with fewer pieces, and other things
-    by lines and by parabolas: what half as many change, or half the difference, is taken off.  A lag acts at the turn alone, in any piece.  So does a
+    where its cords pick up and a braid after a turn, leaves more with fewer pieces, and other
+    things by lines and by parabolas: what half as many change, or half the difference, is taken
+    off.  A lag acts at the turn alone, in any piece.  So does a
     turn between two readings, which cycles out of step with the clock have at all places and those
     in step at one: of these the branches without the readings at their turns are judged, and a lag
     of less than a reading cannot be told.  Tension logged late
