@@ -228,6 +228,24 @@ def test_missing_samples_leave_a_smaller_count_and_no_bias(triangle):
     assert worst(curves, law_slope(curves.strain_bin)) < 2e-4
 
 
+def test_a_hole_in_one_cycle_moves_the_mean_curve_there_and_no_further():
+    # levels beside each other and a jump of the one that has the hole, within it: by steps alone
+    # the mean of the bins behind it would lie a twelfth of the jump too low
+    values = np.tile(100.0 + np.arange(20.0), (12, 2, 1)) + np.arange(12.0)[:, None, None]
+    values[0, :, 8:] += 60.0
+    whole = values.mean(axis=0)
+    values[0, :, 8] = np.nan
+    means = specimencurves._CycleMeans.of(values, np.ones_like(values), weight=np.ones(12))
+    found = means.value()
+    assert np.delete(found, 8, axis=1) == pytest.approx(np.delete(whole, 8, axis=1))
+    # between two bins that all reach the steps of the others are laid on both
+    assert found[:, 8] == pytest.approx((whole[:, 7] + whole[:, 9]) / 2)
+    # at an end the steps of the others go on
+    values[0, :, 15:] = np.nan
+    means = specimencurves._CycleMeans.of(values, np.ones_like(values), weight=np.ones(12))
+    assert means.value()[:, 15:] == pytest.approx(whole[:, 15:])
+
+
 def test_dead_specimen_is_nan_with_a_note_and_leaves_the_other_alone(triangle):
     strain, cycles = triangle()
     both = np.stack([law(strain), np.full_like(strain, np.nan)])

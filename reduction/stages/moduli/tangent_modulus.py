@@ -90,11 +90,11 @@ class _CycleMeans:
         return reached
 
     def value(self) -> Floats:
-        """Mean curve: from the bin that most cycles reach, by the mean step to the next bin.
+        """Mean of the bins that most cycles reach, and by the mean step of those beside them.
 
-        Where all cycles reach both bins that is the mean of the cycles.  Where some do not, the
-        mean of the others stands higher or lower by what these differ, which is no slope of the
-        specimen; a step between two bins is of cycles that reach both.
+        Where some cycles do not reach a bin, the mean of the others stands higher or lower by what
+        these differ, which is no slope of the specimen; a step between two bins is of cycles that
+        reach both.  Between two bins that most reach the steps are laid on both.
         """
         n_curves, mean = self.level.n_curves, self.level.value()
         curve = np.full_like(mean, np.nan)
@@ -105,11 +105,13 @@ class _CycleMeans:
             curve[branch, alone] = mean[branch, alone]
             for first, last in zip(ends[::2], ends[1::2], strict=True):
                 part = slice(first, last + 1)
-                most = int(np.argmax(n_curves[branch, part]))
-                if self.step.n_curves[branch, first:last].min() == n_curves[branch, part].max():
+                most = n_curves[branch, part].max()
+                if self.step.n_curves[branch, first:last].min() == most:
                     continue  # one population: the mean as it is
                 rise = np.concatenate([[0.0], np.cumsum(self.step.mean[branch, first:last])])
-                curve[branch, part] = mean[branch, part][most] + rise - rise[most]
+                full = np.flatnonzero(n_curves[branch, part] == most)
+                above = mean[branch, part][full] - rise[full]
+                curve[branch, part] = rise + np.interp(np.arange(rise.size), full, above)
         return self.given(curve)
 
     def given(self, values: Floats) -> Floats:
