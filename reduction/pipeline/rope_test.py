@@ -38,7 +38,6 @@ from reduction.stages.three_parameter_line.rope_programme import (
     tensile_pull,
 )
 from reduction.stages.three_parameter_line.slow_pull import (
-    MISFIT_NOTED,
     error_of_pull_rate,
     fit_pull,
     is_short_pull,
@@ -86,12 +85,6 @@ def pull_specimens(
             )  # fmt: skip
         except (DataError, FitError) as error:
             notes.append(note("no-pull", name, reason=str(error)))
-            pulls.append(None)
-            continue
-        if specimens[index].kind == "stretch hose" and pull.misfit_share > MISFIT_NOTED:
-            notes.append(
-                note("hose-pull-misfit", name, misfit=pull.misfit_share, limit=MISFIT_NOTED)
-            )
             pulls.append(None)
             continue
         notes += [replace(one, subject=name) for one in pull.notes]

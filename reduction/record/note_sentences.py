@@ -1125,12 +1125,6 @@ _OF_LINE: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         " the interval is from the other draws",
     ),
     "no-pull": ("refusal", "quasi-static spring constant not given: {reason}"),
-    "hose-pull-misfit": (
-        "refusal",
-        "quasi-static spring constant not given: a cubic in strain misses the curve of this hose"
-        " by {misfit:.1%} of its strain (rms), more than {limit:.0%}. The curve is in the samples;"
-        " its slope is in a comparison with a predicted hose",
-    ),
     "pull-misfit": (
         "note",
         "a cubic misses the load-strain curve by {misfit:.1%} of its strain (rms). Do not use its"
@@ -1167,7 +1161,7 @@ _OF_LINE: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "note", "the time since the last dynamic test is not stated, but K_0 depends on it",
     ),
     "pull-cut-at-turn": (
-        "note", "the usable range ends where the slope of the cubic has its extremum",
+        "note", "the usable range ends where strain does not rise with tension",
     ),
     "level-with-few-cycles": (
         "note", "level {level} has {n_cycles} of the {n_asked} requested cycles",

@@ -226,14 +226,20 @@ def test_nothing_is_said_of_a_hose_as_if_it_were_rubber_or_marked(run, test):
             assert abs(archive["slack_strain_at_unloading"].to_numpy()[0]) < 0.02
 
 
-@pytest.mark.parametrize("test", ["S-64", "S-68", "B-64"])
-def test_no_cubic_is_given_of_a_curve_with_a_kink(run, test):
+@pytest.mark.parametrize("test", ["S-64", "S-68"])
+def test_a_pull_with_a_kink_has_the_strain_of_its_readings_and_k_0_of_their_slope(run, test):
     with open_archive(run.processed / f"{test}.nc") as archive:
-        assert "pull_strain_coefficient" not in archive
-        (note,) = [
-            one for one in archive["note"].to_numpy() if "a cubic in strain misses" in str(one)
-        ]
-    assert str(note).startswith(f"hose-{test[2:]}: quasi-static spring constant not given")
+        tension, strain = archive["tension"].values[0], archive["strain"].values[0]
+        grid = archive["tension_grid"].values[10:-10]
+        pulled = archive["quasi_static_strain"].values[0, 10:-10]
+        slope = archive["quasi_static_spring_constant"].values[0, 10:-10]
+        notes = [str(one) for one in archive["note"].values]
+    rise = slice(0, int(np.nanargmax(tension)))
+    # noise of 5 lbf is 0.2 % of strain before the kink: means over fifteen readings
+    smooth = [np.convolve(one[rise], np.ones(15) / 15, "valid") for one in (tension, strain)]
+    assert pulled == pytest.approx(np.interp(grid, *smooth), abs=0.004)
+    assert np.ptp(pulled) / np.trapezoid(1 / slope, grid) == pytest.approx(1.0, rel=0.01)
+    assert any("a cubic misses the load-strain curve" in one for one in notes)
 
 
 def test_the_uncertainty_of_the_length_scales_every_strain_of_a_comparison(run):

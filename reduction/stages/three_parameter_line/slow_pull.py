@@ -49,7 +49,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cache
-from itertools import pairwise
 
 import numpy as np
 import scipy
@@ -585,28 +584,32 @@ def _inverse_of_positive(slope: Floats) -> Floats:
     return inverse
 
 
-def _positive_range(coefficient: Floats) -> tuple[float, float]:
-    """Longest part of -1 to 1 in which the slope of a cubic of u is positive.
+def _rising_range(curve: _PulledCurve) -> tuple[float, float]:
+    """Longest part of -1 to 1 in which strain does not clearly fall with tension.
 
     Notes
     -----
-    A slope that is not positive has no quasi-static spring constant ([4]_, sec. 4.4.2).
+    A slope that is not positive has no quasi-static spring constant ([4]_, sec. 4.4.2); one that
+    noise alone makes negative, where a line is stiff, leaves the rest of the pull what it is.
 
     Examples
     --------
-    >>> _positive_range(np.array([0.0, 0.5, -0.5, 0.0]))
-    (-1.0, 0.5)
+    >>> load = np.linspace(0.0, 2000.0, 401)
+    >>> turning = np.where(load < 1500.0, load, 3000.0 - load)
+    >>> blocks = _block_means(np.arange(401.0), 1e-5 * turning, load)
+    >>> print(np.round(_rising_range(_curve_of_pull(blocks)), 1))
+    [-1.   0.5]
     """
-    roots = np.roots(coefficient[:0:-1] * np.array([3, 2, 1]))
-    inside = sorted(float(root.real) for root in roots if root.imag == 0 and -1 < root.real < 1)
-    edges = [-1.0, *inside, 1.0]
-    best = (0.0, 0.0)
-    for low, high in pairwise(edges):
-        middle = (low + high) / 2
-        slope = coefficient[1] + middle * (2 * coefficient[2] + middle * 3 * coefficient[3])
-        if slope > 0 and high - low > best[1] - best[0]:
-            best = (low, high)
-    return best
+    along = np.linspace(-1, 1, _STEPS_OF_FORM)
+    rows = _rows_of_slope(along, curve.coefficient.size)
+    clearly = _CLEARLY * _spread(rows, curve.covariance)
+    rises = np.append(rows @ curve.coefficient > -clearly, [False])
+    ends = np.flatnonzero(np.diff(np.append([0], rises)))
+    if not ends.size:
+        return (0.0, 0.0)
+    runs = ends.reshape(-1, 2)
+    first, last = runs[np.argmax(np.diff(runs, axis=1))] - [0, 1]
+    return float(along[first]), float(along[last])
 
 
 def _printed_form(
@@ -660,6 +663,8 @@ _OFF_ZERO = 0.05
 
 # tensions to which the printed form of K_0 is fitted
 _STEPS_OF_FORM = 201
+
+_CLEARLY = 3.0  # standard uncertainties, by which a slope is below zero and not by noise
 
 
 def _remarks(
@@ -786,10 +791,10 @@ def fit_pull(
     covariance = _covariance_of_blocks(powers, residual)
     strain_misfit = _misfit_of_cubic(blocks, coefficient, covariance)
     curve = _curve_of_pull(blocks)
-    start, stop = _positive_range(coefficient)
+    start, stop = _rising_range(curve)
     if stop - start < 2 * _SHORTEST_RANGE:
         raise FitError(
-            "the load-strain cubic does not rise",
+            "strain does not rise with tension in the slow pull",
             found=f"a positive slope over {(stop - start) / 2:.0%} of the range of tension",
             needed=f"{_SHORTEST_RANGE:.0%} or more",
             hint="Check the signs of strain and tension.",
