@@ -137,7 +137,6 @@ def _settings_json(
             if pull is None
             else {
                 "test": test_of[name],
-                "strain_coefficient": pull.strain_coefficient.tolist(),
                 "curve_coefficient": pull.curve_coefficient.tolist(),
                 "tension_low": pull.tension_low,
                 "tension_high": pull.tension_high,

@@ -103,9 +103,7 @@ def _fit(
         position, tension = located.position, located.tension
         strain = strain_of_record(located.record, position, tension, models)
         found, _ = pull_specimens(
-            located, strain, tension, pull_conditions(campaign, survey),
-            specimens=[campaign.specimens[name] for name in survey.plan.specimens],
-            models=models,
+            located, strain, tension, pull_conditions(campaign, survey), models=models
         )  # fmt: skip
     except Exception as error:
         # one test's failure, even where it is a defect here

@@ -1028,8 +1028,7 @@ def reduce_test(
     )
     of_pulls, refused_pulls = (
         pull_specimens(
-            located, strain, tension, pull_conditions or PullConditions(),
-            specimens=specimens, models=models,
+            located, strain, tension, pull_conditions or PullConditions(), models=models,
         )
         if description.kind in PULLED
         else ((), ())

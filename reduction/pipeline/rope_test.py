@@ -66,7 +66,6 @@ def pull_specimens(
     tension: Floats,
     conditions: PullConditions,
     *,
-    specimens: Sequence[Specimen],
     models: Sequence[StrainModel],
 ) -> tuple[tuple[SlowPull | None, ...], list[Note]]:
     """Load-strain cubic of each specimen of a slow pull; None and a note where it has none."""

@@ -645,7 +645,7 @@ def _printed_form(
 
 
 # rms of what a cubic misses, over the strain of the pull: above it the curve is none
-MISFIT_NOTED = 0.01
+_MISFIT_NOTED = 0.01
 
 _FEWEST_BLOCKS = 8
 
@@ -678,7 +678,7 @@ def _remarks(
     misfit: float,
 ) -> tuple[Note, ...]:
     found = (
-        (misfit > MISFIT_NOTED, note("pull-misfit", misfit=misfit)),
+        (misfit > _MISFIT_NOTED, note("pull-misfit", misfit=misfit)),
         (fall > _FALL_NOTED, note("pull-falls", fall=fall)),
         (
             rates[2] > _UNEVEN_RATE * rates[1],
