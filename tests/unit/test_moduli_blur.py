@@ -126,3 +126,22 @@ def test_the_blur_of_a_bend_that_grows_is_not_known_as_far_as_the_ends():
     step = halves[0] + 1
     assert error[:step] == pytest.approx(3 * 11**2 / 20 * np.arange(step, 0, -1))
     assert np.all(error <= 2 * missed[0] + 1e-6)
+
+
+def test_noise_of_the_only_window_is_no_bend_that_it_misses():
+    # a straight modulus, of which a window misses nothing, with the noise of overlapping windows
+    half, n_bins, n_curves, noise = 6, 60, 40, 1.0
+    rng = np.random.default_rng(6)
+    place = np.arange(-half, half + 1)
+    kernel = place / np.sum(place**2)
+    kernel *= noise / np.sqrt(np.sum(kernel**2))
+    errors = rng.standard_normal((n_curves, n_bins + 2 * half))
+    slope = 100 + np.arange(n_bins) + np.stack(
+        [np.convolve(one, kernel[::-1], mode="valid") for one in errors]
+    )  # fmt: skip
+    blur, _ = window_blur(slope, half_window=half)
+    deviation = np.full(slope.shape, noise)
+    _, _, missed = adapt_window([slope], [deviation], [blur], half_windows=[half])
+    inner = np.s_[:, 2 * half : -2 * half]
+    # two and a half times the range of the bends that noise makes are twice the noise
+    assert np.median(missed[inner]) < 0.6 * noise

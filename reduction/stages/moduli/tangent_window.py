@@ -60,6 +60,10 @@ _UNSEEN = sqrt(2.0)
 # where one width alone is to be had: half of the second difference that its blur is a tenth of
 _UNSEEN_OF_BLUR = 5.0
 
+# mean square of the range of ten normal numbers, as many as the second differences of the noise in
+# two windows are worth
+_SQUARE_OF_RANGE = 10.0
+
 
 @dataclass(frozen=True)
 class StrainGrid:
@@ -520,7 +524,7 @@ def adapt_window(
             away = np.abs(slope[wide] - slope[narrow])
             is_sound &= ~(away > _CONTRADICTED * noises[narrow])
         chosen = np.where(is_sound, wide, chosen)
-    missed = _unseen_by_one(blur[0], half_windows[0]) ** 2
+    missed = _unseen_by_one(blur[0], half_windows[0], noise=deviation[0]) ** 2
     # of a curve shorter than two windows no blur is known: its modulus may change within one
     is_blind = [(one == 0).all(axis=-1, keepdims=True) for one in blur]
     missed += np.where(is_blind[0], _range(slope[0]) ** 2 / 3, 0.0)
@@ -564,16 +568,22 @@ def adapt_window(
     )
 
 
-def _unseen_by_one(blur: Floats, half_window: int) -> Floats:
+def _unseen_by_one(blur: Floats, half_window: int, *, noise: Floats) -> Floats:
     """What one width may miss: as much as it shows to change of a smooth bend, or all of the bend.
 
     A jump makes the second difference, and with it the blur, change its sign within a window; of a
-    smooth bend it changes little.
+    smooth bend it changes little, but for the noise of the slopes it is made of.  That is the one
+    that the residuals show: the roughness of a curve holds its jumps as well.
     """
     size = 4 * half_window + 1
     high = scipy.ndimage.maximum_filter1d(blur, size, axis=-1, mode="nearest")
     low = scipy.ndimage.minimum_filter1d(blur, size, axis=-1, mode="nearest")
-    return np.asarray(np.maximum(_UNSEEN_OF_BLUR * (high - low) / 2, np.abs(blur)))
+    step, n_window = half_window + 1, 2 * half_window + 1
+    of_step, of_two = (_overlap(times * step / n_window) for times in (1, 2))
+    of_noise = (n_window / step) ** 2 / 40 * sqrt(6 - 8 * of_step + 2 * of_two) * noise
+    by_chance = _SQUARE_OF_RANGE * np.nan_to_num(of_noise) ** 2
+    changes = np.sqrt(np.maximum((high - low) ** 2 - by_chance, 0.0))
+    return np.asarray(np.maximum(_UNSEEN_OF_BLUR * changes / 2, np.abs(blur)))
 
 
 def _range(slope: Floats) -> Floats:
