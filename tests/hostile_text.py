@@ -433,7 +433,7 @@ TOML = (
     ),
     Case("a key twice", added('file = "log.csv"\n'), 2, "Cannot overwrite"),
     Case("a table twice", added(TEST), 2, TWICE),
-    Case("a date where a text is meant", added("date = 2026-11-22\n"), 2, "tests.T-1.date"),
+    Case("a date where a text is meant", added("operator = 2026-11-22\n"), 2, "tests.T-1.operator"),
     Case("a date that is none", added("date = 2026-13-45\n"), 2, "is not TOML"),
     Case("bytes that are no UTF-8", toml(b'[campaign]\nid = "\xff"\n'), 2, "is not TOML"),
     Case("a NUL byte", toml(b"[campaign]\n\0"), 2, "is not TOML"),

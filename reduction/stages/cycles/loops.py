@@ -1040,13 +1040,14 @@ def _quantities_of_cycles(
         else _mean_drift(np.stack([row[f"{name}_{part}"] for part in _OF_PERIOD]), ends)
         for name in ("force", "strain")
     )
-    is_own = np.zeros(n_samples.size, dtype=bool)
+    of_neighbours, is_own = strain_drift, np.zeros(n_samples.size, dtype=bool)
     if gap is not None and not is_parted:
         is_own = np.abs(gap) > np.abs(strain_drift)
-        strain_drift[is_own] = gap[is_own]
+        strain_drift = np.where(is_own, gap, strain_drift)
     # drift of more than the range is that of a jump among the neighbours: no steady cycle is left
     force_drift[np.abs(force_drift) > peak - valley] = np.nan
-    strain_drift[np.abs(strain_drift) > row["high"] - row["low"]] = np.nan
+    for drift in (strain_drift, of_neighbours):
+        drift[np.abs(drift) > row["high"] - row["low"]] = np.nan
     force_sin = row["force_sine"] + force_drift / np.pi
     strain_sin = row["strain_sine"] + strain_drift / np.pi
     if waveform == "sinusoidal":
@@ -1087,7 +1088,8 @@ def _quantities_of_cycles(
             )
             for name, drift, rise_share in (
                 ("force", force_drift, rise_shares[0]),
-                ("strain", strain_drift, rise_shares[1]),
+                # what a first cycle lets out beyond its neighbours is no part of its wave
+                ("strain", of_neighbours, rise_shares[1]),
             )
         )
     energy = _without_drift(
