@@ -68,7 +68,7 @@ def pull_specimens(
     *,
     models: Sequence[StrainModel],
 ) -> tuple[tuple[SlowPull | None, ...], list[Note]]:
-    """Load-strain cubic of each specimen of a slow pull; None and a note where it has none."""
+    """Load-strain curve of each specimen of a slow pull; None and a note where it has none."""
     pulls: list[SlowPull | None] = []
     notes: list[Note] = []
     for index, name in enumerate(located.record.specimens):

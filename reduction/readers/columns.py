@@ -102,7 +102,8 @@ def _of_zone(text: str | None) -> float:
     digits = (text or "").strip(" Z").replace(":", "")
     if not digits:
         return 0.0
-    return math.copysign(3600 * int(digits[1:3]) + 60 * int(digits[3:]), int(digits + "1"))
+    ahead = 3600.0 * int(digits[1:3]) + 60 * int(digits[3:])
+    return -ahead if digits[0] == "-" else ahead
 
 
 def _day_of(match: re.Match[str]) -> float:

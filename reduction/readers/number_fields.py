@@ -170,7 +170,7 @@ def _ragged(rows: TextRows, n_fields: int, message: str) -> LogError:
             is_cut_off = rows.is_open and line == n_lines - 1
             hint = "The log was cut off; remove its last line." if is_cut_off else None
             first = text.partition(rows.layout.delimiter)[0].strip(' \t\r"')
-            if any(map(str.isalpha, first)):
+            if first[:1].isalpha():
                 hint = _table_ends_at(first)
             return LogError(
                 rows.path,

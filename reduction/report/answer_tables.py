@@ -264,7 +264,7 @@ def pull_table(tests: Sequence[TestView]) -> PageTable | None:
             *_about_spread(
                 found, own, [_FIRST_RISE, _PULLED, "pull_peak_tension", "interval_modulus"]
             ),
-            *(["EA of a slow pull of a rope: K_0, by its cubic."] if has_cubic else []),
+            *(["EA of a slow pull of a rope: K_0 at half the strain."] if has_cubic else []),
             *_sets_of_breaks(own),
         ],
     )  # fmt: skip

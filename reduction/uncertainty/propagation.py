@@ -940,9 +940,8 @@ def loop_contributions(
             of_lag["loss_spring_constant"] = of_lag["hysteresis_energy"] / (
                 np.pi * strain_amplitude**2
             )
-        if (
-            waveform == "other" and has_corners
-        ):  # readings beside a corner and the approach to it are late alike
+        # readings beside a corner and the approach to it are late alike
+        if waveform == "other" and has_corners:
             of_approach = 4 * frequency * errors.lag * ramps
             of_lag |= {
                 "apparent_spring_constant": -of_approach * apparent_spring_constant,

@@ -175,3 +175,20 @@ def asserting_or_catching_all(path):
 def test_no_assert_and_no_bare_except():
     found = against(asserting_or_catching_all)
     assert not found, "\n".join(found)
+
+
+def numbers_given_twice(path):
+    """Names of a module that stand for two things: the later one holds in the earlier's place."""
+    seen = set()
+    for node in tree(path).body:
+        targets = node.targets if isinstance(node, ast.Assign) else []
+        targets = [node.target] if isinstance(node, ast.AnnAssign) else targets
+        for name in (one for target in targets for one in ast.walk(target)):
+            if isinstance(name, ast.Name) and name.id in seen:
+                yield node.lineno, f"{name.id} a second time"
+            seen.add(getattr(name, "id", ""))
+
+
+def test_no_number_of_a_module_has_the_name_of_another():
+    found = against(numbers_given_twice)
+    assert not found, "\n".join(found)

@@ -101,6 +101,19 @@ def test_less_than_a_sample_is_how_channels_are_read():
     assert note.numbers["cause"] == "sampling"
 
 
+def driven_load(turn, tension, strain):
+    """Loops of a sine of the load, by the number of the cycle at each sample."""
+    first = np.arange(0, turn.size - 1, PER)
+    rise = np.column_stack([first, first + PER // 2])
+    cycles = Cycles(
+        first, first + PER, rise, rise + PER // 2, np.ones((first.size, 2)),
+        np.zeros(turn.size, np.int32), np.zeros(turn.size, np.int8), np.zeros(turn.size, bool), 0.1,
+    )  # fmt: skip
+    return close_loops(
+        turn / FREQUENCY, tension[None], strain[None], cycles, waveform="sinusoidal", control="load"
+    )
+
+
 @pytest.mark.parametrize(("at_peak", "severity"), [(False, "note"), (True, "warning")])
 def test_cycles_that_drift_unequally_say_whether_their_drift_is_even(at_peak, severity):
     """Strain of a driven load gives way ever more slowly, evenly or while the load is highest."""
@@ -110,15 +123,7 @@ def test_cycles_that_drift_unequally_say_whether_their_drift_is_even(at_peak, se
     gives = 0.12 * np.append(0, np.cumsum(rate[1:])) / rate.sum()
     strain = 0.5 - 0.2 * np.cos(wave) + gives
     tension = 1000 - 180 * np.cos(wave + 0.1)
-    first = PER * np.arange(20)
-    rise = np.column_stack([first, first + PER // 2])
-    cycles = Cycles(
-        first, first + PER, rise, rise + PER // 2, np.ones((20, 2)),
-        np.zeros(turn.size, np.int32), np.zeros(turn.size, np.int8), np.zeros(turn.size, bool), 0.1,
-    )  # fmt: skip
-    loops = close_loops(
-        turn / FREQUENCY, tension[None], strain[None], cycles, waveform="sinusoidal", control="load"
-    )
+    loops = driven_load(turn, tension, strain)
     (found,) = notes(loops)
     assert (found.code, found.severity) == ("drift-in-energy", severity)
     true, inner = np.pi * 0.2 * 180 * np.sin(0.1), slice(2, None)
@@ -137,15 +142,7 @@ def test_the_creep_of_a_first_cycle_is_no_drift_of_the_cycles():
     wave = 2 * np.pi * turn
     strain = 0.5 - 0.2 * np.cos(wave) + 0.04 * np.minimum(turn, 1)
     tension = 1000 - 180 * np.cos(wave + 0.1)
-    first = PER * np.arange(12)
-    rise = np.column_stack([first, first + PER // 2])
-    cycles = Cycles(
-        first, first + PER, rise, rise + PER // 2, np.ones((12, 2)),
-        np.zeros(turn.size, np.int32), np.zeros(turn.size, np.int8), np.zeros(turn.size, bool), 0.1,
-    )  # fmt: skip
-    loops = close_loops(
-        turn / FREQUENCY, tension[None], strain[None], cycles, waveform="sinusoidal", control="load"
-    )
+    loops = driven_load(turn, tension, strain)
     assert loops.closed_loop_energy[0, 0] > 1.5 * loops.hysteresis_energy[0, 0]
     assert notes(loops) == ()
 

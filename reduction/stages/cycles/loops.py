@@ -709,8 +709,6 @@ def _mean_drift(means: Floats, ends: Floats) -> Floats:
 
 _OF_GAP = 8  # part of a cycle, from its first turn on
 
-_CLEAR = 4.0  # standard errors
-
 
 def _gap_of_first(
     tension: Floats, strain: Floats, cycles: Cycles, *, noises: tuple[float, float]
@@ -1679,7 +1677,7 @@ _UNEVEN = 2.0  # times the faster stroke, which the slower one of a saw lasts
 
 _OF_A_STEP = 0.05  # of the mean step of a branch
 
-_CLEAR = 3.0  # noise of a reading, and standard errors of a mean, that show a ramp or a rounding
+_CLEAR = 3.0  # noise of a reading, and standard errors, that show a ramp, a rounding or a creep
 
 
 def _bow(values: Floats, at: Integers) -> Floats:

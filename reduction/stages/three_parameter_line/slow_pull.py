@@ -1,4 +1,4 @@
-r"""Slow pulls: load-strain cubic and quasi-static spring constant.
+r"""Slow pulls: load-strain curve, its cubic, and quasi-static spring constant.
 
 Where a slow pull loads the line: from the rise out of slack to the peak.
 
