@@ -60,6 +60,7 @@ from reduction.readers.raw_log import hash_source
 from reduction.record.contributions import Component, InstrumentErrors
 from reduction.record.errors import ArchiveError, SettingsError
 from reduction.record.measurement import Origin, Source, Specimen, Step
+from reduction.record.samples import trim_heap
 from reduction.report.campaign_page import CampaignAnswers, CampaignPage
 from reduction.stages.strain.strain_model import StrainModel
 from reduction.stages.three_parameter_line.change_in_length import (
@@ -422,6 +423,7 @@ def _run(
     read = {source.name: source.sha256 for survey in surveys for source in survey.sources}
     # what else is known of the logs is 0.1 MB a test, which the tables and pages need
     del wanted, first, basis, surveys, chosen
+    trim_heap()
     progress.stage("tables", 0)
     ours = [folder / f"{name}.nc" for name in names]
     archives = [path for path in ours if path.exists()]
@@ -448,6 +450,7 @@ def _run(
         write_catalogue(
             [*archives, *products.values()], folder / FILE_NAME, entries=entries, opener=opener
         )
+        trim_heap()
     if archives or products or statuses:  # where all tests failed the page says that and why
         progress.stage("report", 0)
         made = {one.test for one in statuses if one.status not in ("failed", "no_work")}

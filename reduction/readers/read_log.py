@@ -20,7 +20,7 @@ from reduction.readers.raw_log import RawLog, unchanged
 from reduction.readers.record_in_si import to_record
 from reduction.record.errors import LogError, SettingsError
 from reduction.record.measurement import Floats, Record, Source, StepReadings
-from reduction.record.samples import trim_heap
+from reduction.record.samples import trim_heap_after
 from reduction.record.settings import Limits, QualitySettings
 
 
@@ -158,7 +158,7 @@ def read_record(
     record = to_record(
         logs, test_id=test_id, specimens=specimens, quality=quality, length_needed=length_needed
     )
-    trim_heap(record.time)
+    trim_heap_after(record.time)
     return record, tuple(log.source for log, _ in logs)
 
 

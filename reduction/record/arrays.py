@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import Bools, Floats
-from reduction.record.samples import BLOCK, any_sample, release_pages, trim_heap
+from reduction.record.samples import BLOCK, any_sample, release_pages, trim_heap_after
 
 
 def _refuse(name: str, values: Floats, bad: Bools, what: str, needed: str) -> None:
@@ -145,7 +145,7 @@ def run_blocks(
     else:
         with ThreadPoolExecutor(n_workers) as workers:
             results = list(workers.map(run, todo))
-    trim_heap(*samples)
+    trim_heap_after(*samples)
     return results
 
 

@@ -100,16 +100,20 @@ def release_pages(*arrays: NDArray[Any]) -> None:
             found.madvise(mmap.MADV_DONTNEED)
 
 
-def trim_heap(*arrays: NDArray[Any]) -> None:
-    """Give what earlier work has freed back to the system, if any of the arrays is long or on disk.
+def trim_heap() -> None:
+    """Give what earlier work has freed back to the system.
 
     The C library keeps what is freed, in pieces between what is not: half of the memory of a
-    long log after a few stages.
+    long log after a few stages, and 50 MB after the tables of a batch.
     """
-    if _MALLOC_TRIM is not None and any(
-        array.nbytes >= _LONG or _is_on_disk(array) for array in arrays
-    ):
+    if _MALLOC_TRIM is not None:
         _MALLOC_TRIM(0)
+
+
+def trim_heap_after(*arrays: NDArray[Any]) -> None:
+    """Give back what earlier work has freed, if any of the arrays is long or on disk."""
+    if any(array.nbytes >= _LONG or _is_on_disk(array) for array in arrays):
+        trim_heap()
 
 
 def empty_like(

@@ -76,6 +76,9 @@ _OF_HOLDS = (
 )  # fmt: skip
 """The same of what is no rope, whose holds have figures of their own."""
 
+_ATTRIBUTES_OF_SECTION = ("raw_metadata", "history")
+"""Long texts which the section of a test has folded, and nothing else shows."""
+
 _REACHED = (
     "apparent_spring_constant",  # whether it had settled
     "mean_tension", "tension_amplitude", "mean_strain", "strain_amplitude",
@@ -274,11 +277,14 @@ class TestView:
         """
         left_out = _OF_SECTION + (_OF_CYCLES if self.n_cycles else ())
         left_out += () if self.has_rope else _OF_HOLDS
+        # rests between the cycles of a tether have their table in its section
+        has_holds = self.has_rope or not self.n_cycles
         own = [
             name
-            for name in map(str, self.data.variables)
+            for name, variable in self.data.variables.items()
             # numbers of a whole test are those of a run of an experiment
-            if not name.startswith("test_") and any(one in name for one in left_out)
+            if (not str(name).startswith("test_") and any(one in str(name) for one in left_out))
+            or (not has_holds and "hold" in variable.dims)
         ]
         return replace(self, data=_shared(_one_row_a_source(self.data.drop_vars(own)), known))
 
@@ -336,7 +342,11 @@ def _shared(data: xr.Dataset, known: dict[str, str]) -> xr.Dataset:
             if name in data.dims
             else xr.Variable(variable.dims, values, attributes or None, fastpath=True)
         )
-    about = {name: known.setdefault(one, one) for name, one in data.attrs.items()}
+    about = {
+        name: known.setdefault(one, one)
+        for name, one in data.attrs.items()
+        if name not in _ATTRIBUTES_OF_SECTION
+    }
     return xr.Dataset(found, attrs=about)
 
 

@@ -13,7 +13,7 @@ from reduction.record.samples import (
     _is_on_disk,
     empty_like,
     scratch_folder,
-    trim_heap,
+    trim_heap_after,
 )
 
 
@@ -113,13 +113,13 @@ def test_what_stages_of_a_long_series_have_freed_is_given_back(tmp_path, monkeyp
     writer = ColumnWriter(tmp_path)
     writer.append(np.zeros(3))
     long = np.empty(scratch._LONG, dtype=bool)
-    trim_heap(np.zeros(3), long[1:])
+    trim_heap_after(np.zeros(3), long[1:])
     assert asked == []
     for arrays in ([long], [np.zeros(3), long], [writer.finish()]):
-        trim_heap(*arrays)
+        trim_heap_after(*arrays)
     assert asked == [0, 0, 0]
 
 
 def test_no_system_but_one_is_asked_to_give_back(monkeypatch):
     monkeypatch.setattr(scratch, "_MALLOC_TRIM", None)
-    trim_heap(np.empty(scratch._LONG, dtype=bool))
+    trim_heap_after(np.empty(scratch._LONG, dtype=bool))

@@ -10,7 +10,7 @@ from scipy.special import diric
 
 from reduction.record.measurement import Bools, Floats, Integers, read_only_arrays
 from reduction.record.notes import Note
-from reduction.record.samples import release_pages, trim_heap
+from reduction.record.samples import release_pages, trim_heap_after
 
 
 @dataclass(frozen=True)
@@ -205,7 +205,7 @@ class Loops:
         release_pages(
             *(one for one in own if isinstance(one, np.ndarray)), *self.uncertainty.values()
         )
-        trim_heap(self.frequency)
+        trim_heap_after(self.frequency)
 
 
 def turns_alike(lag: Floats, interval: float, *, period: float = 0.0, n_cycles: int = 1) -> Floats:
