@@ -482,7 +482,18 @@ def archives_of_lines(folder: Path) -> list[Path]:
 
 
 def lines_of_archive(path: Path) -> list[LineSource]:
-    """Every line of one archive that has something to look up."""
+    """Every line of one archive that has something to look up.
+
+    Surfaces come with the conditions and checks of the tests that lie beside them.
+    """
+    lines = _lines_at(path)
+    if not any(line.surfaces for line in lines):
+        return lines
+    tests = [line for one in archives_of_tests(path.parent) for line in _lines_at(one)]
+    return [_with_runs(line, tests) if line.surfaces else line for line in lines]
+
+
+def _lines_at(path: Path) -> list[LineSource]:
     with reading(path) as archive:
         return lines_of_open_archive(archive, path)
 
@@ -545,7 +556,7 @@ def lines_of_folder(folder: Path) -> list[LineSource]:
     its slow pull.  It bears the name of the specimen, its tests are called TEST SPECIMEN.  So is
     one whose only test is of holds, where these have a static stiffness.
     """
-    found = [(path.stem, lines_of_archive(path)) for path in archives_of_lines(folder)]
+    found = [(path.stem, _lines_at(path)) for path in archives_of_lines(folder)]
     named = _with_unique_names(found)
     fitted = {one for line in named if line.surfaces for one in line.specimens}
     tests: dict[str, list[LineSource]] = {}
@@ -562,18 +573,21 @@ def lines_of_folder(folder: Path) -> list[LineSource]:
     lines = []
     for line in named:
         if line.surfaces:
-            runs = [one for one in named if one.levels and set(one.specimens) & set(line.specimens)]
-            lines.append(
-                replace(
-                    line,
-                    conditions=joined_conditions(r.conditions for r in runs),
-                    warnings=_checks_of_runs(runs),
-                )
-            )
+            lines.append(_with_runs(line, named))
         else:
             is_pooled = line.specimens[0] in pooled
             lines.append(_without_pooled(line, ropes) if is_pooled else line)
     return [*ropes, *(line for line in lines if line.surfaces or line.curves or line.levels)]
+
+
+def _with_runs(line: LineSource, tests: Sequence[LineSource]) -> LineSource:
+    """Surfaces with the conditions of their runs, and why runs have the status `check`."""
+    runs = [one for one in tests if one.levels and set(one.specimens) & set(line.specimens)]
+    return replace(
+        line,
+        conditions=joined_conditions(one.conditions for one in runs),
+        warnings=_checks_of_runs(runs),
+    )
 
 
 def _checks_of_runs(runs: Sequence[LineSource]) -> tuple[str, ...]:

@@ -10,7 +10,7 @@ import xarray as xr
 
 from reduction.archive.open import reading
 from reduction.archive.surfaces_dataset import surface_names
-from reduction.lines.archive_source import CYCLE, looked_up_surface
+from reduction.lines.archive_source import CYCLE, lines_of_archive, looked_up_surface
 from reduction.lines.export_tables import TableColumn, ValueTable
 from reduction.quantities.names import quantity
 from reduction.quantities.units import UnitSystem, display_unit
@@ -88,7 +88,14 @@ def surface_table(
                     covariance[:, place])
         for place in range(n_terms)
     ]  # fmt: skip
-    return ValueTable(title, tuple(columns), (source,), _ABOUT, is_synthetic)
+    notes = (*_doubts_of_runs(path, specimen), *_ABOUT)
+    return ValueTable(title, tuple(columns), (source,), notes, is_synthetic)
+
+
+def _doubts_of_runs(path: Path, specimen: str | None) -> tuple[str, ...]:
+    """Why runs of the experiments have the status `check`, as far as their archives lie beside."""
+    lines = [one for one in lines_of_archive(path) if specimen in (None, one.name)]
+    return tuple(f"DOUBTFUL: {text}" for line in lines for text in line.warnings)
 
 
 _PRINTED = (
@@ -172,7 +179,7 @@ def printed_table(path: Path, *, specimen: str | None = None) -> ValueTable:
     return ValueTable(
         title,
         tuple(TableColumn(name, "", "as the report has it", cells) for name, cells in made.items()),
-        (source,), (about,), is_synthetic,
+        (source,), (*_doubts_of_runs(path, specimen), about), is_synthetic,
     )  # fmt: skip
 
 

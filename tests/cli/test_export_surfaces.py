@@ -113,6 +113,16 @@ def test_the_polynomial_of_levels_is_the_look_up(command, archive, tmp_path, uni
     assert set(found["unit"][at]) == {"N" if units == "si" else "lbf"}
 
 
+@pytest.mark.parametrize("form", [(), ("--form", "printed")])
+def test_coefficients_bring_along_why_runs_have_the_status_check(command, archive, tmp_path, form):
+    """R05 of the synthetic campaign goes slack in every cycle."""
+    out = tmp_path / "s.md"
+    done = command("export", archive, "--to", "markdown", "--out", out, *form)
+    said = "DOUBTFUL: 1 of 15 runs have the status check; R05: the line goes slack"
+    assert done.stdout.split("\n")[1].startswith(f"  note: {said}")
+    assert said in out.read_text(encoding="utf-8")
+
+
 def test_a_logarithm_stays_in_si(command, archive, tmp_path):
     si = exported(command, archive, tmp_path / "a.csv", "csv")
     us = exported(command, archive, tmp_path / "b.csv", "csv", "--units", "us")
