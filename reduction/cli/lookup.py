@@ -55,8 +55,12 @@ _OF_CYCLES = (
 )  # fmt: skip
 
 # tension along a curve over strain is kept by the name of its branches; rope programmes call K_ap
-# dynamic stiffness
-_BY_WORDS = {"tension": "branch_tension", "dynamicstiffness": "apparent_spring_constant"}
+# dynamic stiffness, and the answers of a run EA
+_BY_WORDS = {
+    "tension": "branch_tension",
+    "dynamicstiffness": "apparent_spring_constant",
+    "EA": "apparent_spring_constant",
+}
 
 _ENDINGS = (".nc", ".toml", ".csv")
 
@@ -98,7 +102,7 @@ def name_of_quantity(text: str) -> str:
 
     Examples
     --------
-    >>> [name_of_quantity(text) for text in ("K_ap", "tension", "dynamic_stiffness", "loss_factor")]
+    >>> [name_of_quantity(text) for text in ("K_ap", "tension", "EA", "loss_factor")]
     ['apparent_spring_constant', 'branch_tension', 'apparent_spring_constant', 'loss_factor']
     """
     symbols = {
