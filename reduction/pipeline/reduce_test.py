@@ -597,7 +597,7 @@ _FIRST_RISE = 0.5
 
 _MOST_KEPT = 1 << 20  # samples, or up to twice as many
 
-_MOST_SPREAD = 2048  # samples of each test of a campaign, or up to twice as many
+_MOST_SPREAD = 1024  # samples of each test of a campaign, or up to twice as many
 
 
 @dataclass(frozen=True)
