@@ -47,7 +47,9 @@ class _WaveLoadKeys(BaseModel):
     wave_period: Annotated[float, InSI("time", above=0.0)]
     wave_length: PositiveLength | None = None
     """Beside the period it is used as it is, and the mismatch of the two is told."""
-    wave_theory: Literal["auto", "airy", "stokes", "stokes 3", "stokes 5", "cnoidal"] = "auto"
+    wave_theory: Literal[
+        "auto", "airy", "stokes", "stokes 3", "stokes 5", "cnoidal", "stream function"
+    ] = "auto"
     elevation: Length | None = None
     """At which the water moves, from the mean level up; the centre of the hose if nothing."""
     drag_coefficient: PositiveNumber = CODE_OF_HYDROLOGY.drag_coefficient[0]

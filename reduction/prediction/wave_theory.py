@@ -56,6 +56,8 @@ Cnoidal waves of first order ([15]_), with the parameter m and the integrals K a
 
 For m = 1 it is the solitary wave, H sech^2 over still water with c^2 = g (d + H).
 
+The steady wave of `reduction.prediction.stream_function`, right at every depth and height.
+
 Table of wave theories by relative depth, as it is meant and to the letter.
 
 Which wave theory applies, and how far a wave is from the limits of each.
@@ -117,6 +119,7 @@ import scipy
 from numpy.typing import ArrayLike, NDArray
 from scipy.special import ellipe, ellipkm1, expit
 
+from reduction.prediction.stream_function import SteadyWave, steady_wave
 from reduction.record.arrays import as_finite, as_positive
 from reduction.record.errors import DataError, FitError, SettingsError
 from reduction.record.measurement import Floats, read_only_arrays
@@ -855,6 +858,92 @@ def cnoidal_wave(
     )
 
 
+_LEAST_OF_STREAM = 1e-9  # of the largest harmonic: below it the series is rounding
+
+
+def stream_wave(
+    *,
+    wave_height: float,
+    wave_period: float,
+    water_depth: float,
+    elevation: float,
+    wave_number: float | None = None,
+    current_velocity: float = 0.0,
+    gravity: float = STANDARD_GRAVITY,
+) -> WaveHarmonics:
+    """Steady wave by its stream function at one elevation, for any depth up to breaking.
+
+    Raises
+    ------
+    DataError, FitError
+        If the wave breaks, or is so long that its crests are solitary waves.
+
+    Notes
+    -----
+    The current is the mean velocity of the water at a point below the trough.  A length that is
+    given beside the period is held; velocities then follow the surface, as in the other theories.
+
+    Examples
+    --------
+    The 3.57 s wave of [8]_ over 3 m of water: by the linear theory 16.3 m, with its height 17.5 m.
+
+    >>> wave = stream_wave(wave_height=1.25, wave_period=3.57, water_depth=3.0, elevation=0.0)
+    >>> print(round(2 * np.pi / wave.wave_number, 2))
+    17.44
+    """
+    steady, depth = _stream_of(
+        wave_height, wave_period, water_depth, wave_number, current_velocity, gravity
+    )
+    number = steady.number / depth
+    intrinsic, number = _frequency_and_number(
+        wave_height, wave_period, water_depth, number, current_velocity, gravity
+    )
+    _refuse_outside(elevation, water_depth, depth * float(np.sum(steady.surface)))
+    order = np.arange(1, steady.surface.size + 1)
+    # j B_j cosh(j k (z + d)) / cosh(j k d) without overflow, as its growing part
+    speed = intrinsic / number / steady.speed * steady.velocity
+    level = order * number * max(depth + elevation, 0.0)
+    flat = order * steady.number
+    growing = speed * np.exp(level - flat) / (1 + np.exp(-2 * flat))
+    kept = np.flatnonzero(np.abs(growing) > _LEAST_OF_STREAM * np.max(np.abs(growing)))[-1] + 1
+    return _harmonics(
+        frequency=2 * pi / wave_period,
+        intrinsic=intrinsic,
+        number=number,
+        surface=(depth * steady.surface)[:kept].tolist(),
+        speed=growing[:kept].tolist(),
+        height_above_bed=max(depth + elevation, 0.0),
+    )
+
+
+def _stream_of(
+    height: float,
+    period: float,
+    depth: float,
+    number: float | None,
+    current: float,
+    gravity: float,
+) -> tuple[SteadyWave, float]:
+    """Steady wave, and the depth in which it was computed: beyond three lengths none is felt."""
+    as_positive("wave_height", height)
+    linear = number
+    if linear is None:
+        linear = float(_wave_number(period, depth, current_velocity=current, gravity=gravity))
+    felt = min(depth, 6 * pi / linear)
+    pace = sqrt(gravity * felt)
+    try:
+        steady = steady_wave(
+            height=height / felt,
+            first_number=linear * felt,
+            frequency=None if number is not None else 2 * pi / period * felt / pace,
+            current=current / pace,
+        )
+    except FitError:
+        _refuse_breaking(wave_height=height, wave_number=linear, water_depth=depth)
+        raise
+    return steady, felt
+
+
 def _long_number(
     speed_of: Callable[[float], float], period: float, depth: float, current: float, gravity: float
 ) -> float:
@@ -959,7 +1048,9 @@ def _motions(
     )
 
 
-WaveTheoryName = Literal["airy", "stokes", "stokes 3", "stokes 5", "cnoidal", "beyond the table"]
+WaveTheoryName = Literal[
+    "airy", "stokes", "stokes 3", "stokes 5", "cnoidal", "stream function", "beyond the table"
+]
 
 PrintedTheory = Literal["airy", "stokes", "cnoidal or solitary", "none"]
 
@@ -1032,7 +1123,8 @@ class WaveTheory:
     printed : {"airy", "stokes", "cnoidal or solitary", "none"}
         By both columns of Table 1, to the letter.
     wave_length : float
-        As given, else by the dispersion relation. [m]
+        As given, else by the dispersion relation, or of the stream function where it is asked
+        for. [m]
     relative_depth, steepness, height_to_depth : float
         d / L, H / L, H / d. [1]
     breaking_ratio : float
@@ -1104,7 +1196,13 @@ def describe_wave(
     """
     for name, value in (("wave_height", wave_height), ("wave_period", wave_period)):
         as_positive(name, value)
-    if wave_length is None:
+    if wave_length is None and asked == "stream function":
+        steady, depth = _stream_of(
+            wave_height, wave_period, water_depth, None, current_velocity, gravity
+        )
+        number = steady.number / depth
+        length, mismatch = 2 * pi / number, 0.0
+    elif wave_length is None:
         number = float(
             _wave_number(
                 wave_period, water_depth, current_velocity=current_velocity, gravity=gravity
@@ -1129,10 +1227,10 @@ def describe_wave(
     doubts = {
         f"the wave breaks: {breaking_ratio:.2f} of the breaking height": breaking_ratio > 1,
         f"Table 1 names no theory for a depth of {relative_depth:.3f} wave lengths": (
-            theory == "beyond the table"
+            theory == "beyond the table" and asked != "stream function"
         ),
         f"the second harmonic of the surface is {100 * surface:.0f} % of the first": (
-            theory == "airy" and not is_small
+            theory == "airy" and asked in (None, "airy") and not is_small
         ),
         f"Stokes' second order is at its end: Ursell number {ursell:.1f} (at most "
         f"{GREATEST_URSELL_NUMBER:.1f}), second harmonic of the surface {100 * surface:.0f} % "
@@ -1196,13 +1294,14 @@ def regular_wave(
         "stokes 3": partial(high_stokes_wave, order=3),
         "stokes 5": partial(high_stokes_wave, order=5),
         "cnoidal": cnoidal_wave,
+        "stream function": stream_wave,
     }
     if by not in makers:
         raise DataError(
             f"the theory of this wave is not computed: {by}",
             found=f"a depth of {wave.relative_depth:.3f} wave lengths",
             needed="above 0.04, where Table 1 of Zhang (2015) ends",
-            hint='Ask for one by name: wave_theory = "cnoidal" is the one of long waves.',
+            hint='Ask for one by name: wave_theory = "stream function" is for every depth.',
         )
     if by in ("airy", "stokes"):
         wave_length = wave.wave_length

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from predicted_cases import ARMOUR, LEAST_WAVE, WAVE, changed
 
-SETTINGS, DATA = 2, 4
+SETTINGS, DATA, FIT = 2, 4, 5
 OF_WIRE = {
     "axial_force", "shear_force", "bending_moment", "torsion_moment", "axial_stress",
     "bending_stress", "torsion_stress",
@@ -111,12 +111,12 @@ def test_no_such_wave_or_hose(predict, old, new, status, message):
     assert "Traceback" not in done.stderr
 
 
-def test_shallow_water_has_no_theory_here(predict, tmp_path):
+def test_a_wave_that_is_a_row_of_solitary_ones_is_refused(predict, tmp_path):
     shallow = changed(changed(LEAST_WAVE, '"6 m"', '"0.8 m"'), '"1.25 m"', '"0.1 m"')
-    shallow = changed(shallow, '"3.57 s"', '"8 s"')
+    shallow = changed(shallow, '"3.57 s"', '"200 s"')
     done = predict("wave-load", shallow, "--out", "p")
-    assert done.returncode == DATA
-    assert "the theory of this wave is not computed" in done.stderr
+    assert done.returncode == FIT
+    assert "do not change with the period" in done.stderr
     assert not (tmp_path / "p").exists()
 
 

@@ -210,6 +210,7 @@ THEORY_NAMES = {
     "stokes": "Stokes, second order",
     "stokes 3": "Stokes, third order",
     "stokes 5": "Stokes, fifth order",
+    "stream function": "the stream function",
 }
 
 _UP = {"horizontal": "along the wave", "vertical": "upwards"}
