@@ -32,7 +32,7 @@ from reduction.prediction.comparison_error import Comparison, PressureComparison
 from reduction.prediction.hose_prediction import PredictedHose
 from reduction.prediction.hose_product import HOSE_PARAMETERS, HoseEvents
 from reduction.prediction.hose_tension import predict_hose
-from reduction.prediction.hose_uncertainty import EventUncertainty
+from reduction.prediction.hose_uncertainty import PICK_UP, EventUncertainty
 from reduction.prediction.measured_curve import CURVES
 from reduction.quantities.flags import HOSE_STATES, OUTCOME_USES
 from reduction.quantities.names import (
@@ -358,7 +358,8 @@ def _event_values(hoses: Sequence[PredictedHose]) -> Values:
 def _uncertainty_values(hoses: Sequence[PredictedHose]) -> Values:
     """Nothing of hoses of which no number is uncertain."""
     given = [hose.uncertainty for hose in hoses]
-    sources = [name for name in HOSE_PARAMETERS if any(name in one.source for one in given)]
+    names = (*HOSE_PARAMETERS, PICK_UP)
+    sources = [name for name in names if any(name in one.source for one in given)]
     if not sources:
         return {}
     n_points = max(hose.prediction.strain.size for hose in hoses)

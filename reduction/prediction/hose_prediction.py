@@ -29,7 +29,7 @@ from reduction.prediction.hose_tension import (
     predict_two_layers,
     torque_balanced_angle,
 )
-from reduction.prediction.hose_uncertainty import HoseUncertainty, propagate_hose
+from reduction.prediction.hose_uncertainty import HoseUncertainty, propagate_hose, with_pick_up
 from reduction.record.errors import SettingsError
 from reduction.record.measurement import Bools, Floats
 from reduction.record.notes import Note, note
@@ -147,7 +147,7 @@ def predict_from_plan(plan: HosePlan) -> PredictedHose:
     events = find_events(design)
     strain = _strains(plan, float(events.cord_break.strain))
     prediction = predict_hose(design, strain)
-    uncertainty = propagate_hose(design, strain, plan.standard_uncertainty)
+    uncertainty = with_pick_up(design, propagate_hose(design, strain, plan.standard_uncertainty))
     working, at_break = float(events.working.strain), float(events.cord_break.strain)
     share = float(design.dead_length_share)
     layers = tuple(_layer(layer, working, at_break, share) for layer in plan.layers)

@@ -16,10 +16,11 @@ References
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.special import ndtri
 
 from reduction.prediction.hose_product import HOSE_PARAMETERS, HoseDesign
 from reduction.prediction.hose_sensitivity import EventSensitivity, hose_sensitivity
@@ -29,6 +30,11 @@ from reduction.record.measurement import Bools, Floats, read_only_arrays
 
 WIDTH = 2.0
 """Standard uncertainties on either side of a kink within which a line through it is not trusted."""
+
+PICK_UP = "pick_up"
+"""Source of what cords may bear that are slack by the numbers of the design."""
+
+_QUANTILES = (np.arange(400) + 0.5) / 400
 
 
 @dataclass(frozen=True)
@@ -54,7 +60,8 @@ class HoseUncertainty:
     Parameters
     ----------
     source : tuple of str, length n_source
-        Names from `reduction.prediction.hose_product.HOSE_PARAMETERS`, in that order.
+        Names from `reduction.prediction.hose_product.HOSE_PARAMETERS`, in that order; after them
+        `PICK_UP` from `with_pick_up`.
     strain : ndarray, shape (n_strain,)
         Of the whole relaxed length. [1]
     tension_contribution, fill_pressure_contribution : ndarray, shape (n_source, ..., n_strain)
@@ -129,8 +136,9 @@ def propagate_hose(
     linear answer has none of their load, above it the answer is symmetric where the true one
     cannot fall below the rubber alone.  Against sampling, with half a degree of angle at 68
     degrees, it is a quarter too low at pick-up and a seventh too high half a standard
-    uncertainty above, and within a twentieth from two on.  Near the break some hoses are
-    broken.  ``is_near_kink`` marks both, to two standard uncertainties.
+    uncertainty above, and within a twentieth from two on (`with_pick_up` adds what is missing
+    below).  Near the break some hoses are broken.  ``is_near_kink`` marks both, to two standard
+    uncertainties.
 
     The curve above pick-up is steep.  At a *held strain* the same half degree is 13 % of the
     tension at the working load; the working load itself, which moves along with its strain, has
@@ -195,6 +203,65 @@ def propagate_hose(
         cord_break=cord_break,
         strain_at_working_load_contribution=at_load,
         strain_at_working_load_standard_uncertainty=_together(at_load),
+    )
+
+
+def with_pick_up(design: HoseDesign, known: HoseUncertainty) -> HoseUncertainty:
+    r"""Uncertainty of one hose, with what cords may bear that are slack by its numbers.
+
+    Notes
+    -----
+    Below pick-up the derivatives are those of the rubber alone, and say that the fill pressure is
+    zero for certain; within two standard uncertainties u of the strain of pick-up it is not.  A
+    hose that picks up earlier by :math:`\delta`, normal with u, has there the load Q of the cords
+    that this one has later by :math:`\delta`,
+
+    .. math:: \delta Q^2(\varepsilon) = \int Q^2(\varepsilon + \delta)\, dN(\delta)
+
+    the mean square about the predicted zero.  Above pick-up the derivatives are up to a seventh
+    too large, and stay.
+
+    Examples
+    --------
+    A hose of which half a degree is 6 points of the strain of pick-up, 1.025.
+
+    >>> from reduction.prediction.cord_curve import CordCurve
+    >>> cord = CordCurve(np.array([0.0, 0.095, 0.26]), np.array([0.0, 44.5, 133.5]))
+    >>> design = HoseDesign(np.radians(68.0), (0.0889, 0.0889), 0.0635, 0.127,
+    ...     34 / 0.0254, 0.022 * 0.0254, 1.379e6, cord)
+    >>> known = propagate_hose(design, [0.7, 1.0], {"wrap_angle": np.radians(0.5)})
+    >>> found = with_pick_up(design, known)
+    >>> print(known.fill_pressure_standard_uncertainty, found.source)
+    [0. 0.] ('wrap_angle', 'pick_up')
+    >>> print((found.fill_pressure_standard_uncertainty / 1000).round(0))
+    [ 0. 54.]
+    """
+    events = find_events(design)
+    at, spread = float(events.pick_up.strain), float(known.pick_up.strain_standard_uncertainty)
+    if not spread > 0:
+        return known
+    last = float(events.cord_break.strain)
+    reached = known.strain + spread * ndtri(_QUANTILES)[:, None]
+    later = predict_hose(design, np.clip(reached, at, last).ravel())
+    is_slack = known.strain <= at
+    parts = []
+    for load in (later.cord_share * later.tension, later.fill_pressure):
+        # at the break itself the curve has ended: the last load before it
+        whole = np.nan_to_num(load, nan=float(np.nanmax(load))).reshape(reached.shape)
+        parts.append(np.where(is_slack, np.sqrt(np.mean(whole**2, axis=0)), 0.0))
+    tension, pressure = (
+        np.concatenate([one, part[None]])
+        for one, part in zip(
+            (known.tension_contribution, known.fill_pressure_contribution), parts, strict=True
+        )
+    )
+    return replace(
+        known,
+        source=(*known.source, PICK_UP),
+        tension_contribution=tension,
+        fill_pressure_contribution=pressure,
+        tension_standard_uncertainty=_together(tension),
+        fill_pressure_standard_uncertainty=_together(pressure),
     )
 
 

@@ -153,13 +153,13 @@ def test_a_hose_of_which_nothing_is_stated_has_no_uncertainty_rather_than_none_a
 
 
 def test_contributions_add_in_squares_to_the_uncertainty(archive):
-    assert archive["uncertainty_source"].values.tolist() == list(UNCERTAIN)
+    assert archive["uncertainty_source"].values.tolist() == [*UNCERTAIN, "pick_up"]
     for name in ("tension", "fill_pressure"):
         parts = archive[f"{name}_contribution"].values[0]
         together = archive[f"{name}_standard_uncertainty"].values[0]
         np.testing.assert_allclose(np.sqrt((parts**2).sum(axis=0)), together, rtol=1e-12)
     # a steeper hose is softer, a stiffer rubber is not: contributions keep their sign
-    angle, modulus, _ = archive["tension_contribution"].values[0][:, -1]
+    angle, modulus, _, _ = archive["tension_contribution"].values[0][:, -1]
     assert angle < 0 < modulus
 
 
@@ -167,11 +167,11 @@ def test_sources_of_one_hose_are_nothing_to_another():
     other = predicted("other", uncertain={"outer_diameter": 1e-4})
     data = dataset(predicted(), other)
     assert data["uncertainty_source"].values.tolist() == [
-        "wrap_angle", "outer_diameter", "rubber_modulus", "cord_load_scale",
+        "wrap_angle", "outer_diameter", "rubber_modulus", "cord_load_scale", "pick_up",
     ]  # fmt: skip
     parts = data["tension_contribution"].values
     assert not parts[0, 1].any() and parts[1, 1].any()
-    assert not parts[1, [0, 2, 3]].any()
+    assert not parts[1, [0, 2, 3, 4]].any()
 
 
 def test_both_layers_share_the_uncertainty_of_their_diameter():

@@ -10,7 +10,7 @@ from reduction.prediction.cord_curve import CordCurve
 from reduction.prediction.hose_product import HoseDesign
 from reduction.prediction.hose_sensitivity import hose_sensitivity
 from reduction.prediction.hose_tension import find_events, predict_hose
-from reduction.prediction.hose_uncertainty import propagate_hose
+from reduction.prediction.hose_uncertainty import PICK_UP, propagate_hose, with_pick_up
 from reduction.record.errors import DataError, SettingsError
 
 INCH, PSI = 0.0254, 6894.757
@@ -104,6 +104,45 @@ def test_at_the_kink_it_is_not_and_that_is_marked():
     # on the slack side the angle moves nothing at first order
     assert found.tension_standard_uncertainty[1] == pytest.approx(0, abs=1e-9)
     assert sampled[2] > 100
+
+
+def test_slack_cords_may_bear_what_sampled_hoses_bear():
+    """Load and pressure by the energy of cords and rubber, written out here; cords of a power law.
+
+    The pressure was 0 +- 0 up to the strain of pick-up, where half of the hoses have one.
+    """
+    strain = np.linspace(0, 0.22, 45)
+    cord = CordCurve(strain, 2500 * strain**1.5)
+    design = dataclasses.replace(DESIGN, cord=cord, layer_diameter=(3.5 * INCH, 3.5 * INCH))
+    known = {"wrap_angle": np.radians(0.5), "cord_strain_scale": 0.0, "dead_length_share": 0.003}
+    at = float(find_events(design).pick_up.strain)
+    width = float(propagate_hose(design, [0.5], known).pick_up.strain_standard_uncertainty)
+    where = at + width * np.array([-2.0, -1.0, -0.5, -0.01])
+    found = with_pick_up(design, propagate_hose(design, where, known))
+    rng = np.random.default_rng(8)
+    angle, share = (
+        centre + spread * rng.standard_normal((N_HOSES, 1))
+        for centre, spread in ((DESIGN.wrap_angle, np.radians(0.5)), (0.05, 0.003))
+    )
+    stretch = 1 + where / (1 - share)
+    cord_stretch = np.sqrt((stretch * np.cos(angle)) ** 2 + np.sin(angle) ** 2 / stretch)
+    load = 2500 * np.maximum(cord_stretch - 1, 0) ** 1.5
+    around = 2 * np.pi * 3.5 * INCH * 34 / INCH  # both layers; cords times length over length
+    # T = dW/dl of W = around * W_cord(l_c)
+    cords = around * load * (stretch * np.cos(angle) ** 2 - np.sin(angle) ** 2 / (2 * stretch**2))
+    cords /= cord_stretch
+    # p dV = dW at constant length of the whole: n P sin^2 over the radius, both layers
+    pressure = 2 * 2 * load * (34 / INCH) * np.sin(angle) ** 2 / (stretch * cord_stretch)
+    pressure /= 3.5 * INCH
+    place = found.source.index(PICK_UP)
+    for own, true in (
+        (found.tension_contribution[place], cords),
+        (found.fill_pressure_standard_uncertainty, pressure),
+    ):
+        # the strain of pick-up is no straight line of the angle either
+        assert own == pytest.approx(np.sqrt(np.mean(true**2, axis=0)), rel=0.2)
+    above = with_pick_up(design, propagate_hose(design, [at + 0.1], known))
+    assert above.tension_contribution[-1] == 0
 
 
 def test_near_the_break_is_marked_and_beyond_it_is_nan():
