@@ -137,6 +137,8 @@ def _with_syrope(
             "--frequency, --mean-tension and --tension-amplitude",
         )
     shape, k1, k2 = _parts(working_curve)
+    if rated_break_strength is None and line.rated_break_strength > 0:
+        rated_break_strength = line.rated_break_strength
     greatest = parse_quantity(
         greatest_mean_tension, "force", rated_break_strength=rated_break_strength
     )

@@ -28,6 +28,7 @@ from reduction.lines.export_line import (
     CONTINUED,
     SEA_WATER,
     ExportLine,
+    about_mean,
     continued_tension,
     curve_from_zero,
     damping_words,
@@ -607,6 +608,9 @@ def _refuse_form(to: str, form: str | None, forms: tuple[str, ...]) -> None:
 _CLOSE = 0.05
 
 
+_OF_ONE_STIFFNESS = ("static-dynamic", "load-dependent", "library")
+
+
 def closeness_of(line: ExportLine, to: str, form: str | None) -> tuple[str, ...]:
     """What is said of the errors of a curve in a format."""
     if to not in _CODES:
@@ -614,7 +618,8 @@ def closeness_of(line: ExportLine, to: str, form: str | None) -> tuple[str, ...]
     code = _CODES[to]
     curve = code.forms[next(iter(code.forms)) if form is None else form]
     if curve == "none":
-        return ()
+        said = about_mean(line) if form in _OF_ONE_STIFFNESS else ""
+        return (said,) if said else ()
     found = (
         thin_curve(line.strain, line.tension, most=code.most_points)
         if curve == "points"

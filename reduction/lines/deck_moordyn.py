@@ -77,6 +77,7 @@ from reduction.lines.export_line import (
     CycleDamping,
     ExportLine,
     ThinnedCurve,
+    about_mean,
     continued_tension,
     damping_words,
     thin_curve,
@@ -315,6 +316,7 @@ def moordyn_files(line: ExportLine, stem: str, *, form: MoorDynForm = "table") -
         None,
         *_said(line),
         *_stiffness_words(part),
+        about_mean(line),
         *(() if form == "static-dynamic" else (_running_words(part),)),
         f"BA_d {plain_number(fast, 4)} N s: {_FAST_SHARE:g} of critical for segments of {apart:g} "
         "m, numerical, not measured; without it the integration grows",
@@ -342,7 +344,6 @@ def _stiffness_words(part: Viscoelasticity) -> tuple[str, ...]:
         f"behaves as N = K_1 tau = {plain_number(part.dashpot_coefficient, 6)} N s of the "
         f"Maxwell form",
         f"found at {part.holds}" if part.holds else "",
-        "a spring constant holds about a mean; the strain of the deck starts at zero tension",
     )
 
 
@@ -575,6 +576,7 @@ def _library(line: ExportLine) -> str:
         f"hydrodynamic coefficients: {water.source}",
         without_damping(line),
         f"holds for the diameter {1000 * diameter:.4g} mm only",
+        about_mean(line),
         f"found at {part.holds}" if part.holds else "",
         "the dynamic stiffness is K_ap at that frequency, since the library has no damping; "
         f"K_0 + K_1, that of fast cycles, is {plain_number(part.fast_stiffness, 6)} N"

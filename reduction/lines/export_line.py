@@ -720,6 +720,9 @@ def beside_dashpot(line: ExportLine) -> ExportLine:
     return replace(made, notes=(*line.notes, said))
 
 
+_CLOSE_TO_MEAN = 0.01  # of the mean tension, the limit of `--verify`
+
+
 def straight_cycle(line: ExportLine) -> _StraightCycle | None:
     """The cycle of a line about its mean; None where none is known.
 
@@ -777,6 +780,40 @@ def without_damping(line: ExportLine) -> str:
         f"no damping in this form: the hysteresis energy of a cycle, "
         f"{plain_number(cycle.hysteresis_energy, 4)} J/m at {cycle.holds}, is NOT included; K_ap"
         f" of {of} is {plain_number(stiffness, 6)} N"
+    )
+
+
+def about_mean(line: ExportLine) -> str:
+    """Where a line of constant stiffness is at its mean tension; nothing without a mean tension.
+
+    Examples
+    --------
+    >>> strain = np.linspace(0.0, 0.06, 61)
+    >>> part = Viscoelasticity(800e3, 1500e3, 840e3, mean_tension=20e3)
+    >>> line = ExportLine("a", strain, 400e3 * strain + 6e6 * strain**2, "mean", (0, 0.06),
+    ...                   sources=("none",), viscoelasticity=part)
+    >>> print(about_mean(line)[-67:])
+    at the strain of the curve the tension is 33 percent above the mean
+    """
+    part = line.viscoelasticity
+    if part is None or not part.mean_tension > 0:
+        return ""
+    strain, tension, _ = curve_from_zero(line.strain, line.tension)
+    if part.mean_tension > tension[-1]:
+        return ""
+    of_curve = float(np.interp(part.mean_tension, tension, strain))
+    of_spring = part.mean_tension / part.static_stiffness
+    share, off = 1 + of_curve - of_spring, of_curve / of_spring - 1
+    said = (
+        f"a spring constant holds about a mean: {plain_number(part.mean_tension, 6)} N is at "
+        f"strain {of_curve:.6g} of the curve, and at {of_spring:.6g} of this line"
+    )
+    if abs(off) < _CLOSE_TO_MEAN or not share > 0:
+        return said
+    return (
+        f"{said}. Multiply the length of your line and all numbers of EA and BA by {share:.6g} "
+        f"and divide the mass by it, or at the strain of the curve the tension is "
+        f"{plain_number(100 * abs(off), 2)} percent {'above' if off > 0 else 'below'} the mean"
     )
 
 

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from export_lines import constant, line
@@ -26,6 +28,9 @@ def test_working_curves_are_stated_and_the_rest_is_of_the_three_parameters():
     assert found.fast_damping == pytest.approx(0.2 * np.sqrt(2300 * 0.5))
     assert "stated at the export" in made.sources[-1]
     assert _with_syrope(one, "LINEAR, 0.2", "400 N", form="syrope").syrope.k2 == 0
+    own = replace(one, rated_break_strength=1000.0)
+    share = _with_syrope(own, "LINEAR, 0.2", "40 %RBS", form="syrope").syrope
+    assert share.greatest_mean_tension == 400.0
 
 
 @pytest.mark.parametrize(

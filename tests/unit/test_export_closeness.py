@@ -1,3 +1,5 @@
+import re
+
 import numpy as np
 import pytest
 from export_lines import constant, line
@@ -32,3 +34,42 @@ def test_where_no_curve_is_thinned_nothing_is_said():
     tables = [to for to in FORMATS if closeness_of(line(), to, None) == ()]
     # a line of RAFT is a straight one
     assert tables == [to for to in FORMATS if to not in FORMS or to == "raft"]
+
+
+@pytest.mark.parametrize(
+    ("to", "form"),
+    [("moordyn", "static-dynamic"), ("openfast", "static-dynamic"), ("moorpy", "library")],
+)
+def test_a_line_of_one_stiffness_says_how_it_gets_its_mean_tension(to, form, tmp_path):
+    """T = a e + b e^2 has 20 kN at 1/30, and the tangent there, 800 kN, at 1/40.
+
+    With the length, and the stiffness, f times as large the spring is at rest where the tangent
+    meets zero: L f (1 + T / (f K_0)) = L (1 + 1/30), so that f = 1 + 1/30 - 1/40.
+    """
+    strain = np.linspace(0.0, 0.06, 601)
+    rope = line(
+        strain=strain,
+        tension=400e3 * strain + 6e6 * strain**2,
+        viscoelasticity=constant(
+            static_stiffness=800e3, dynamic_stiffness=1500e3, mean_tension=20e3
+        ),
+        rated_break_strength=100e3,
+    )
+    (said,) = closeness_of(rope, to, form)
+    *_, path = export_line(rope, to, tmp_path / "x.dat", form=form)
+    bare = " ".join(path.read_text().replace("#", " ").split())
+    assert said in bare
+    share = float(re.search(r"BA by ([\d.]+) and divide", said)[1])
+    assert share == pytest.approx(1 + 1 / 30 - 1 / 40, abs=5e-6)
+    assert "33 percent above the mean" in said
+
+
+def test_a_line_that_is_straight_from_zero_has_nothing_to_correct():
+    strain = np.linspace(0.0, 0.06, 61)
+    straight = line(
+        strain=strain,
+        tension=2e4 * strain,
+        viscoelasticity=constant(mean_tension=800.0),
+    )
+    (said,) = closeness_of(straight, "moordyn", "static-dynamic")
+    assert "Multiply" not in said
