@@ -150,7 +150,8 @@ class _CycleDifference:
 class _Validation:
     """Comparison error against what measurement and prediction are uncertain by.
 
-    Arrays have the shape (n_strain,), NaN where nothing was compared. [N]
+    Arrays have the shape (n_strain,), NaN where nothing was compared. [N]  ``median_limit`` and
+    ``uncertainty_share`` are of the strains at which a load is predicted.
     """
 
     input_standard_uncertainty: Floats
@@ -163,6 +164,7 @@ class _Validation:
     chi_square_freedom: int
     chi_square_probability: float
     uncertainty_share: float
+    median_limit: float
     agrees: bool
     is_informative: bool
     verdict: str
@@ -940,10 +942,9 @@ def verdict_words(
             f"standard uncertainty ({validation.coverage_factor:.1f} expected at most): the "
             f"prediction is {way} the test"
         )
-    limit = factor * validation.coverage_factor * validation.validation_uncertainty
     size = (
-        f"{np.nanmedian(limit):.3g} {unit} or {100 * validation.uncertainty_share:.2g} % of the "
-        f"{of} at the median"
+        f"{factor * validation.median_limit:.3g} {unit} or "
+        f"{100 * validation.uncertainty_share:.2g} % of the {of} at the median"
     )
     words = f"agrees within U, {size}"
     if validation.chi_square_probability < LEAST_PROBABILITY:
@@ -1133,9 +1134,12 @@ def validate_curve(
     total = np.hypot(of_test, of_model)
     factor, largest = judged.factor, judged.ratio
     place = int(np.flatnonzero(there)[judged.place])
-    with np.errstate(divide="ignore", invalid="ignore"):
-        shares = np.where(there & (test > 0), factor * total / test, np.nan)
-    share = float(np.nanmedian(shares)) if np.isfinite(shares).any() else float("nan")
+    # of slack cords there is no pressure for U to be a share of
+    is_loaded = there & (test > 0) & (model > 0)
+    limit, share = (
+        float(np.median(one)) if is_loaded.any() else float("nan")
+        for one in (factor * total[is_loaded], factor * total[is_loaded] / test[is_loaded])
+    )
     agrees = bool(largest <= factor)
     is_informative = bool(share <= largest_useful_share)
     found = _Validation(
@@ -1151,6 +1155,7 @@ def validate_curve(
         chi_square_freedom=judged.freedom,
         chi_square_probability=judged.probability,
         uncertainty_share=share,
+        median_limit=limit,
         agrees=agrees,
         is_informative=is_informative,
         verdict="",
