@@ -583,6 +583,8 @@ _DIFFERENCE = 1e-3  # of a plausible error, for derivatives
 
 _NEAR_BOUND = 1e-4  # of the width between the bounds
 
+_MOST_TRIALS = 100  # of a search that takes ten to thirty where it ends
+
 _POLISHING_STEPS = 30
 
 _TOLERANCE = 1e-10  # of a search
@@ -795,20 +797,25 @@ class _FitProblem:
         numbers, errors = np.split(first, [self.unit.size])
         inside = np.clip(numbers, self.low + margin, self.high - margin)
         tolerance = _ROUGH if is_rough else _TOLERANCE
-        # dogbox takes half the steps of the default to the same minima or lower ones
-        found = scipy.optimize.least_squares(
-            partial(self.residual, noise=noise),
-            np.concatenate([inside, errors]),
-            jac=partial(self.jacobian, noise=noise, is_rough=is_rough),
-            method="dogbox",
-            bounds=(
-                np.concatenate([self.low, np.full(k, -np.inf)]),
-                np.concatenate([self.high, np.full(k, np.inf)]),
-            ),
-            xtol=tolerance,
-            ftol=tolerance,
-            gtol=tolerance,
-        )
+        # dogbox takes half the steps of the default to the same minima or lower ones, but beside
+        # a kink of the curve it may go back and forth without an end
+        for method, most in (("dogbox", _MOST_TRIALS), ("trf", None)):
+            found = scipy.optimize.least_squares(
+                partial(self.residual, noise=noise),
+                np.concatenate([inside, errors]),
+                jac=partial(self.jacobian, noise=noise, is_rough=is_rough),
+                method=method,
+                bounds=(
+                    np.concatenate([self.low, np.full(k, -np.inf)]),
+                    np.concatenate([self.high, np.full(k, np.inf)]),
+                ),
+                xtol=tolerance,
+                ftol=tolerance,
+                gtol=tolerance,
+                max_nfev=most,
+            )
+            if found.success:
+                break
         if not found.success:
             raise FitError(
                 "the calibration did not come to an end",
