@@ -39,6 +39,7 @@ from typing import Any, Literal
 import numpy as np
 
 from reduction.lines.line_curve import own_half_width, shared_half_width, shared_of
+from reduction.lines.line_levels import SAME_LEVEL
 from reduction.lines.line_lookup import look_up
 from reduction.lines.lookup_product import DesignValues, LineSource
 from reduction.quantities.digits import plain_number
@@ -790,12 +791,19 @@ def _growth(
 ) -> tuple[float, str]:
     """Slope of K_0 + K_1 over the mean tension, zero where none can be written, and words. [1]."""
     surface = source.surfaces.get(_APPARENT if is_identified else _SPRING)
-    if surface is None or "mean_tension" not in source.factor_names:
-        return 0.0, "growth of the dynamic stiffness with the mean tension is not known"
-    place = source.factor_names.index("mean_tension")
-    low = max(float(surface.low[place]), levels.get("tension_amplitude", 0.0))
-    means = np.linspace(low, float(surface.high[place]), _MEANS)
-    over = {name: np.full(_MEANS, value) for name, value in levels.items()} | {
+    if surface is not None and "mean_tension" in source.factor_names:
+        place = source.factor_names.index("mean_tension")
+        low = max(float(surface.low[place]), levels.get("tension_amplitude", 0.0))
+        means = np.linspace(low, float(surface.high[place]), _MEANS)
+    else:
+        means = _tested_means(source, levels)
+    if means.size < _FEWEST_MEANS:
+        return 0.0, (
+            "growth of the dynamic stiffness with the mean tension is not known: it takes tests at "
+            f"{_FEWEST_MEANS} means with this frequency and amplitude"
+        )
+    n_means = means.size
+    over = {name: np.full(n_means, value) for name, value in levels.items()} | {
         "mean_tension": means
     }
     total = _totals(source, over, is_identified=is_identified)
@@ -803,14 +811,14 @@ def _growth(
     if stands.sum() < _FEWEST_MEANS:
         return 0.0, (
             "growth of the dynamic stiffness with the mean tension is not known: K_1 is found at "
-            f"{int(stands.sum())} of {_MEANS} means"
+            f"{int(stands.sum())} of {n_means} means"
         )
     means, total = means[stands], total[stands]
     slope, start = (float(one) for one in np.polyfit(means, total, 1))
     worst = float(np.abs(slope * means + start - total).max())
     words = (
         f"growth of the dynamic stiffness with the mean tension: {slope:.4g}, a straight line "
-        f"through {means.size} of {_MEANS} means over the tested ones, off by up to "
+        f"through {means.size} of {n_means} means over the tested ones, off by up to "
         f"{plain_number(worst, 3)} N, "
         f"{100 * worst / fast:.2g} percent of EA_d"
     )
@@ -822,6 +830,24 @@ def _growth(
             " the stiffness holds at this mean tension only"
         )
     return slope, words
+
+
+def _tested_means(source: LineSource, levels: Mapping[str, float]) -> Floats:
+    """Means of the tests that differ from these levels in the mean alone. [N]."""
+    means: list[float] = []
+    for one in source.levels:
+        if one.quantity != _APPARENT or "mean_tension" not in one.variables:
+            continue
+        others = [name for name in one.variables if name != "mean_tension"]
+        alike = np.all(
+            [
+                np.abs(one.at[:, one.variables.index(name)] / levels[name] - 1) <= SAME_LEVEL
+                for name in others
+            ],
+            axis=0,
+        )
+        means += one.at[alike, one.variables.index("mean_tension")].tolist()
+    return np.sort(np.array(means))
 
 
 def _totals(source: LineSource, over: Mapping[str, Floats], *, is_identified: bool) -> Floats:

@@ -8,7 +8,7 @@ from export_sources import LEVELS, REST, SPRING, TIME, loop, source, surface
 
 from reduction.lines.export_dynamics import line_dynamics
 from reduction.lines.export_sources import line_from_lookup
-from reduction.lines.lookup_product import LineCurve
+from reduction.lines.lookup_product import LineCurve, LineLevels
 from reduction.record.errors import DataError, SettingsError
 
 
@@ -131,6 +131,34 @@ def test_growth_that_would_make_the_stiffness_negative_is_not_written_and_said()
     assert found.part.fast_stiffness == pytest.approx(5e4)
     # K_1 of -30,000 N is no line
     assert "does not increase" in line_dynamics(source(growth=-1e3), LEVELS).part.growth
+
+
+def rope_of_levels(springs, *, also=()):
+    """A rope without an experiment: K_1 at means of 1, 2, 3 kN ..., and other levels beside."""
+    rows = [(0.3, 1000.0 * (k + 1), 700.0, spring) for k, spring in enumerate(springs)]
+    at = np.array([row[:3] for row in (*rows, *also)])
+    loops = np.array([loop(spring=row[3]) for row in (*rows, *also)])
+    size = len(at)
+    levels = tuple(
+        LineLevels(
+            quantity, ("frequency", "mean_tension", "tension_amplitude"), at, loops[:, place],
+            0.01 * loops[:, place], np.full(size, np.inf), tuple(f"C{k}" for k in range(size)),
+        )
+        for place, quantity in enumerate(("apparent_spring_constant", "hysteresis_energy"))
+    )  # fmt: skip
+    return source(surfaces={}, factor_names=(), levels=levels)
+
+
+def test_the_growth_of_a_rope_tested_at_three_means_is_that_of_its_tests():
+    """K_1 of 25, 30 and 35 kN at 1, 2 and 3 kN of mean: 5 N per N; another amplitude is left out."""
+    one = rope_of_levels([2.5e4, 3e4, 3.5e4], also=[(0.3, 2500.0, 900.0, 9e4)])
+    part = line_dynamics(one, LEVELS).part
+    assert part.dynamic_stiffness_per_mean_tension == pytest.approx(5.0, rel=1e-6)
+    assert part.fast_stiffness == pytest.approx(5e4, rel=1e-6)
+    assert part.dynamic_stiffness == pytest.approx(4e4, rel=1e-6)
+    two = line_dynamics(rope_of_levels([2.5e4, 3e4]), LEVELS).part
+    assert two.dynamic_stiffness_per_mean_tension == 0
+    assert "takes tests at 3 means with this frequency and amplitude" in two.growth
 
 
 def test_notes_of_the_surfaces_go_along():
