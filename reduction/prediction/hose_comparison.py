@@ -583,7 +583,11 @@ _DIFFERENCE = 1e-3  # of a plausible error, for derivatives
 
 _NEAR_BOUND = 1e-4  # of the width between the bounds
 
-_MOST_TRIALS = 100  # of a search that takes ten to thirty where it ends
+# methods, and the most trials: where a search ends it takes ten to thirty
+_SEARCHES: tuple[tuple[Literal["dogbox", "trf"], int | None], ...] = (
+    ("dogbox", 100),
+    ("trf", None),
+)
 
 _POLISHING_STEPS = 30
 
@@ -799,7 +803,7 @@ class _FitProblem:
         tolerance = _ROUGH if is_rough else _TOLERANCE
         # dogbox takes half the steps of the default to the same minima or lower ones, but beside
         # a kink of the curve it may go back and forth without an end
-        for method, most in (("dogbox", _MOST_TRIALS), ("trf", None)):
+        for method, most in _SEARCHES:
             found = scipy.optimize.least_squares(
                 partial(self.residual, noise=noise),
                 np.concatenate([inside, errors]),
