@@ -508,7 +508,8 @@ def _show_assembly(line: DeployedLine, output: CommandOutput) -> None:
     table = table_of(
         f"length [{length}]", f"tension [{force}]", f"standard uncertainty [{force}]",
         f"shared part [{force}]",
-        f"EA, +- 5 % [{force}]", f"least [{force}]", f"greatest [{force}]",
+        f"EA, +- {100 * assembly.span_share:.2g} % [{force}]",
+        f"least [{force}]", f"greatest [{force}]",
         f"load per tether [{force}]" if equal else f"greatest, least [{force}]",
         "tether strain [%]" if equal else "strains [%]", "remark", texts=0,
     )  # fmt: skip
@@ -544,7 +545,7 @@ def _show_assembly(line: DeployedLine, output: CommandOutput) -> None:
         )
     output.show(table)
     for number, state in enumerate(deployed.working, start=1):
-        _show_working(number, state, output)
+        _show_working(number, state, assembly.span_share, output)
     output.say_each("note", line.notes)
     output.say_each("source", (line.splices, *line.source.sources))
 
@@ -556,10 +557,11 @@ def _pair(values: Any, *, equal: bool) -> str:
     return f"{short(float(values.max()), 4)}, {short(float(values.min()), 4)}"
 
 
-def _stiffness_in_words(state: WorkingState, output: CommandOutput) -> str:
+def _stiffness_in_words(state: WorkingState, share: float, output: CommandOutput) -> str:
     """EA over the cycle with its interval, and the tests that it is from."""
     force, per_newton = output.unit("N")
-    span = "the cycle" if state.level.tension_amplitude else "+- 5 % of the length"
+    around = f"+- {100 * share:.2g} % of the length"
+    span = "the cycle" if state.level.tension_amplitude else around
     used = state.used
     if not used:
         return f"no EA: no test covers {LEAST_COVER:.0%} of {span}"
@@ -574,7 +576,7 @@ def _stiffness_in_words(state: WorkingState, output: CommandOutput) -> str:
     )
 
 
-def _show_working(number: int, state: WorkingState, output: CommandOutput) -> None:
+def _show_working(number: int, state: WorkingState, share: float, output: CommandOutput) -> None:
     force, per_newton = output.unit("N")
     length, per_metre = output.unit("m")
     point = state.point
@@ -582,7 +584,7 @@ def _show_working(number: int, state: WorkingState, output: CommandOutput) -> No
         f"working.{number}: {per_newton * float(point.mean_tension):.4g} {force} "
         f"+- {per_newton * _KNOWN * state.standard_uncertainty:.3g} (95 %, k = {_KNOWN:.2f}) at "
         f"{per_metre * float(point.total_length):.5g} {length}, tether strain "
-        f"{100 * float(state.strain.max()):.4g} %, {_stiffness_in_words(state, output)}"
+        f"{100 * float(state.strain.max()):.4g} %, {_stiffness_in_words(state, share, output)}"
     )
     if state.level.tension_amplitude:
         told += f"; cycles {per_newton * state.low:.4g} to {per_newton * state.high:.4g} {force}"

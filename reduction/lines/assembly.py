@@ -283,6 +283,12 @@ class _AssemblyCurve:
         """Of the tension by what is shared with others, all errors together. [N]."""
         return np.asarray(np.sqrt(np.sum(self.contribution**2, axis=0)))
 
+    @property
+    def span_share(self) -> float:
+        """Share of a length to each side of the cycle whose EA stands beside a node. [1]."""
+        longer = float(self.total_length[-1] / self.total_length[0]) - 1
+        return min(_SPAN, longer / _LEAST_SPANS)
+
     def tension_at(self, total_length: ArrayLike) -> Floats:
         """Tension [N] at a length [m]; zero where it is slack, NaN beyond the curves."""
         at = np.asarray(total_length, dtype=np.float64)
@@ -621,8 +627,9 @@ def _worst_sharing(
     return _LoadSharing(load, load / n_tethers, rows[0], rows[1], _tension_at_slack(assembly))
 
 
-_SPAN = 0.05
-"""Share of a length to each side over which a secant is taken where no amplitude is stated."""
+_SPAN, _LEAST_SPANS = 0.05, 10
+"""Share of a length to each side over which a secant is taken where no amplitude is stated, and
+how many of them are in a curve: a rope breaks before it is 20 % longer."""
 
 
 @dataclass(frozen=True)
@@ -680,7 +687,7 @@ class WorkingState:
         Of the tension at this length: both parts, of the curve by itself, and of what its tests
         share with others. [N]
     low, high : float
-        Ends of the cycle: as asked, or 5 % of the length to each side without an amplitude. [N]
+        Ends of the cycle: as asked, or without an amplitude those of the span about it. [N]
     secant_spring_constant, least_spring_constant, greatest_spring_constant : float
         EA over the cycle, and the ends of its interval; NaN where no test covers it. [N]
     stiffness : float
@@ -737,8 +744,8 @@ class WorkingState:
 class _DeployedAssembly:
     """An assembly and its work; arrays have the shape (n,) of the nodes of its curve.
 
-    ``stiffness`` is of cycles of 5 % of the length to each side of a node, ``tests`` are what it
-    is from.
+    ``stiffness`` is of cycles of the span about a node, 5 % of the length to each side or a tenth
+    of how far the curve stretches, ``tests`` are what it is from.
     """
 
     assembly: _AssemblyCurve
@@ -885,9 +892,9 @@ def _loaded_tests(
 
 
 def _span_loads(assembly: _AssemblyCurve, length: Floats) -> tuple[Floats, Floats]:
-    """Tensions at 5 % of a length to each side of it, cut off at the ends of the curve. [N]."""
-    low = np.maximum((1 - _SPAN) * length, assembly.total_length[0])
-    high = np.minimum((1 + _SPAN) * length, assembly.total_length[-1])
+    """Tensions at the ends of a span about a length, cut off at the ends of the curve. [N]."""
+    low = np.maximum((1 - assembly.span_share) * length, assembly.total_length[0])
+    high = np.minimum((1 + assembly.span_share) * length, assembly.total_length[-1])
     return assembly.tension_at(low), assembly.tension_at(high)
 
 

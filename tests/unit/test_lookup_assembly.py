@@ -6,6 +6,7 @@ from reduction.lines.assembly import (
     SeriesPart,
     _assemble,
     _equal_tethers,
+    _span_loads,
     _Tether,
     _unequal_tethers,
 )
@@ -38,6 +39,18 @@ def test_a_rope_in_line_is_a_curve_and_ends_the_assembly_where_it_ends():
     assert assembly.length_at(150.0) == pytest.approx(1.75 + 10.5)
     assert assembly.tension[-1] <= 300
     assert assembly.tension[-1] == pytest.approx(300, rel=0.01)
+
+
+def test_a_cycle_about_a_length_is_a_small_part_of_the_curve_of_a_rope_too():
+    """T = 4e5 e + 6e6 e^2 to 6 %: 5 % to each side was the whole curve, at every length."""
+    law = curve_of(lambda at: 4e5 * at + 6e6 * at**2, low=0.001, high=0.06, n=600)
+    model = StrainModel("T", "gauge-length", {"reference_position": 50.0, "gauge_length": 50.0})
+    assembly = _assemble([_Tether(law, model)])
+    low, high = (float(one) for one in _span_loads(assembly, np.array(50 * 1.02)))
+    slope = 50 * (high - low) / (2 * assembly.span_share * 50 * 1.02)
+    assert slope == pytest.approx(4e5 + 12e6 * 0.02, rel=1e-3)
+    # a tether that stretches to three times its length keeps its 5 %
+    assert _assemble([spring(high=2.0)]).span_share == 0.05
 
 
 def test_the_shortest_tether_is_taut_first_and_carries_most():
