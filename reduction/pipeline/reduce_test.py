@@ -1022,10 +1022,13 @@ def reduce_test(
         located, strain, tension, specimens, settings, history, kind=description.kind,
     )  # fmt: skip
     of_line = (
-        parts_of_line(cycle_parts["loops"], pulls, settings.cycles)
-        if pulls is not None and "loops" in cycle_parts
+        parts_of_line(
+            cycle_parts["loops"], pulls, settings.cycles,
+            strain=strain, tension=tension, cycles=cycles,
+        )
+        if pulls is not None and "loops" in cycle_parts and cycles is not None
         else {}
-    )
+    )  # fmt: skip
     of_pulls, refused_pulls = (
         pull_specimens(
             located, strain, tension, pull_conditions or PullConditions(), models=models,

@@ -26,6 +26,7 @@ from reduction.stages.three_parameter_line.hold_pairs import (
 from reduction.stages.three_parameter_line.line_model import refused_lines
 from reduction.stages.three_parameter_line.line_of_loops import identify_cycles, identify_run
 from reduction.stages.three_parameter_line.line_product import SlowPull, mean_of_rows
+from reduction.stages.three_parameter_line.loop_midline import tension_above_midline
 from reduction.stages.three_parameter_line.rope_programme import (
     CyclesToFailure,
     DynamicStiffness,
@@ -95,11 +96,25 @@ _BEYOND = 2.0  # of what is stated of K_0 without it
 
 
 def parts_of_line(
-    loops: Loops, pulls: Sequence[SlowPull | None], settings: CycleSettings
+    loops: Loops,
+    pulls: Sequence[SlowPull | None],
+    settings: CycleSettings,
+    *,
+    strain: Floats,
+    tension: Floats,
+    cycles: Cycles,
 ) -> dict[str, Any]:
     """Parameters of the three-parameter line, of each cycle and of the test, and notes."""
+    kept = slice(settings.break_in_cycles, None)
+    above = [
+        tension_above_midline(
+            one, load, first=cycles.first[kept], turn=cycles.branch_first[kept, 1],
+            last=cycles.last[kept],
+        )
+        for one, load in zip(strain, tension, strict=True)
+    ]  # fmt: skip
     constant, spread, notes = quasi_static_of_run(
-        loops, pulls, break_in_cycles=settings.break_in_cycles
+        loops, pulls, break_in_cycles=settings.break_in_cycles, above_midline=above
     )
     # the amplitudes of a wave that is no sine are not those of its fundamental
     reading = "amplitude" if settings.waveform == "sinusoidal" else "fundamental"

@@ -1092,6 +1092,12 @@ _OF_LINE: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "the mean tension of {mean:.4g} N is outside the range of the slow pull {pull}, {low:.4g}"
         " to {high:.4g} N",
     ),
+    "bent-loops": (
+        "note",
+        "the loops are bent as the slow pull is: K_0 is that of the pull at {at:.4g} N, the tension"
+        " of their midline at the mean strain, and not at the mean of peak and valley, {mean:.4g} N"
+        " ({effect:+.1%})",
+    ),
     "mean-tension-drifts": (
         "warning",
         "the mean tension drifts from {first:.4g} to {last:.4g} N over the run, which changes K_0"

@@ -412,6 +412,25 @@ class TestRun:
         assert constant == pytest.approx(slope_of_cubic([4000.0], CUBIC), rel=1e-4)
         assert uncertainty.shape == (1,) and notes == ()
 
+    def test_bent_loops_have_the_slope_of_the_pull_over_their_cycle(self):
+        """T = 4e5 e + 6e6 e^2, whose chord from e - .01 to e + .01 has the slope at e.
+
+        At e = 1/30 that is 800 kN, 20 kN; peak and valley are 20,600 N on average.
+        """
+        at = np.linspace(0.0, 0.07, 2000)
+        load = 4e5 * at + 6e6 * at**2 + np.random.default_rng(6).normal(0, 20, at.size)
+        pull = fit_pull(np.arange(2000.0), at, load, specimen="rope")
+        loops = loops_at([[20_600.0] * 4])
+        plain, _, _ = quasi_static_of_run(loops, [pull])
+        assert plain[0] == pytest.approx(np.sqrt(16e10 + 24e6 * 20_600), rel=2e-3)
+        bent, _, (note,) = quasi_static_of_run(loops, [pull], above_midline=[(600.0, 5.0)])
+        assert bent[0] == pytest.approx(800e3, rel=2e-3)
+        assert note.severity == "note" and "bent as the slow pull is" in str(note)
+        # of a bend that is not seen, or not known, nothing follows
+        for above in ((600.0, 400.0), (1.0, 0.01), (np.nan, np.nan)):
+            found, _, notes = quasi_static_of_run(loops, [pull], above_midline=[above])
+            assert found[0] == plain[0] and notes == ()
+
     def test_what_is_missing_is_nan_and_said(self):
         pull = fit_pull(*rising(), specimen="line 2")
         constant, _, notes = quasi_static_of_run(

@@ -1,0 +1,48 @@
+"""The midline of a loop at its mean strain, of loops whose spring is known."""
+
+import numpy as np
+import pytest
+
+from reduction.stages.three_parameter_line.loop_midline import tension_above_midline
+
+N, CYCLES = 60, 8
+PHASE = np.arange(N * CYCLES + 1) * 2 * np.pi / N
+FIRST = np.arange(CYCLES) * N
+
+
+def found(strain, tension):
+    return tension_above_midline(strain, tension, first=FIRST, turn=FIRST + N // 2, last=FIRST + N)
+
+
+@pytest.mark.parametrize("bend", [0.0, 6e6])
+@pytest.mark.parametrize("tau", [0.0, 0.3, 2.0])
+def test_the_spring_of_a_driven_line_is_found(bend, tau):
+    """K_1 and tau beside 20 kN + 8e5 e + c e^2, steady at 0.2 Hz, in closed form; noise of 10 N."""
+    amplitude, turned = 0.009, 2j * np.pi * 0.2 * tau
+    wave = -amplitude * np.exp(1j * PHASE)
+    beside = (7e5 * turned / (1 + turned) * wave).real
+    spring = 20e3 + 8e5 * wave.real + bend * wave.real**2
+    tension = spring + beside + np.random.default_rng(4).normal(0, 10, PHASE.size)
+    above, u = found(1 / 30 + wave.real, tension)
+    cycle = (spring + beside)[:N]
+    assert above == pytest.approx((cycle.max() + cycle.min()) / 2 - 20e3, abs=15.0)
+    assert 1 < u < 15
+
+
+def test_a_line_that_is_driven_by_its_load_has_the_bend_in_its_strain():
+    """The strain of T = 4e5 e + 6e6 e^2 under 20 +- 6 kN: its mean is not that of 20 kN."""
+    tension = 20e3 - 6e3 * np.cos(PHASE)
+    strain = (-4e5 + np.sqrt(16e10 + 24e6 * tension)) / 12e6
+    middle = (strain.max() + strain.min()) / 2
+    above, _ = found(strain, tension)
+    assert above == pytest.approx(20e3 - (4e5 * middle + 6e6 * middle**2), rel=1e-3)
+
+
+def test_too_few_cycles_or_samples_say_nothing():
+    rows = slice(0, 2)
+    few = tension_above_midline(
+        PHASE, PHASE, first=FIRST[rows], turn=FIRST[rows] + 9, last=FIRST[rows] + N
+    )
+    assert np.isnan(few).all()
+    short = tension_above_midline(np.cos(PHASE), PHASE, first=FIRST, turn=FIRST + 3, last=FIRST + 8)
+    assert np.isnan(short).all()
