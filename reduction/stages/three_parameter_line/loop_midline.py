@@ -9,7 +9,13 @@ the one over which the cycle goes.  A loop shows its own bend,
           s = (\varepsilon - \bar\varepsilon) / \varepsilon_a
 
 with plus on the rising branch: :math:`a_0` is the tension of the spring, at which its slope is
-that of its chord over the cycle, to third order.
+that of its chord over the cycle, to third order.  K_0 "must be calculated at the mean load level"
+and be used "for small perturbations around that mean load" ([1]_); this is what a large one takes.
+
+References
+----------
+.. [1] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
+   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.4.2, 4.4.3 and App. D.
 """
 
 from __future__ import annotations
