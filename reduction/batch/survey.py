@@ -38,7 +38,7 @@ from reduction.stages.load_at_slack import (
     rises_with_stretch,
     stands_at_slack_length,
 )
-from reduction.stages.moduli.cycle_alignment import jump_of_mean
+from reduction.stages.moduli.cycle_alignment import jump_of_mean, time_with_hidden
 from reduction.stages.standstills import median_step
 from reduction.stages.strain.tape_and_crosshead import (
     TAPE_UNCERTAINTY,
@@ -399,13 +399,14 @@ def _slips_of_step(located: Located, plan: TestPlan) -> list[tuple[float, Note]]
         return sums / (last - first), (most - least) / 2
 
     time, length = located.record.time[first], of_cycles(located.position)
+    counted = time_with_hidden(time, cycles.number[break_in:])
     found = []
     for name, tension in zip(plan.specimens, located.tension, strict=True):
         load = of_cycles(tension)
         for what, (mean, half), (other, reach) in (
             ("position", length, load), ("tension", load, length),
         ):  # fmt: skip
-            jump = jump_of_mean(time, mean, other, reach / half, half)
+            jump = jump_of_mean(counted, mean, other, reach / half, half)
             if jump is not None:
                 told = note(
                     "slipped-in-earlier-step", name, step=plan.id, size=jump[1], what=what,

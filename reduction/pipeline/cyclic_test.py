@@ -12,7 +12,7 @@ import numpy as np
 from reduction.pipeline.located_test import PULLED, Located, slips_of
 from reduction.record.arrays import run_blocks
 from reduction.record.errors import DataError, FitError
-from reduction.record.measurement import Bools, Floats, Specimen, areas_of
+from reduction.record.measurement import Bools, Floats, Integers, Specimen, areas_of
 from reduction.record.notes import Note, note
 from reduction.record.samples import finite_extremes, first_sample
 from reduction.record.settings import ReductionSettings
@@ -30,6 +30,7 @@ from reduction.stages.moduli.cycle_alignment import (
     is_shift_of_curve,
     jump_of_mean,
     strain_shifts,
+    time_with_hidden,
 )
 from reduction.stages.moduli.elastomer_laws import fit_elastomers
 from reduction.stages.moduli.first_loading import first_loading_curves, stress_at_strain
@@ -166,7 +167,9 @@ def _curves_of_cycles(
 _BESIDE, _OTHER_STIFFNESS = 10, 0.05
 
 
-def notes_on_jumps(loops: Loops, names: Sequence[str], *, break_in: int) -> list[Note]:
+def notes_on_jumps(
+    loops: Loops, names: Sequence[str], *, break_in: int, number: Integers | None = None
+) -> list[Note]:
     """Say where something slipped or parted, or a load cell was knocked, between two cycles."""
     found = []
     for index, name in enumerate(names):
@@ -177,6 +180,8 @@ def notes_on_jumps(loops: Loops, names: Sequence[str], *, break_in: int) -> list
                 loops.apparent_spring_constant, loops.strain_amplitude, loops.tension_amplitude,
             )
         )  # fmt: skip
+        if number is not None:
+            time = time_with_hidden(time, number[break_in:])
         for code, jump, amplitude in (
             ("strain-jumps", jump_of_mean(time, strain, tension, slope, of_strain), of_strain),
             (
@@ -186,17 +191,17 @@ def notes_on_jumps(loops: Loops, names: Sequence[str], *, break_in: int) -> list
             ),
         ):
             if jump is not None:
-                number, size = jump
-                beside = slope[max(number - _BESIDE, 0) : number], slope[number : number + _BESIDE]
+                place, size = jump
+                beside = slope[max(place - _BESIDE, 0) : place], slope[place : place + _BESIDE]
                 change = float(np.nanmedian(beside[1]) / np.nanmedian(beside[0]) - 1)
-                number += break_in
+                place += break_in
                 if abs(change) > _OTHER_STIFFNESS:
                     found.append(
-                        note("stiffness-changes-at-cycle", name, change=change, number=number)
+                        note("stiffness-changes-at-cycle", name, change=change, number=place)
                     )
                     break
-                share = abs(size) / float(np.median(amplitude))
-                found.append(note(code, name, size=size, number=number, effect=share))
+                share = abs(size) / float(np.nanmedian(amplitude))
+                found.append(note(code, name, size=size, number=place, effect=share))
     return found
 
 

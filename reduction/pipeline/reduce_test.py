@@ -1057,7 +1057,9 @@ def reduce_test(
                 is_sinusoidal=settings.cycles.waveform == "sinusoidal",
             ),
             *notes_on_jumps(
-                cycle_parts["loops"], record.specimens, break_in=settings.cycles.break_in_cycles
+                cycle_parts["loops"], record.specimens,
+                break_in=settings.cycles.break_in_cycles,
+                number=None if located.cycles is None else located.cycles.number,
             ),
         )
         if "loops" in cycle_parts

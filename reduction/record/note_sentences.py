@@ -570,6 +570,12 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "counted-without-stroke": (
         "note", "{n_cycles} machine-counted cycles have no stroke, first machine cycle {first}",
     ),
+    "stored-from-peak": (
+        "warning",
+        "the cycle_counter skips {n_cycles} times, and it counts at the peaks: a cycle that was"
+        " stored alone has no whole way up or down, and is left out. Let the machine count at the"
+        " valleys, or store two cycles in a row",
+    ),
     "counter-skips": (
         "note",
         "the log contains {n_cycles} of the machine cycles {first} to {last}: {after} follows"

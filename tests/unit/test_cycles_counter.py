@@ -8,6 +8,7 @@ import pytest
 from reduction.record.errors import DataError
 from reduction.record.settings import CycleSettings, PhaseSettings
 from reduction.stages.cycles import cycle_search
+from reduction.stages.cycles.loops import close_loops
 from reduction.stages.standstills import find_standstills
 
 
@@ -102,3 +103,67 @@ def test_a_count_may_begin_again_with_one_and_stand_at_zero_between():
     counter = np.array([1, 1, 1, 2, 2, 2, 0, 0, 1, 1, 1, -1])
     *_, number = _counted_cycles(counter, np.tile([0.0, 1, 0], 4))
     assert number.tolist() == [1, 2, 1]
+
+
+def stored_cycles(number, begins, *, per_cycle=64):
+    """Sine under load with creep, of which the machine stores the cycles of these numbers alone.
+
+    Amplitudes 500 N and 0.01, strain late by 0.05 rad: K_ap 50 kN, H = pi 500 N 0.01 sin(0.05).
+    """
+    phase = (number[:, None] - 1 + begins + np.arange(per_cycle) / per_cycle).ravel()
+    random = np.random.default_rng(2)
+    tension = 1000 - 500 * np.cos(2 * np.pi * phase) + 0.3 * random.standard_normal(phase.size)
+    strain = 0.05 - 0.01 * np.cos(2 * np.pi * phase - 0.05) + 0.02 * np.log10(1 + phase)
+    strain += 3e-6 * random.standard_normal(phase.size)
+    return phase, tension, strain, np.repeat(number, per_cycle)
+
+
+@pytest.mark.parametrize("is_rows", [False, True])
+@pytest.mark.parametrize("begins", [0, 0.25, 0.9])
+def test_cycles_stored_one_in_hundreds_are_not_mixed(begins, is_rows):
+    """Wherever the count changes, and whether or not the time shows what was not stored."""
+    number = np.concatenate([np.arange(1, 31), np.arange(500, 20001, 500)])
+    phase, tension, strain, counter = stored_cycles(number, begins)
+    time = np.arange(phase.size) / 64 if is_rows else phase
+    stands = find_standstills(time, strain, [tension], settings=PhaseSettings())
+    cycles = cycle_search.find_cycles(
+        time, strain, [tension], stands, cycle_counter=counter,
+        settings=CycleSettings(waveform="sinusoidal", control="load"),
+    )  # fmt: skip
+    loops = close_loops(
+        time, tension[None], strain[None], cycles, waveform="sinusoidal", control="load"
+    )
+    alone = cycles.number > 500
+    assert cycles.number[alone].tolist() == number[number > 500].tolist()
+    true_energy = np.pi * 500 * 0.01 * np.sin(0.05)
+    assert np.abs(loops.hysteresis_energy[0, alone] / true_energy - 1).max() < 0.01
+    assert np.abs(loops.apparent_spring_constant[0, alone] / 5e4 - 1).max() < 1e-3
+
+
+def test_blocks_of_cycles_are_not_mixed_where_the_count_skips():
+    """Five cycles in a thousand: the one across a skip is made of two that are not neighbours."""
+    number = (np.arange(0, 10000, 1000)[:, None] + np.arange(1, 6)).ravel()
+    phase, tension, strain, counter = stored_cycles(number, 0.5)
+    time = np.arange(phase.size) / 64
+    stands = find_standstills(time, strain, [tension], settings=PhaseSettings())
+    cycles = cycle_search.find_cycles(
+        time, strain, [tension], stands, cycle_counter=counter,
+        settings=CycleSettings(waveform="other", control="load"),
+    )  # fmt: skip
+    assert cycles.n_cycles == 40  # from valley to valley, four in each block
+    skips = np.flatnonzero(np.diff(counter) > 1)
+    for after in skips:
+        assert not ((cycles.first <= after) & (after < cycles.last)).any()
+
+
+def test_single_cycles_stored_from_peak_to_peak_are_left_out_with_a_reason():
+    number = np.concatenate([np.arange(1, 31), np.arange(500, 20001, 500)])
+    _, tension, strain, counter = stored_cycles(number, 0.5)
+    time = np.arange(tension.size) / 64
+    stands = find_standstills(time, strain, [tension], settings=PhaseSettings())
+    cycles = cycle_search.find_cycles(
+        time, strain, [tension], stands, cycle_counter=counter,
+        settings=CycleSettings(waveform="sinusoidal", control="load"),
+    )  # fmt: skip
+    assert cycles.number.max() <= 30
+    assert "stored-from-peak" in [one.code for one in cycles.notes]

@@ -570,6 +570,7 @@ def find_half_cycles(
     standstills: Standstills,
     *,
     band: float,
+    skips: Indices | None = None,
     is_sinusoidal: bool = False,
 ) -> _HalfCycles:
     """Keep the half cycles of runs that cycle, ends cut or left out.
@@ -586,6 +587,9 @@ def find_half_cycles(
         They end a run, unless they are dwells. [SI]
     band : float
         With which the reversals were found. [m] or [N]
+    skips : ndarray of int, shape (n_skips,), optional
+        Samples after which the log goes on with a later cycle, though its time does not show it.
+        They end a run, as a gap does. [1]
     is_sinusoidal : bool
         Whether every half cycle takes the same time.
 
@@ -641,9 +645,10 @@ def find_half_cycles(
     at, is_dwell = _dwells_of_cycles(values, reversals, standstills, band=band)
     longest = max(_GAP_SHARE * half_duration, _GAP_STEPS * median_step(time))
     gap_before, gap_after = _gaps_of_record(time, values, longest=longest)
+    apart = np.empty(0, dtype=np.intp) if skips is None else skips
     breaks = (
-        np.concatenate([standstills.first[~is_dwell], gap_before]),
-        np.concatenate([standstills.last[~is_dwell], gap_after]),
+        np.concatenate([standstills.first[~is_dwell], gap_before, apart]),
+        np.concatenate([standstills.last[~is_dwell], gap_after, apart + 1]),
     )
     # of the channel that stands still: the tension where it is held, else the position
     still = standstills.tension_tolerance

@@ -375,8 +375,8 @@ def _counted_cycles(
     late, so that a count may begin a little before the valley; the cycle is as counted,
     and its extremes are those the machine prints, while its branches run between the
     extremes.  It lasts until the first sample of the next count, unless the log has a gap between
-    them.  A count that changes after the valley begins at it, and one that an end of the log cuts
-    off is left out.  Missing samples are passed over.
+    them or the count skips.  A count that changes after the valley begins at it, and one that an
+    end of the log cuts off is left out.  Missing samples are passed over.
 
     Examples
     --------
@@ -388,8 +388,9 @@ def _counted_cycles(
     """
     change = _changes_of_count(cycle_counter)
     step = take_samples(time, change + 1) - take_samples(time, change)
-    goes_on = step < _GOES_ON * median_step(time)
     counts = take_samples(cycle_counter, np.concatenate([[0], change + 1]))
+    # where the count skips, the log does too, though its time may not show it
+    goes_on = (step < _GOES_ON * median_step(time)) & (np.diff(counts) <= 1)
     begin = change + 1
     length = np.diff(begin, prepend=0, append=time.size)
     reach = (np.minimum(length[:-1], length[1:]) * _LATE_COUNT).astype(np.intp)
@@ -450,6 +451,45 @@ def _change_at_valleys(
         above = (np.stack([begin, end]) - valley) / (peak - valley)
     above = above[:, np.isfinite(above).all(axis=0)]
     return bool(above.size) and float(np.median(above, axis=1).max()) < _NEAR_VALLEY
+
+
+def _begin_at_peaks(values: Floats, branch_first: Indices, branch_last: Indices) -> bool:
+    """Whether most counted cycles lack a good part of the rise to their peak, or of the fall."""
+    peak = take_samples(values, branch_last[:, 0])
+    ways = np.stack([
+        peak - take_samples(values, at) for at in (branch_first[:, 0], branch_last[:, 1])
+    ])  # fmt: skip
+    lesser, greater = np.sort(ways, axis=0)
+    return float(np.nanmedian(lesser / np.fmax(greater, np.finfo(np.float64).tiny))) < _OF_RANGE
+
+
+_OF_RANGE = 0.25
+
+
+def _skips_of_count(cycle_counter: Integers, reversals: Indices) -> Indices:
+    """Samples after which the count goes on by more than one, where each count lasts one cycle.
+
+    A machine that stores some of its cycles writes them one below the other, often with a time
+    that counts rows: the halves on both sides of a skip belong to two cycles.  A count that is
+    read more slowly than the cycles skips too, but lasts longer than they do.
+
+    Examples
+    --------
+    >>> counter = np.array([1, 1, 1, 1, 2, 2, 2, 2, 500, 500, 500, 500])
+    >>> _skips_of_count(counter, np.array([0, 2, 4, 6, 8, 10]))
+    array([7])
+    >>> _skips_of_count(counter, np.arange(12))
+    array([], dtype=int64)
+    """
+    change = _changes_of_count(cycle_counter)
+    count = take_samples(cycle_counter, np.concatenate([[0], change + 1]))
+    length = np.diff(change, prepend=-1, append=cycle_counter.size - 1)
+    cycle = 2 * float(np.median(np.diff(reversals)))
+    lasts_one = abs(float(np.median(length[count > 0])) - cycle) < _AS_LONG * cycle
+    return change[(np.diff(count) > 1) & (count[:-1] > 0) & lasts_one]
+
+
+_AS_LONG = 0.25  # of a cycle, by which a count may last longer or shorter
 
 
 def _are_apart(number: Integers, n_reversals: int) -> bool:
@@ -890,15 +930,18 @@ def _paired(
     found: tuple[Indices, float],
     *,
     is_sinusoidal: bool,
+    counter: Integers | None,
 ) -> _Paired:
     """Whole cycles between reversals."""
     none = np.empty((0, 2), dtype=np.intp)
     if found[0].size < 3:
         return _Paired(*found, none[:, 0], none, none, none[:, 0])
     reversals, jumps = _drop_jumps(values, found[0])
+    skips = none[:, 0] if counter is None else _skips_of_count(counter, reversals)
     halves = find_half_cycles(
-        time, values, reversals, standstills, band=found[1], is_sinusoidal=is_sinusoidal
-    )
+        time, values, reversals, standstills,
+        band=found[1], skips=skips, is_sinusoidal=is_sinusoidal,
+    )  # fmt: skip
     return _Paired(
         reversals, found[1], jumps, *whole_cycles(values, halves),
         notes=tuple(halves.notes), made=tuple(halves.made),
@@ -912,6 +955,7 @@ def _paired_cycles(
     standstills: Standstills,
     settings: CycleSettings,
     *,
+    counter: Integers | None,
     is_counted: bool,
 ) -> tuple[_Paired, list[Note]]:
     """Cycles by the band that is stated, or by one that is found; small ones where no others are.
@@ -919,8 +963,9 @@ def _paired_cycles(
     A tenth of most of the travel hides cycles that are small beside the pull to them.
     """
     pair = partial(
-        _paired, time, values, standstills, is_sinusoidal=settings.waveform == "sinusoidal"
-    )
+        _paired, time, values, standstills,
+        is_sinusoidal=settings.waveform == "sinusoidal", counter=counter,
+    )  # fmt: skip
     if settings.band is not None:
         found = pair((find_reversals(values, band=settings.band), settings.band))
     else:
@@ -1154,7 +1199,9 @@ def find_cycles(
     if counter is not None:
         counted = _counted_cycles(time, values, counter)
     at_valleys = counted is not None and _change_at_valleys(values, *counted[:4])
-    found, notes = _paired_cycles(time, values, standstills, settings, is_counted=at_valleys)
+    found, notes = _paired_cycles(
+        time, values, standstills, settings, counter=counter, is_counted=at_valleys
+    )
     reversals, band, jumps = found.reversals, found.band, found.jumps
     branch_first, branch_last, left_out = found.branch_first, found.branch_last, found.left_out
     if jumps.size:
@@ -1169,7 +1216,14 @@ def find_cycles(
     count = None
     if counted is not None:
         notes += _counter_notes(values, *counted[2:], first.size, band)
-    if counted is not None and at_valleys and _are_apart(counted[4], first.size):
+    stand_alone = at_valleys
+    skips = () if counter is None or at_valleys else _skips_of_count(counter, reversals)
+    if counted is not None and len(skips):
+        # a cycle that is stored alone has no other half, wherever in it the count changes
+        stand_alone = not _begin_at_peaks(values, *counted[2:4])
+        if not stand_alone:
+            notes.append(note("stored-from-peak", n_cycles=len(skips)))
+    if counted is not None and stand_alone and _are_apart(counted[4], first.size):
         first, last, branch_first, branch_last, count = counted
         counted_by = "machine counter"
     else:

@@ -632,24 +632,29 @@ def _are_parted(cycles: Cycles) -> bool:
     return bool(2 * np.count_nonzero(follows) < follows.size - 1)
 
 
-def _drift_between_rests(top: Floats, valley: Floats, ends: Floats) -> Floats:
+def _drift_between_rests(top: Floats, valley: Floats, ends: Floats, number: Integers) -> Floats:
     """Steady drift of a series over each cycle where a rest parts it from the next one.
 
     Of the middle between its turns, since a mean over the cycle holds more or less of its rests.
     The median of three steps beside it: a first cycle after a ramp says nothing of the others.
+    Between two cycles lies at least the time of those that the machine counted and did not store.
 
     Examples
     --------
     Cycles of 6 s every 10 s, of which each lies 2 higher than the last:
 
     >>> ends = np.array([[0.0], [1], [5], [6]]) + np.arange(0, 40, 10)
-    >>> print(_drift_between_rests(9 + 2 * np.arange(4.0), 2 * np.arange(4.0), ends))
+    >>> top, valley = 9 + 2 * np.arange(4.0), 2 * np.arange(4.0)
+    >>> print(_drift_between_rests(top, valley, ends, np.arange(4)))
     [1.2 1.2 1.2 1.2]
+    >>> print(_drift_between_rests(top, valley, ends, 100 * np.arange(4)))
+    [0.02 0.02 0.02 0.02]
     """
     middle, duration = (top + valley) / 2, ends[3] - ends[0]
     if middle.size < 2:
         return np.zeros(middle.size)
-    steps = np.diff(middle) / np.diff(ends[0])
+    apart = np.fmax(np.diff(ends[0]), np.diff(number) * duration[:-1])
+    steps = np.diff(middle) / apart
     beside = np.clip(np.arange(middle.size) - 1, 0, max(steps.size - 3, 0))
     rate = np.median([steps[np.minimum(beside + one, steps.size - 1)] for one in range(3)], axis=0)
     return np.asarray(np.nan_to_num(rate * duration, nan=0.0))
@@ -1033,7 +1038,7 @@ def _quantities_of_cycles(
     follows = touching(cycles)
     is_parted = waveform != "sinusoidal" and _are_parted(cycles)
     force_drift, strain_drift = (
-        _drift_between_rests(row[f"{name}_top"], row[f"{name}_begin"], ends)
+        _drift_between_rests(row[f"{name}_top"], row[f"{name}_begin"], ends, cycles.number)
         if is_parted
         else _mean_drift(np.stack([row[f"{name}_{part}"] for part in _OF_PERIOD]), ends)
         for name in ("force", "strain")
@@ -1073,6 +1078,8 @@ def _quantities_of_cycles(
                 row[f"{name}_missed"] = np.hypot(
                     row[f"{name}_missed"], _EITHER_WAY * np.abs(drift) / 4
                 )
+        # a cycle that is stored without the next one may end before its valley
+        ends_alone = np.append(cycles.first[1:] == cycles.last[:-1] + 1, False)
         turns = [row["force_top"], row["force_begin"], row["force_end_turn"]]
         peak, valley = np.max(turns, axis=0), np.min(turns, axis=0)
         (mean, amplitude), (mean_strain, strain_amplitude) = (
@@ -1082,7 +1089,7 @@ def _quantities_of_cycles(
                 row[f"{name}_end_turn"],
                 drift,
                 rise_share,
-                follows,
+                follows & ~ends_alone,
             )
             for name, drift, rise_share in (
                 ("force", force_drift, rise_shares[0]),
@@ -1335,6 +1342,7 @@ def _readings_at_turns(
     branch_first: Integers,
     branch_last: Integers,
     *,
+    ends: tuple[Integers, Integers],
     reach: tuple[int, int],
     turn: Turn,
     way: int,
@@ -1348,17 +1356,21 @@ def _readings_at_turns(
     turn that is rounded over samples the readings miss less.  What answers a corner of the channel
     that ``moved`` it, if it ``answers``, turns where its approach meets that corner: it may relax
     before the next reading.  A series of way -1 falls where the driven channel rises.
+    Between two cycles is a rest, unless they share a reading or are stored one below the other.
     """
     values = way * series
     on_rise, on_fall = reach
     begin, peak, end = branch_first[:, 0], branch_last[:, 0], branch_last[:, 1]
+    is_stored_alone = ends[0][1:] == ends[1][:-1] + 1
+    earliest = np.append(begin[:1], np.where(is_stored_alone, ends[0][1:], end[:-1]))
+    latest = np.append(np.where(is_stored_alone, ends[1][:-1], begin[1:]), end[-1:])
     # what creeps while its channel is held at the peak is farthest where that leaves
     after_peak = np.minimum(branch_first[:, 1] + on_fall, end)
 
     def extreme(of: np.ufunc, low: Integers, high: Integers) -> Floats:
         # within the cycle, and the rests before and after it
-        low = np.maximum(low, np.append(begin[:1], end[:-1]))
-        high = np.minimum(high, np.append(begin[1:], end[-1:]))
+        low = np.maximum(low, earliest)
+        high = np.minimum(high, latest)
         stop = int(end[-1])
         # the last window goes to the end of the series, unless another one begins at its end
         pairs = np.column_stack([low, high]).ravel()[: None if high[-1] < stop else -1]
@@ -2031,6 +2043,7 @@ def _measure(
                 series,
                 time,
                 *branches,
+                ends=(first, last),
                 reach=reach,
                 turn=turn,
                 way=way,

@@ -17,7 +17,7 @@ import scipy
 from numpy.typing import NDArray
 
 from reduction.record.errors import DataError
-from reduction.record.measurement import Floats
+from reduction.record.measurement import Floats, Integers
 from reduction.record.samples import empty_like, sample_blocks
 from reduction.stages.moduli.modulus_product import ModulusCurves
 
@@ -79,6 +79,25 @@ def strain_shifts(mean_strain: Floats, *, break_in_cycles: int = 0) -> tuple[Flo
         reference[row] = one[break_in_cycles:][known[break_in_cycles:]].mean()
         shift[row] = np.interp(number, number[known], one[known]) - reference[row]
     return shift, reference
+
+
+def time_with_hidden(time: Floats, number: Integers) -> Floats:
+    """Begin of each cycle, later by the cycles before it that were counted and not stored.
+
+    A machine that stores one cycle in hundreds may write a time that counts its rows.
+
+    Examples
+    --------
+    >>> time_with_hidden(np.array([0.0, 2, 4, 6]), np.array([1, 2, 500, 501])).tolist()
+    [0.0, 2.0, 998.0, 1000.0]
+    """
+    lasts, counted = np.diff(time), np.diff(number)
+    if not (counted > 1).any():
+        return time
+    next_ones = lasts[counted == 1]
+    period = float(np.median(next_ones if next_ones.size else lasts))
+    lasts = np.where(counted > 1, np.fmax(lasts, counted * period), lasts)
+    return time[0] + np.append(0.0, np.cumsum(lasts))
 
 
 _JUMP = 5.0  # over what the mean changes by in the same time between the cycles beside it
