@@ -408,7 +408,11 @@ def instruments_of(
     )
     return tuple(
         _with_readings(
-            replace(errors, splice_slip=(model.by_marks or model).splice_slip),
+            replace(
+                errors,
+                splice_slip=(model.by_marks or model).splice_slip,
+                position_of_scale_zero=survey.reference_length or 0.0,
+            ),
             campaign.specimens[model.specimen],
         )
         for errors, model in zip(of_channels, models, strict=True)

@@ -522,8 +522,8 @@ def _channel_contributions(
         )
         for index, (model, specimen, one) in enumerate(zip(models, specimens, errors, strict=True))
     ]
-    reach = _rms(take_samples(located.position, rows))
     first = errors[0]
+    reach = _rms(take_samples(located.position, rows) - first.position_of_scale_zero)
     is_length = located.record.position_is_length
     of_position = _of_channel(
         "crosshead_position" if is_length else "crosshead_displacement",

@@ -45,6 +45,9 @@ class InstrumentErrors:
         Relative, of the crosshead's scale. [1]
     position_offset : float
         Of the crosshead's zero. [m]
+    position_of_scale_zero : float
+        Where the scale of the crosshead reads zero: the length there of a displacement, 0 of a
+        length from pin to pin.  No uncertainty. [m]
     lag : float
         Of the time by which tension is logged late (or early) against position. [s]
     smoothed_over : float
@@ -92,6 +95,7 @@ class InstrumentErrors:
     tension_offset: float = 0.0
     position_gain: float = 0.0
     position_offset: float = 0.0
+    position_of_scale_zero: float = 0.0
     lag: float = 0.0
     smoothed_over: float = 0.0
     diameter: float = 0.0

@@ -275,13 +275,14 @@ def _position_parts(
 ) -> list[FieldPart]:
     """Gain and zero of the crosshead's scale, and slip of the splices; none for an extensometer.
 
+    A wrong scale is one of what it reads: of a displacement, not of the length at its zero.
     Where zero strain is a position of the log itself, a wrong zero is in both and leaves strain as
     it is, and a wrong scale is one of what lies between.  What splices let out is taken for strain
     of the free length.  Tests share what steps of the tension say of it: the same length, too
     small by the same ratio.
     """
     gain, offset = errors.position_gain, errors.position_offset
-    begin = 0.0
+    begin = errors.position_of_scale_zero
     if model.is_zero_logged:
         begin, offset = model.coefficients["reference_position"], 0.0
     lengths = {

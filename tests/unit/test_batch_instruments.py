@@ -34,13 +34,17 @@ def model_of(log, method):
     )  # fmt: skip
 
 
-def name_of(log, model):
+def instruments_by(log, model, **found):
     plan = TestPlan(
         id=log, kind="cyclic", files=((f"{log}.csv", "logger"),), specimens=("new",), order=None,
         control="position", waveform="triangular", target_strain=(), attributes={},
         settings=ReductionSettings(), log=log, step_place=0,
     )  # fmt: skip
-    return instruments_of(CAMPAIGN, Survey(plan), [model])[0].strain_model
+    return instruments_of(CAMPAIGN, Survey(plan, **found), [model])[0]
+
+
+def name_of(log, model):
+    return instruments_by(log, model).strain_model
 
 
 def test_models_of_one_name_have_the_same_coefficients():
@@ -72,3 +76,9 @@ def test_tests_without_marks_of_their_own_share_what_is_pooled(method):
 )
 def test_a_name_says_specimen_method_and_the_test_whose_marks_they_are(log, method, name):
     assert name_of(log, model_of(log, method)) == name
+
+
+@pytest.mark.parametrize(("length", "zero"), [(None, 0.0), (3.7, 3.7)])
+def test_the_scale_of_a_displacement_reads_zero_at_its_reference_length(length, zero):
+    errors = instruments_by("T-1", model_of("T-1", "gauge-length"), reference_length=length)
+    assert errors.position_of_scale_zero == zero

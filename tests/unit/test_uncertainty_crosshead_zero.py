@@ -35,3 +35,16 @@ def test_a_crosshead_that_is_wrong_moves_strain_by_what_its_zero_does_not_share(
     np.testing.assert_allclose(moved, expected, rtol=1e-9, atol=1e-15)
     slope = found.strain_slope[0] if found.component else np.zeros(3)
     np.testing.assert_allclose(slope, np.gradient(expected, STRAIN), rtol=1e-9, atol=1e-12)
+
+
+def test_a_scale_is_wrong_by_a_share_of_the_displacement_it_reads():
+    """1 % of the travel from displacement zero, where the pins are a length apart."""
+    travel = LENGTH * STRAIN
+    expected = 0.01 * travel / LENGTH
+    model = StrainModel(
+        "rope", "gauge-length", {"reference_position": START, "gauge_length": LENGTH}
+    )
+    errors = InstrumentErrors("rope", position_gain=0.01, position_of_scale_zero=START)
+    found = error_field(errors, model, strain=STRAIN, tension=1e3 * STRAIN)
+    np.testing.assert_allclose(found.strain[0], expected, rtol=1e-9, atol=1e-15)
+    np.testing.assert_allclose(found.strain_slope[0], 0.01, rtol=1e-9)

@@ -97,7 +97,7 @@ def time_with_hidden(time: Floats, number: Integers) -> Floats:
     next_ones = lasts[counted == 1]
     period = float(np.median(next_ones if next_ones.size else lasts))
     lasts = np.where(counted > 1, np.fmax(lasts, counted * period), lasts)
-    return time[0] + np.append(0.0, np.cumsum(lasts))
+    return np.asarray(time[0] + np.append(0.0, np.cumsum(lasts)))
 
 
 _JUMP = 5.0  # over what the mean changes by in the same time between the cycles beside it
