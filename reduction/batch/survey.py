@@ -351,19 +351,30 @@ def _with_load_at_slack(
         if not campaign.specimens[one.subject].can_push
     ]  # fmt: skip
     jumps = _jumps_of_length(whole, campaign, plan, until=float(located.record.time[-1]))
-    record = replace(located.record, notes=(*notes, *jumps, *earlier, *located.record.notes))
+    of_record = [
+        one
+        for one in located.record.notes
+        # where an extensometer measures strain, no strain rests on the length
+        if not (one.code == "reference-length-elsewhere" and _is_measured(whole, campaign, plan))
+    ]
+    record = replace(located.record, notes=(*notes, *jumps, *earlier, *of_record))
     return replace(located, record=record, load_at_slack=tuple(found))
+
+
+def _is_measured(located: Located, campaign: Campaign, plan: TestPlan) -> bool:
+    """Whether strain is that of extensometers."""
+    method = plan.settings.strain.method
+    has_marks = any(name in campaign.marks for name in plan.specimens)
+    return located.record.measured_strain is not None and (
+        method == "extensometer" or (method is None and not has_marks)
+    )
 
 
 def _jumps_of_length(
     whole: Located, campaign: Campaign, plan: TestPlan, *, until: float
 ) -> list[Note]:
     """Say where the length that strain is read from jumps under load, up to the end of a test."""
-    measured, method = whole.record.measured_strain, plan.settings.strain.method
-    has_marks = any(name in campaign.marks for name in plan.specimens)
-    is_measured = measured is not None and (
-        method == "extensometer" or (method is None and not has_marks)
-    )
+    measured, is_measured = whole.record.measured_strain, _is_measured(whole, campaign, plan)
     found = {}
     for index, (name, tension) in enumerate(zip(plan.specimens, whole.tension, strict=True)):
         if campaign.specimens[name].can_push:

@@ -133,7 +133,8 @@ def test_a_reference_length_read_at_another_tension_is_noted():
     (note, _) = tuple(map(str, convert((log(at_zero), layout(slack))).notes))
     assert note == (
         "reference_length is stated at 0 N, but where displacement is first zero the tension of "
-        "new is 222.4 N"
+        "new is 222.4 N. If the displacement was set to zero under that preload, state "
+        'reference_tension = "222 N" beside reference_length; strain is then zero there'
     )
 
 
