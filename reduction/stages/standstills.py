@@ -659,9 +659,34 @@ def _dither_range(values: Floats) -> float:
     return max(_WIDER * float(np.median(np.ptp(windows, axis=1))), _QUANTA * quantum)
 
 
+def _code_of_advance(values: Floats) -> float:
+    """Step of a channel that stands between its codes more often than not; 0 of another.
+
+    An encoder without noise has differences that are mostly zero: a hold in which its controller
+    moves by a code would end there.  Codes are small beside the range; steps of weights are not.
+
+    Examples
+    --------
+    >>> slow = np.round(0.1 * np.arange(2000) / 5) * 0.002
+    >>> print(round(_code_of_advance(slow), 4), _code_of_advance(0.1 * np.arange(2000)))
+    0.002 0.0
+    """
+    steps = np.diff(_stretches(values), axis=1)
+    moves = steps != 0
+    alone = moves[:, 1:-1] & ~moves[:, :-2] & ~moves[:, 2:]
+    if not alone.sum() > moves[:, 1:-1].sum() / 2:
+        return 0.0
+    code = float(np.median(np.abs(steps[:, 1:-1][alone])))
+    low, high = finite_extremes(values)
+    return code if code < _FINE_CODE * (high - low) else 0.0
+
+
+_FINE_CODE = 1e-3  # of the range
+
+
 def _tolerances(values: Floats, stated: float | None) -> tuple[float, float]:
     """Range that is allowed inside a standstill, and what noise alone spans."""
-    noise = noise_range(values)
+    noise = max(noise_range(values), _QUANTA * _code_of_advance(values))
     return (noise, noise) if stated is None else (stated, min(noise, stated))
 
 

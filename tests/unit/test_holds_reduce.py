@@ -509,6 +509,21 @@ def test_the_steps_of_a_converter_are_no_slip_and_in_the_interval_of_the_initial
     assert any(one.code == "hold-tension-steps" for one in found.refusals)
 
 
+@pytest.mark.parametrize(("share", "is_refused"), [(0.003, False), (0.1, True)])
+def test_a_step_that_changes_no_number_refuses_none(share, is_refused):
+    """A crosshead that is moved by a code: the tension steps by a share of what the hold loses."""
+    fine, tension, (time, position, load) = superposed(
+        lambda t: np.clip(t / 5, 0, 1), 0.02, late=0.5, duration=90.0, seed=1
+    )
+    lost = np.interp(25.0, fine, tension) - np.interp(time[-1], fine, tension)
+    (found,) = reduce(time, position, load - np.where(time > 60, share * lost, 0.0))
+    assert any(one.code == "hold-tension-steps" for one in found.refusals) == is_refused
+    if not is_refused:
+        true = lost / np.interp(25.0, fine, tension)
+        spread = found.relaxation_drop_standard_uncertainty
+        assert abs(found.relaxation_drop - true) < 2 * spread
+
+
 @pytest.mark.parametrize(("codes", "is_late"), [(1, False), (3, True)])
 def test_a_load_in_coarse_steps_does_not_come_late_by_one_of_them(codes, is_late):
     """Two levels that differ by nothing may be rounded to codes one step apart."""

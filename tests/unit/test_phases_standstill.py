@@ -206,3 +206,18 @@ def test_a_rest_that_is_logged_more_slowly_than_the_cycles_is_found():
     assert found.start_time.tolist() == [0, 41]
     assert found.end_time.tolist() == [11, 45]
     assert found.is_rest.tolist() == [True, False]
+
+
+def test_a_hold_of_an_encoder_without_noise_does_not_end_where_the_servo_moves_by_codes():
+    """Ramp of 1.2 mm in 300 s, hold of 120 s; codes of 1/4800 mm, printed to five decimals."""
+    time = np.arange(0.0, 420.0, 0.01)
+    code = 1 / 4800
+    hunts = time % 4.8 > 2.9
+    moved = np.where(time < 304, 1, np.where(time > 336, -1, np.where(hunts, 1, -2)))
+    millimetres = np.where(time < 300, 0.004 * time, 1.2 + (moved + 0.01) * code)
+    position = np.round(code * np.floor(millimetres / code), 5) / 1000
+    tension = np.interp(time, [0, 300], [0, 30]) * np.exp(-np.maximum(time - 300, 0) / 1000)
+    stand = find_standstills(time, position, [tension], settings=PhaseSettings(), is_held=True)
+    assert stand.first.size == 1
+    assert abs(stand.start_time[0] - 300) < 0.5
+    assert stand.end_time[0] == time[-1]

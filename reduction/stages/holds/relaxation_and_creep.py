@@ -1037,8 +1037,11 @@ def _at_one_length(hold: Hold, ends: _Ends) -> tuple[Hold, float]:
     return replace(hold, tension=kept), float(np.hypot(MOTION_KNOWN_TO * abs(worth), of_begin))
 
 
-def _step_reason(hold: Hold) -> Note | None:
-    """Name a step of tension inside the hold, where there is one."""
+def _step_reason(hold: Hold, ends: _Ends) -> Note | None:
+    """Name a step of tension inside the hold, where there is one that could change a number.
+
+    A crosshead that is moved by a code of its encoder makes one that the interval holds.
+    """
     if hold.time.size < FEWEST_SAMPLES or not median_step_reaches(
         hold.time, 3, _longest_step(hold.time)
     ):
@@ -1057,6 +1060,10 @@ def _step_reason(hold: Hold) -> Note | None:
     if not steps:
         return None
     largest = max(steps, key=lambda step: abs(step.size))
+    lost = abs(ends.initial - ends.final)
+    of_drop = np.nan_to_num(ends.drop_uncertainty * abs(ends.initial))
+    if abs(largest.size) < max(_MOTION_WORTH * lost, of_drop / 2):
+        return None
     when = hold.time[largest.onset * size] - hold.start_time
     return note("hold-tension-steps", step=float(largest.size), time=float(when))
 
@@ -1133,7 +1140,8 @@ def _reasons_against(hold: Hold, ends: _Ends, settings: HoldSettings) -> list[No
     more than three standard uncertainties; a crosshead that moves by so much that what is not
     known of it is more than a tenth of the drop (by the stiffness of the ramp); a log that peaks
     above the tension found at the end of the ramp; a step of tension that relaxation does not
-    explain (`find_steps`, false alarm 0.1 %).
+    explain (`find_steps`, false alarm 0.1 %), of more than 0.5 % of what is lost and half the
+    standard uncertainty of the drop.
 
     Examples
     --------
@@ -1158,7 +1166,7 @@ def _reasons_against(hold: Hold, ends: _Ends, settings: HoldSettings) -> list[No
         reasons.append(note("hold-slack", tension=ends.final, slack_tension=hold.slack_tension))
     elif ends.drop < -SIGNIFICANT * ends.drop_uncertainty:
         reasons.append(note("hold-tension-rises", rise=-ends.drop))
-    found = _motion_reason(hold, ends), _start_reason(hold, ends), _step_reason(hold)
+    found = _motion_reason(hold, ends), _start_reason(hold, ends), _step_reason(hold, ends)
     reasons += [reason for reason in found if reason]
     return reasons
 
