@@ -355,7 +355,7 @@ def _with_load_at_slack(
         one
         for one in located.record.notes
         # where an extensometer measures strain, no strain rests on the length
-        if not (one.code == "reference-length-elsewhere" and _is_measured(whole, campaign, plan))
+        if not (one.code.startswith("reference-length") and _is_measured(whole, campaign, plan))
     ]
     record = replace(located.record, notes=(*notes, *jumps, *earlier, *of_record))
     return replace(located, record=record, load_at_slack=tuple(found))

@@ -166,6 +166,11 @@ _OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "reference-length-elsewhere": (
         "warning",
         "reference_length is stated at {stated:.4g} N, but where displacement is first zero the"
+        " tension of {specimen} is {found:.4g} N",
+    ),
+    "reference-length-under-preload": (
+        "warning",
+        "reference_length is stated at {stated:.4g} N, but where displacement is first zero the"
         " tension of {specimen} is {found:.4g} N. If the displacement was set to zero under that"
         ' preload, state reference_tension = "{found:.3g} N" beside reference_length; strain is'
         " then zero there",

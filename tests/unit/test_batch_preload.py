@@ -30,6 +30,16 @@ specimens = ["bar"]
 """
 
 
+def loads_told(tmp_path, tension, at="", strain=""):
+    """What is said of the tension at displacement zero of a pull with that log."""
+    travel = 0.01 * np.arange(tension.size)
+    rows = np.column_stack([10 * travel, travel, tension, 100 * travel / 25])
+    np.savetxt(tmp_path / "log.csv", rows, "%.5f", ",", header="t,x,F,e", comments="")
+    (tmp_path / "campaign.toml").write_text(CAMPAIGN.format(at=at, strain=strain))
+    (survey,) = survey_log(load_campaign(tmp_path / "campaign.toml"), "T-1")
+    return [str(one) for one in survey.located.record.notes if "displacement is first" in str(one)]
+
+
 @pytest.mark.parametrize(
     ("at", "strain", "is_told"),
     [
@@ -39,12 +49,14 @@ specimens = ["bar"]
     ],
 )
 def test_a_zero_under_preload_is_told_where_strain_rests_on_it(tmp_path, at, strain, is_told):
-    time = np.arange(0.0, 60.0, 0.1)
-    travel = 0.01 * time
-    rows = np.column_stack([time, travel, 150 + 3000 * travel, 100 * travel / 25])
-    np.savetxt(tmp_path / "log.csv", rows, "%.5f", ",", header="t,x,F,e", comments="")
-    (tmp_path / "campaign.toml").write_text(CAMPAIGN.format(at=at, strain=strain))
-    (survey,) = survey_log(load_campaign(tmp_path / "campaign.toml"), "T-1")
-    told = [str(one) for one in survey.located.record.notes if "displacement is first" in str(one)]
+    told = loads_told(tmp_path, 150.0 + 30 * np.arange(60), at, strain)
     assert bool(told) == is_told
     assert all('state reference_tension = "150 N"' in one for one in told)
+
+
+def test_one_noisy_reading_is_no_preload(tmp_path):
+    """The first reading of a weak strip is 6 % of its greatest load, and within its noise."""
+    noise = 1.5 * np.random.default_rng(1).standard_normal(400)
+    assert loads_told(tmp_path, np.linspace(0, 50, 400) + noise - noise[0] + 3.0) == []
+    (told,) = loads_told(tmp_path, np.linspace(0, 50, 400) - 15)  # a zero of the load cell
+    assert "preload" not in told
