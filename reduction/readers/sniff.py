@@ -785,6 +785,18 @@ def sheets_with_tables(path: Path) -> list[str]:
     return [name for name, _ in bounded(_table_sheets, path, watch=Watch(path, _LIMITS))]
 
 
+_RATES = re.compile(
+    r"sampl|scan|\bHz\b|messrate|abtast|échantillon|muestreo|campion|bemonster|дискретизац|"
+    r"采样|サンプリング|샘플",
+    re.IGNORECASE,
+)
+"""Words of a preamble that state the time between rows."""
+
+_OWN_NUMBER = re.compile(r"(?<![A-Za-z_])\d")  # and not a channel: AI0
+
+_MOST_SAID = 3
+
+
 def sniff_layout(path: Path, *, name: str = "log", sheet: str | None = None) -> SniffedLayout:
     """Propose a layout for a log."""
     watch = Watch(path, _LIMITS)
@@ -801,6 +813,8 @@ def sniff_layout(path: Path, *, name: str = "log", sheet: str | None = None) -> 
     if "time" not in proposal.keys:
         lines.append(f'sample_interval = "{UNKNOWN}"  # or a time channel below')
         remarks.append("unknown: the time between rows, because no column looks like time")
+        said = [line for line in seen.preamble if _RATES.search(line) and _OWN_NUMBER.search(line)]
+        remarks += [f"unknown: the log says of it: {line}" for line in said[:_MOST_SAID]]
     lines += [f"[layouts.{name}.channels]", *proposal.lines, ""]
     return SniffedLayout("\n".join(lines), tuple(remarks), proposal.keys, seen.preamble)
 

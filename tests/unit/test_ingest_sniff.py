@@ -513,3 +513,11 @@ def test_the_travel_of_the_test_is_the_position(tmp_path, names, units, position
     found = proposed(path)["channels"]
     assert found["crosshead_position"]["column"] == position
     assert "strain.1" not in found and found["tension"]["1"]["unit"] == "N"
+
+
+def test_what_a_preamble_says_of_the_rate_is_quoted_where_no_column_is_time(tmp_path):
+    head = "DMC Data File\nSample Frequency (Hz): 10000\nUnits\tmm\tmN\n\nSample\tAI0\tAI1\n"
+    rows = "".join(f"{row}\t{row / 7:.4f}\t{row / 3:.4f}\n" for row in range(40))
+    (tmp_path / "a.ddf").write_text(head + rows)
+    said = [one for one in sniff_layout(tmp_path / "a.ddf").remarks if "the log says" in one]
+    assert said == ["unknown: the log says of it: Sample Frequency (Hz): 10000"]
