@@ -160,3 +160,20 @@ def test_noise_of_strain_does_not_pull_in_the_ends_of_a_rise():
     # 10.8 with the curve of single samples
     assert np.sqrt(np.mean(np.square(away))) < 1.7
     assert abs(np.mean(away)) < 1.0
+
+
+def test_a_knee_at_the_begin_says_nothing_of_the_scatter_behind_it():
+    """A metal bar, 200 and 15 kN, noise of 1 N: windows of eight samples behind the knee."""
+    strain = np.linspace(0, 0.03, 300)
+    load = np.where(strain < 0.002, 2e5 * strain, 400 + 1.5e4 * (strain - 0.002))
+    share = []
+    for seed in range(12):
+        tension = load + np.random.default_rng(seed).normal(0, 1.0, strain.size)
+        curves = first_loading_curves(
+            strain[None], tension[None], area=[1.0], settings=ModulusSettings()
+        )
+        inside = (curves.strain_bin > 0.012) & (curves.strain_bin < 0.028)
+        off = curves.tangent_modulus[0, 0, inside] - 1.5e4
+        share.append(off / curves.tangent_modulus_standard_uncertainty[0, 0, inside])
+    # 0.5 where the residuals of the knee count for all windows
+    assert 0.8 < np.sqrt(np.nanmean(np.square(share))) < 1.25

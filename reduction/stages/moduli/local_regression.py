@@ -28,6 +28,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from math import ceil
 
 import numpy as np
 import scipy
@@ -427,6 +428,35 @@ def _window_sums(sums: Floats, n_window: int) -> Floats:
 
 _ALONE = 12  # degrees of freedom of a window that knows its own scatter
 
+_OTHER_SCATTER = 3.0  # of a variance with twelve degrees of freedom: once in sixty by chance
+
+
+def _variance_near(squares: Floats, freedom: Floats, *, n_window: int) -> Floats:
+    """Residual variance of so many windows around each one as have twelve degrees of freedom.
+
+    NaN where there are not so many.
+
+    Examples
+    --------
+    Windows of one bin with three degrees of freedom each, half of them with a tenth of the noise.
+
+    >>> squares = np.repeat([0.03, 3.0], 10)[None]
+    >>> print(_variance_near(squares, np.full((1, 20), 3.0), n_window=1)[0, [0, 5, 9, 15]].round(2))
+    [0.01 0.01 0.41 1.  ]
+    """
+    usual = freedom[freedom > 0]
+    if not usual.size:
+        return np.full(freedom.shape, np.nan)
+    half = n_window * ceil(_ALONE / float(np.median(usual))) // 2
+    sums = np.cumsum(np.pad([np.maximum(squares, 0.0), freedom], ((0, 0), (0, 0), (1, 0))), axis=-1)
+    n_bins = freedom.shape[-1]
+    low = np.clip(np.arange(n_bins) - half, 0, max(n_bins - 2 * half - 1, 0))
+    high = np.minimum(low + 2 * half + 1, n_bins)
+    total, free = sums[..., high] - sums[..., low]
+    # neighbouring windows share their samples
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(free >= _ALONE * n_window, total / free, np.nan)
+
 
 def fit_windows(moments: BranchMoments, *, minimum_count: int, is_alone: bool = False) -> LocalFits:
     r"""Slope and value of tension against strain at every bin centre.
@@ -474,7 +504,8 @@ def fit_windows(moments: BranchMoments, *, minimum_count: int, is_alone: bool = 
     cluster (their variance is below a quarter of an even spread), or where their
     mean lies further than an eighth of the window from the bin centre, as it does
     at the end of a branch. Residual variance is pooled over the windows of a curve, or, with
-    ``is_alone``, that of each window where it has twelve degrees of freedom: a knee or a break
+    ``is_alone``, that of each window where it has twelve degrees of freedom, else that of the
+    windows around it that have, where it is another by a factor of three: a knee or a break
     elsewhere on a single curve says nothing of it.
 
     Strain noise does not flatten the slope where samples lie closer than the noise,
@@ -532,6 +563,9 @@ def fit_windows(moments: BranchMoments, *, minimum_count: int, is_alone: bool = 
         variance = np.maximum(squares.sum(axis=-1, keepdims=True), 0.0) / total_freedom
         variance = np.where(total_freedom > 0, variance, np.nan)
         if is_alone:
+            near = _variance_near(squares, freedom, n_window=n_window)
+            is_other = (near < variance / _OTHER_SCATTER) | (near > _OTHER_SCATTER * variance)
+            variance = np.where(is_other, near, variance)
             variance = np.where(freedom >= _ALONE, np.maximum(squares, 0.0) / freedom, variance)
         slope = straight + bend * tilt
         slope_variance = variance * (per_s2 + tilt * tilt * per_bend)
