@@ -453,7 +453,9 @@ def _flow_regime(
         greatest_velocity=speed,
         keulegan_carpenter_number=number,
         reynolds_number=reynolds,
-        frequency_parameter=np.asarray(reynolds / number),
+        # Re / KC, which has no velocity in it
+        frequency_parameter=as_positive("outer_diameter", outer_diameter) ** 2
+        / (kinematic_viscosity * period),
         drag_to_inertia=_drag_to_inertia(
             number, drag_coefficient=drag_coefficient, inertia_coefficient=inertia_coefficient
         ),
@@ -1135,7 +1137,8 @@ def _error_words(used: str, found: _LoadExtremes, true: _LoadExtremes) -> list[s
     said = []
     for name in ("horizontal", "vertical"):
         own, right = (float(getattr(one, name).greatest) for one in (found, true))
-        if abs(own / right - 1) > _SMALL_ERROR:
+        # far below the surface nothing moves
+        if right > 0 and abs(own / right - 1) > _SMALL_ERROR:
             said.append(f"{100 * (own / right - 1):+.0f} % {name}")
     if not said:
         return []

@@ -763,6 +763,8 @@ def high_stokes_wave(
 
 _LEAST_HARMONIC = 1e-8  # of a cnoidal surface, over the largest
 
+_GREATEST_LOGIT = 600.0  # of m: beyond it the crests are solitary waves, hundreds of depths apart
+
 _MOST_HARMONICS = 100  # of a cnoidal wave: the time of its extremes goes with their cube
 
 
@@ -812,7 +814,9 @@ def cnoidal_wave(
         def miss(logit: float) -> float:
             return log(expit(logit) * ellipkm1(expit(-logit)) ** 2) - log(3 * ursell / 16)
 
-        return float(scipy.optimize.brentq(miss, -60.0, 600.0, xtol=1e-13))
+        if miss(_GREATEST_LOGIT) < 0:
+            raise _too_far_apart(2 * pi / number / water_depth)
+        return float(scipy.optimize.brentq(miss, -60.0, _GREATEST_LOGIT, xtol=1e-13))
 
     def speed_of(number: float) -> float:
         logit = parameter_of(number)
@@ -838,12 +842,7 @@ def cnoidal_wave(
     share = 2 * pi**2 / (expit(logit) * integral**2) * order * fall / (1 - fall**2)
     surface = wave_height * share
     if surface[-1] > _LEAST_HARMONIC * surface.max():
-        raise DataError(
-            "the crests are so far apart that the wave has too many harmonics",
-            found=f"a length of {2 * pi / number / water_depth:.4g} depths",
-            needed=f"at most {_MOST_HARMONICS} harmonics",
-            hint="Give a shorter period: a solitary wave does not change with it.",
-        )
+        raise _too_far_apart(2 * pi / number / water_depth)
     n_kept = 1 + int(np.flatnonzero(surface > _LEAST_HARMONIC * surface.max())[-1])
     surface, order = surface[:n_kept], order[:n_kept]
     _refuse_outside(elevation, water_depth, float(surface.sum()))
@@ -855,6 +854,15 @@ def cnoidal_wave(
         surface=surface,
         horizontal=horizontal,
         vertical=order * number * (water_depth + elevation) * horizontal,
+    )
+
+
+def _too_far_apart(length: float) -> DataError:
+    return DataError(
+        "the crests are so far apart that the wave has too many harmonics",
+        found=f"a length of {length:.4g} depths",
+        needed=f"at most {_MOST_HARMONICS} harmonics",
+        hint="Give a shorter period: a solitary wave does not change with it.",
     )
 
 
@@ -902,17 +910,17 @@ def stream_wave(
     order = np.arange(1, steady.surface.size + 1)
     # j B_j cosh(j k (z + d)) / cosh(j k d) without overflow, as its growing part
     speed = intrinsic / number / steady.speed * steady.velocity
-    level = order * number * max(depth + elevation, 0.0)
-    flat = order * steady.number
-    growing = speed * np.exp(level - flat) / (1 + np.exp(-2 * flat))
-    kept = np.flatnonzero(np.abs(growing) > _LEAST_OF_STREAM * np.max(np.abs(growing)))[-1] + 1
+    growing = speed * np.exp(order * number * elevation) / (1 + np.exp(-2 * order * steady.number))
+    size = np.abs(np.stack([steady.surface, growing]))
+    is_felt = np.any(size > _LEAST_OF_STREAM * size.max(axis=1, keepdims=True), axis=0)
+    kept = 1 + int(np.flatnonzero(is_felt)[-1])
     return _harmonics(
         frequency=2 * pi / wave_period,
         intrinsic=intrinsic,
         number=number,
         surface=(depth * steady.surface)[:kept].tolist(),
         speed=growing[:kept].tolist(),
-        height_above_bed=max(depth + elevation, 0.0),
+        height_above_bed=water_depth + elevation,
     )
 
 

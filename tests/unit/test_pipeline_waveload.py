@@ -232,3 +232,10 @@ def test_a_hose_as_wide_as_a_fifth_of_the_wave_is_told_to_scatter_it(predict):
     length *= 1 + (np.pi * HEIGHT / length) ** 2
     assert any(f"{100 * 4.5 / length:.0f} % of the wave length" in note for note in wide.notes)
     assert not any("scatters" in note for note in predict(LEAST_WAVE).notes)
+
+
+def test_far_below_the_surface_a_theory_has_no_error(predict):
+    deep = {"water_depth": 2500.0, "wave_height": 0.0023, "wave_period": 2.6, "elevation": -1500.0}
+    found = predict(LEAST_WAVE, **deep, wave_theory="stokes")
+    assert float(found.extremes.horizontal.greatest) == 0
+    assert not any("does not hold" in note for note in found.notes)

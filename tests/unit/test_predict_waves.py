@@ -305,6 +305,8 @@ def test_waves_that_a_theory_of_height_does_not_have(monkeypatch):
         cnoidal_wave(wave_period=1.0, **sea | {"wave_height": 0.1})
     with pytest.raises(DataError, match="crests are so far apart"):
         cnoidal_wave(wave_period=400.0, **sea)
+    with pytest.raises(DataError, match="crests are so far apart"):
+        cnoidal_wave(wave_period=43.3, **sea | {"wave_height": 0.058}, wave_number=2 * np.pi / 2e4)
     monkeypatch.setitem(sys.modules, "raschii", None)
     with pytest.raises(SettingsError, match=r"mooring-reduction\[waves\]"):
         high_stokes_wave(order=5, wave_period=4.0, **sea)
