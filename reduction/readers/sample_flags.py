@@ -935,7 +935,10 @@ def _missing(name: str, values: Floats) -> Bools:
 
 def _spikes(values: Floats, settings: QualitySettings, time: Floats) -> Bools:
     """Spikes, but for steps of a signal where a log goes on at another rate."""
-    noise, _ = _noise_of(values)
+    low, high = finite_extremes(values)
+    # what is less of the range changes no number, however little noise the channel has
+    least = _SPIKE_OF_RANGE * (high - low) / settings.spike_factor
+    noise = max(_noise_of(values)[0], least)
     found = _find_spikes(values, noise=noise, factor=settings.spike_factor)
     if count_samples(found):
         rows = np.flatnonzero(found)
@@ -946,6 +949,8 @@ def _spikes(values: Floats, settings: QualitySettings, time: Floats) -> Bools:
         found[rows[steps[:, -2] > _OTHER_RATE * steps[:, 1]]] = False
     return found
 
+
+_SPIKE_OF_RANGE = 1e-4
 
 _OTHER_RATE = 2.0
 

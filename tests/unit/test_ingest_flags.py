@@ -257,3 +257,13 @@ def test_a_coarse_converter_and_a_rest_are_no_repeated_readings():
     load = 200 + 100 * np.sin(0.7 * TIME) + RANDOM.normal(0, 0.3, TIME.size)
     for position in (np.round(slow, 2), np.round(slow, 3), np.minimum(slow, 4.2)):
         assert flagged(record(position=position, load=load)).n_samples == TIME.size
+
+
+@pytest.mark.parametrize(("dip", "spikes"), [(0.09, []), (0.9, [600])])
+def test_a_dip_of_less_than_a_ten_thousandth_of_the_range_is_no_spike(dip, spikes):
+    """A plateau that a good load cell reads to 4 mN: the dip is twenty times that."""
+    load = np.minimum(2 * np.arange(TIME.size), 1000.0)
+    load += np.random.default_rng(0).normal(0, 0.004, TIME.size)
+    load[600] -= dip
+    one = flagged(record(position=6 + 1e-3 * np.arange(TIME.size), load=load))
+    assert where(one.quality_flag[0], Quality.SPIKE) == spikes
