@@ -592,3 +592,21 @@ def test_the_way_from_the_last_valley_over_the_mean_to_slack_is_no_cycle(share):
     load += np.random.default_rng(2).normal(0, 0.3, at.size)
     found = find(at, load, waveform="sinusoidal")
     assert found.n_cycles == 12
+
+
+@pytest.mark.parametrize("behind", [0.1, 0.3])
+def test_a_sample_of_constant_rate_has_the_branch_that_moves_its_way(behind):
+    """Sharp corners ``behind`` a reading by that share of a step, in step with the log.
+
+    The greatest reading stands on the way down there, the least on the way up; labelled as the end
+    of the other branch, it would bring the tension of this one to it.
+    """
+    points = strokes(50, 12, half=1.0)
+    time, position = path(back([*LEAD, *points]), noise=0.0)
+    position = np.interp(time - 0.1 * (1 - behind), time, position)
+    cycles = find(time, position)
+    kept = cycles.is_in_trimmed_branch & (time > 51) & (time < 73)
+    up = np.mod(time - 0.1 * (1 - behind) - 50, 2) < 1
+    for name, way in (("ascending", up), ("descending", ~up)):
+        of_branch = kept & (cycles.branch == BRANCH_VALUES[name])
+        assert of_branch.sum() > 90 and way[of_branch].all()

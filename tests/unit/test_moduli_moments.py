@@ -167,3 +167,22 @@ def test_two_samples_cannot_make_a_slope():
     strain = np.linspace(1, 1.5, 9)
     with pytest.raises(DataError, match=r"needs more samples; found minimum_count 2"):
         fits_of(strain, strain, minimum_count=2)
+
+
+def test_the_levels_of_curves_of_few_samples_are_found_beside_their_slope():
+    """A parabola, seven samples a curve at other strains each, on levels that fall: no residual."""
+    n_curves, n_each = 12, 7
+    places = (np.arange(n_each) + np.mod(0.37 * np.arange(n_curves)[:, None], 1)) / n_each
+    strain = (1 + 0.5 * places).ravel()
+    curve = np.repeat(np.arange(n_curves), n_each)
+    tension = 1000 * strain + 400 * strain**2 - 3.0 * curve
+    grid = StrainGrid(low=1.0, width=0.02, n_bins=25, half_window=7)
+    moments, _ = accumulate_moments(
+        strain, tension, curve=curve, n_curves=n_curves, grid=grid, tension_reference=300.0
+    )
+    fits = fit_windows(moments.pooled(1), minimum_count=4)
+    known = np.isfinite(fits.slope[0])
+    assert known.sum() > 15
+    # across a bin tension rises by 35 N; of that, a few hundredths of a newton are taken for level
+    assert fits.slope[0, known] == pytest.approx(1000 + 800 * grid.centres[known], rel=2e-3)
+    assert np.sqrt(fits.slope_variance[0, known]).max() < 2.0

@@ -93,6 +93,18 @@ def test_a_slow_sine_has_the_modulus_of_its_law_or_says_what_its_window_misses(p
     assert np.nanmedian(spread / true) < (0.5 if per_cycle == 12 else 0.15)
 
 
+@pytest.mark.parametrize(("per_cycle", "bend", "least"), [(17.3, 0.4, 5e-3), (20.21, 0.25, 4e-3)])
+def test_a_slow_log_out_of_step_has_the_slope_that_all_its_cycles_show(per_cycle, bend, least):
+    """A curve that softens by e in ``bend``, on levels that fall: one cycle reads it unevenly."""
+    strain, cycles = slow_sine(per_cycle)
+    noise = np.random.default_rng(2).normal(0, 0.02, strain.size)
+    tension = 300 * (1 - np.exp((0.7 - strain) / bend)) - 0.3 * cycles.cycle_number + noise
+    curves = curves_of(strain, tension, cycles)
+    true = 300 / bend * np.exp((0.7 - curves.strain_bin) / bend)
+    error = curves.tangent_modulus * AREA / true - 1
+    assert np.sqrt(np.nanmean(error**2)) < least
+
+
 def test_branches_are_kept_apart(triangle):
     strain, cycles = triangle(per_cycle=200)
     down = cycles.branch == 2

@@ -1172,7 +1172,8 @@ def find_cycles(
     is of one amplitude and the other of the next is left out (`whole_cycles`). At a dwell the
     branches end where the crosshead arrives and begin where it leaves. A sample that two
     branches or cycles share is labelled with the later cycle and the earlier branch of a
-    cycle. Constant rate: `_constant_rate_span`; without a triangular waveform `_stroke_span`.
+    cycle, a peak with the later branch where only that has its rate (`_own_begin`).
+    Constant rate: `_constant_rate_span`; without a triangular waveform `_stroke_span`.
 
     Examples
     --------
@@ -1290,11 +1291,11 @@ def find_cycles(
         time, values, branch_first.ravel(), branch_last.ravel(), settings
     )
     notes += trim_notes
+    begin = _own_begin(branch_first, branch_last, start.reshape(-1, 2), stop.reshape(-1, 2)).ravel()
+    end = branch_last.ravel().copy()
+    end[:-1] = np.minimum(end[:-1], begin[1:] - 1)
+    start, stop = np.maximum(start, begin), np.minimum(stop, end)
     kept = stop >= start
-    # branches in turn: a shared peak is the end of the ascending one, a valley the begin of it
-    begin = branch_first.copy()
-    begin[:, 1] += branch_first[:, 1] == branch_last[:, 0]
-    begin = np.minimum(begin, branch_last)  # of a count that ends with its peak
     return Cycles(
         first=first,
         last=last,
@@ -1302,7 +1303,7 @@ def find_cycles(
         branch_last=branch_last,
         plateau_rate=rate.reshape(-1, 2),
         cycle_number=_labels(first, last, np.arange(1, first.size + 1, dtype=np.int32), time),
-        branch=_labels(begin.ravel(), branch_last.ravel(), np.tile(_BRANCHES, first.size), time),
+        branch=_labels(begin, branch_last.ravel(), np.tile(_BRANCHES, first.size), time),
         is_in_trimmed_branch=_labels(
             start[kept], stop[kept], np.ones(int(kept.sum()), dtype=np.bool_), time
         ),
@@ -1313,6 +1314,32 @@ def find_cycles(
         notes=tuple(notes),
         made=made,
     )
+
+
+def _own_begin(
+    branch_first: Indices, branch_last: Indices, start: Indices, stop: Indices
+) -> Indices:
+    """First sample that is a branch's own, shape (n_cycles, 2); `start`, `stop`: its trimmed part.
+
+    Branches in turn: a shared peak is the end of the ascending one, a shared valley the begin of
+    it.  But a reading behind the corner of a ramp is the greatest and lies on the way down: a peak
+    at the rate of the descending branch alone is the begin of that one.
+
+    Examples
+    --------
+    Ramps that turn at 3.5, shortly before the reading of 3.4, and shortly behind it.
+
+    >>> first, last = np.array([[0, 4]]), np.array([[4, 8]])
+    >>> _own_begin(first, last, np.array([[0, 4]]), np.array([[3, 8]]))
+    array([[0, 4]])
+    >>> _own_begin(first, last, np.array([[0, 5]]), np.array([[4, 8]]))
+    array([[0, 5]])
+    """
+    begin = branch_first.copy()
+    peak = branch_last[:, 0]
+    is_behind = (start[:, 1] == peak) & (stop[:, 0] < peak)
+    begin[:, 1] += (branch_first[:, 1] == peak) & ~is_behind
+    return np.minimum(begin, branch_last)  # of a count that ends with its peak
 
 
 def _refuse_coarse(time: Floats, first: Indices, leaves_peak: Indices, last: Indices) -> list[Note]:

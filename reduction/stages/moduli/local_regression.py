@@ -241,6 +241,8 @@ class RunningStatistics:
 
 _N_SUMS = 9
 
+_LEVEL_STEPS = 4  # each takes what is left of the levels down to a small share
+
 # Shares of what samples spread evenly over the window would give.
 _LEAST_SPREAD = 0.25  # of the second moment: less is a cluster, which has no slope
 
@@ -288,17 +290,34 @@ class BranchMoments:
 
         Curves come branch by branch within a cycle.  From cycle to cycle tension falls, and not
         every cycle has a sample in every bin: without its own level taken off, that fall would
-        be a slope.
+        be a slope.  Nor do the samples of a bin lie at one strain: where it holds few, the slope
+        across it is no level.
         """
         sums = self.sums.reshape(_N_SUMS, -1, n_branches, self.sums.shape[-1])
-        count, tension = sums[0], sums[5]
-        mean = tension.sum(axis=0) / np.maximum(count.sum(axis=0), 1)
-        level = (tension - count * mean).sum(axis=-1, keepdims=True)
-        level = level / np.maximum(count.sum(axis=-1, keepdims=True), 1)
+        count, strain, tension = sums[0], sums[1], sums[5]
+        n_samples = np.maximum(count.sum(axis=0), 1)
+        tension = tension - (strain - count * (strain.sum(axis=0) / n_samples)) * self._slope(sums)
+        level = np.zeros((*count.shape[:2], 1))
+        for _ in range(_LEVEL_STEPS):  # the mean of a bin stands on the levels of its curves
+            mean = (tension - count * level).sum(axis=0) / n_samples
+            level = (tension - count * mean).sum(axis=-1, keepdims=True)
+            level = level / np.maximum(count.sum(axis=-1, keepdims=True), 1)
         pooled = sums.sum(axis=1)
         pooled[5:8] -= (sums[0:3] * level).sum(axis=1)
-        pooled[8] += (level * (level * count - 2 * tension)).sum(axis=0)
+        pooled[8] += (level * (level * count - 2 * sums[5])).sum(axis=0)
         return BranchMoments(pooled, self.grid, self.tension_reference)
+
+    def _slope(self, sums: Floats) -> Floats:
+        """Slope of all curves of a branch together at each bin, at the ends that of the nearest."""
+        together = BranchMoments(sums.sum(axis=1), self.grid, self.tension_reference)
+        slope = fit_windows(together, minimum_count=3).slope * self.grid.width
+        beside = self.grid.half_window
+        padded = np.zeros((slope.shape[0], sums.shape[-1]))
+        for row, of_branch in zip(padded, slope, strict=True):
+            known = np.flatnonzero(np.isfinite(of_branch))
+            if known.size:
+                row[:] = np.interp(np.arange(row.size), known + beside, of_branch[known])
+        return padded
 
     def in_windows(self, half_window: int) -> BranchMoments:
         """Return the same moments for a window that is no wider."""

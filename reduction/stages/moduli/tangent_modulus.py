@@ -41,6 +41,7 @@ from reduction.stages.moduli.tangent_window import (
     StrainGrid,
     adapt_window,
     choose_grid_and_window,
+    is_filled_by_many,
     narrower_windows,
     pooled_spacing,
     sample_spacing,
@@ -244,8 +245,11 @@ def _reduce_block(
 
 def _adapted(
     specimens: Sequence[_SpecimenCurves], *, halves: Sequence[int], minimum_count: int
-) -> tuple[Floats, Floats, Floats]:
-    """`adapt_window` by all cycles together: a narrow window holds few samples of one. [N]."""
+) -> tuple[Floats, Floats, Floats, Floats]:
+    """Slope in the widest window and `adapt_window`, by all cycles together. [N].
+
+    A narrow window holds few samples of one.
+    """
     slopes, deviations, blurs = [], [], []
     for half in halves:
         fits = [
@@ -257,7 +261,7 @@ def _adapted(
         slopes.append(slope - blur)
         deviations.append(gain * np.sqrt(np.stack([fit.slope_variance for fit in fits])))
         blurs.append(blur)
-    return adapt_window(slopes, deviations, blurs, half_windows=halves)
+    return (slopes[0], *adapt_window(slopes, deviations, blurs, half_windows=halves))
 
 
 def _reduce_specimens(
@@ -443,15 +447,18 @@ def tangent_curves(
         np.stack([one.value() for one in trimmed]), half_window=grid.half_window
     )
 
-    change, noise, missed = _adapted(
-        specimens,
-        halves=narrower_windows(
-            grid,
-            spacing=max(sample_spacing(row[None], cycles, 0.0) for row in strain),
-            pooled=lambda: max(pooled_spacing(row, cycles) for row in strain),
-        ),
-        minimum_count=settings.minimum_count,
+    spacing = max(sample_spacing(row[None], cycles, 0.0) for row in strain)
+    halves = narrower_windows(
+        grid,
+        spacing=spacing,
+        pooled=lambda: max(pooled_spacing(row, cycles) for row in strain),
     )
+    together, change, noise, missed = _adapted(
+        specimens, halves=halves, minimum_count=settings.minimum_count
+    )
+    if is_filled_by_many(grid, halves, spacing=spacing):
+        off = together - (np.stack([one.value() for one in trimmed]) - blur)
+        change = change + np.where(np.isfinite(off), off, 0.0)
     blur = blur - change
 
     def modulus(means: Sequence[_CycleMeans], slopes: Iterable[Floats]) -> Floats:

@@ -391,6 +391,14 @@ def narrower_windows(grid: StrainGrid, *, spacing: float, pooled: Callable[[], f
     return halves if len(halves) > 1 else _halved(grid, pooled() * _FULLER)[:_MOST_POOLED]
 
 
+def is_filled_by_many(grid: StrainGrid, half_windows: Sequence[int], *, spacing: float) -> bool:
+    """Whether all cycles together fill narrower windows, and one of them does not.
+
+    The few samples of one cycle lie unevenly in its window: its slope is then off by the bend.
+    """
+    return len(half_windows) > len(_halved(grid, spacing)) == 1
+
+
 def _halved(grid: StrainGrid, spacing: float) -> list[int]:
     """Half windows down to the narrowest that holds a few samples."""
     halves = [grid.half_window]
@@ -624,7 +632,8 @@ def _change_at_ends(slope: Floats, blur: Floats, half_window: int) -> Floats:
     beside = -(-step // 2)
     for curve in np.ndindex(slope.shape[:-1]):
         known = np.flatnonzero(np.isfinite(slope[curve]))
-        if known.size <= 2 * step + beside:
+        if known.size <= 2 * step + beside:  # of a bend in the middle alone: it may double, or end
+            change[curve] = np.abs(blur[curve])
             continue
         for inwards in (known, known[::-1]):
             rate = (blur[curve][inwards[step]] - blur[curve][inwards[step + beside]]) / beside
