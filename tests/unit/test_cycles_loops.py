@@ -384,6 +384,18 @@ def test_a_turn_between_samples_lies_within_what_is_stated_as_missed(per_cycle, 
     assert 0 < error < 2 * summary.uncertainty["tension_amplitude"][0]
 
 
+@pytest.mark.parametrize("phase", [0.2, 0.45, 0.75, 0.9])
+def test_the_turn_of_a_force_that_stiffens_is_held_where_its_lines_cross_below_it(phase):
+    """Slopes of 1 to 13 at 20 readings a cycle, in step: the corner is missed in all cycles."""
+    time, wave, cycles = triangles(20, 12, phase + 2)
+    force = 1 + wave + 2 * wave**6
+    loops = close_loops(time, force[None], 1 + wave[None], cycles)
+    summary = summarise_amplitude(loops, area=[1.0])
+    for name, true in (("tension_amplitude", 1.5), ("apparent_spring_constant", 3.0)):
+        value, stated = getattr(summary, name)[0], summary.uncertainty[name][0]
+        assert abs(value - true) < 2 * stated < 0.2 * true
+
+
 @pytest.mark.parametrize("cut", [5.0, 8.0])
 def test_a_rounded_turn_is_not_sharpened(cut):
     time, wave, cycles = triangles(50, 12, 0.3, height=200.0)

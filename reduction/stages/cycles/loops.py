@@ -110,6 +110,7 @@ from reduction.stages.cycles.turns import (
     has_corners,
     kind_of_turns,
     level_at_corner,
+    level_beside_corner,
     level_of_turn,
     missed_by_extreme,
     noise_in_extreme,
@@ -1418,8 +1419,16 @@ def _readings_at_turns(
             if not answers:
                 last = -_mean_of_rest(-values, at_last, -last, within=_OF_A_STEP * step)
         if answers:
-            excess = np.fmax(of_peak - above, 0), np.fmax(of_valley - below, 0)
-            above, below = above + excess[0], below + excess[1]
+            of_peak, of_valley = np.fmax(of_peak, above), np.fmax(of_valley, below)
+            for level, at, sign, reading, is_rest in (
+                (of_peak, peak, 1, top, rests), (of_valley, end, -1, last, rests_below)
+            ):  # fmt: skip
+                # of a series that stiffens all lines cross too low, or below its reading
+                beyond = sign * (level_beside_corner(values, moved, at, sign=sign) - reading)
+                if not is_rest and np.nanmedian(beyond) > _STIFFENS * np.nanmedian(level):
+                    np.fmax(level, beyond, out=level)
+            excess = of_peak - above, of_valley - below
+            above, below = of_peak, of_valley
             missed = (_EITHER - 1) * (excess[0] + excess[1]) / 2
         else:
             # a machine that dwells is at the level of its corner, and misses nothing
@@ -1531,6 +1540,8 @@ D times the root of 16 / 720."""
 _EITHER = 2**0.5
 """What relaxes at a corner is at one end of its range or at the other, and not between them: the
 whole of half the range, where `Loops.shared_by_cycles` takes it over this."""
+
+_STIFFENS = 2.0  # times what lines show to lie beyond a reading, by which they are of no use
 
 _ON_PLATEAU = 6.0  # noise of a reading below the greatest one, on a plateau of some tens
 

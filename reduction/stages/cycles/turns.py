@@ -378,6 +378,59 @@ def level_at_corner(
     return np.asarray(sign * np.fmax(beyond, reading))
 
 
+def level_beside_corner(values: Floats, moved: Floats, turn: Integers, *, sign: int) -> Floats:
+    """Level as far beyond the extreme reading as the channel that moves a series is beyond its own.
+
+    By the slope of the step beside the turn that has no corner in it.  Of a series that stiffens
+    towards its turn on both branches the lines beside cross below the reading, and a parabola lags
+    behind.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n_samples,)
+        A series. [any]
+    moved : ndarray, shape (n_samples,)
+        The channel that the machine moves, rising where the series does. [any]
+    turn : ndarray of int, shape (n_turns,)
+        Samples at which the channel turns. [1]
+    sign : {1, -1}
+        1 of peaks, -1 of valleys. [1]
+
+    Returns
+    -------
+    level : ndarray, shape (n_turns,)
+        The reading at the turn where the series does not stiffen, or a reading beside is farther,
+        as of a series that turns before or after. [any]
+
+    Raises
+    ------
+    IndexError
+        If a turn lies outside the series.
+
+    Examples
+    --------
+    A corner 0.4 samples before a reading, and a force that rises by a half with every step:
+
+    >>> drive = -np.abs(np.arange(11) - 4.6)
+    >>> force = 100 * 1.5**drive
+    >>> print(force[5].round(1), level_beside_corner(force, drive, np.array([5]), sign=1).round(1))
+    85.0 [96.4]
+    """
+    window = np.clip(turn[:, None] + np.arange(-_BESIDE, _BESIDE + 1), 0, values.size - 1)
+    drive, level = sign * moved[window], sign * values[window]
+    beyond = sign * level_of_turn(moved, turn, moved[turn], sign=sign) - drive[:, _BESIDE]
+    steps = np.diff(level, axis=1)
+    stiffens = (steps[:, 1] > steps[:, 0]) & (steps[:, -2] < steps[:, -1])
+    stiffens &= (steps[:, 0] > 0) & (steps[:, -1] < 0)
+    stiffens &= (steps[:, _BESIDE - 1] > 0) & (steps[:, _BESIDE] < 0)
+    lower = _BESIDE + np.where(drive[:, _BESIDE - 1] < drive[:, _BESIDE + 1], -1, 1)
+    row = np.arange(turn.size)
+    on = drive[:, _BESIDE] - drive[row, lower]
+    stiffens &= on > 0
+    slope = (level[:, _BESIDE] - level[row, lower]) / np.where(stiffens, on, 1.0)
+    return np.asarray(sign * (level[:, _BESIDE] + np.where(stiffens, slope * beyond, 0.0)))
+
+
 def rests_at_turns(moved: Floats, extreme_at: Integers) -> bool:
     """Whether a channel stays where it turns for more than one reading, at most of its extremes.
 
