@@ -610,3 +610,15 @@ def test_a_sample_of_constant_rate_has_the_branch_that_moves_its_way(behind):
     for name, way in (("ascending", up), ("descending", ~up)):
         of_branch = kept & (cycles.branch == BRANCH_VALUES[name])
         assert of_branch.sum() > 90 and way[of_branch].all()
+
+
+@pytest.mark.parametrize("dwell", [2.9, 3.3])
+def test_dwells_of_which_the_readings_show_some_long_enough_for_a_standstill_end_no_run(dwell):
+    """Held for about 3 s at peaks and valleys, read every .79 s: four or five readings a dwell."""
+    lead = [(0, 3), (20, 3), (30, 4)]
+    ramps = strokes(30, 20, half=6.7, dwell_low=dwell, dwell_high=dwell)
+    time, position = path(back([*lead, *ramps[:-1]]), rate=1 / 0.787, noise=1e-4)
+    cycles = find(time, position, waveform="other")
+    assert cycles.n_cycles == 20
+    lasting = np.diff(time[cycles.first])
+    assert lasting == pytest.approx(2 * (6.7 + dwell), abs=dwell + 0.8)

@@ -38,11 +38,13 @@ _FEWEST_DWELLS = 3
 
 _DWELL_RATIO = 2.0
 
+_TURNS_READ = 25  # enough for a median, few enough to cost nothing
+
 Indices = NDArray[np.intp]
 
 
 def _dwells_of_cycles(
-    values: Floats, reversals: Indices, standstills: Standstills, *, band: float
+    time: Floats, values: Floats, reversals: Indices, standstills: Standstills, *, band: float
 ) -> tuple[Indices, Bools]:
     """Tell dwells at the peaks or valleys of cycles from standstills that end cycling.
 
@@ -50,7 +52,8 @@ def _dwells_of_cycles(
     -----
     A standstill is at the nearest reversal whose level is within the band of its own.  It is
     a dwell where three or more peaks in a row, or valleys, have one at the same level (within
-    30 % of the stroke), and their durations differ by at most a factor 2.
+    30 % of the stroke), and their durations differ by at most a factor 2. So it is where it lasts
+    at most twice as long as the turns of its kind do that are too short for a standstill.
 
     Examples
     --------
@@ -64,7 +67,7 @@ def _dwells_of_cycles(
     >>> position = np.interp(time, knots, levels)
     >>> stand = find_standstills(time, position, [100 * position], settings=PhaseSettings())
     >>> reversals = np.searchsorted(time, [8, 12, 16, 20, 24, 28, 32.75])
-    >>> _dwells_of_cycles(position, reversals, stand, band=0.5)
+    >>> _dwells_of_cycles(time, position, reversals, stand, band=0.5)
     (array([0, 1, 3, 5]), array([False,  True,  True,  True]))
     """
     at = np.full(standstills.n_standstills, -1, dtype=np.intp)
@@ -98,8 +101,39 @@ def _dwells_of_cycles(
         dwell = np.zeros(held.size, dtype=bool)
         dwell[1:] |= in_a_row >= _FEWEST_DWELLS - 1
         dwell[:-1] |= in_a_row >= _FEWEST_DWELLS - 1
+        short = held & ~dwell
+        if short.any():
+            others = kind + 2 * np.flatnonzero(~held)
+            usual = _usual_turn(time, values, reversals, others, within=_still(standstills))
+            dwell |= short & (lasting <= _DWELL_RATIO * usual)
         is_dwell_of_cycle[kind::2] = dwell
     return at, (at >= 0) & is_dwell_of_cycle[at]
+
+
+def _still(standstills: Standstills) -> float:
+    """Tolerance of the channel that stands still: tension where that is held, else position."""
+    held = standstills.tension_tolerance
+    return standstills.position_tolerance if held is None else held
+
+
+def _usual_turn(
+    time: Floats, values: Floats, reversals: Indices, places: Indices, *, within: float
+) -> float:
+    """Median time for which a channel stays at the level of some of its reversals; 0 of a few."""
+    if places.size < _FEWEST_DWELLS:
+        return 0.0
+    some = places[np.linspace(0, places.size - 1, min(places.size, _TURNS_READ)).astype(int)]
+    lasting = []
+    for place in some.tolist():
+        at = int(reversals[place])
+        first = int(reversals[max(place - 1, 0)])
+        last = int(reversals[min(place + 1, reversals.size - 1)])
+        away = np.flatnonzero(np.abs(values[first : last + 1] - values[at]) > within) + first
+        before, after = away[away < at], away[away > at]
+        begin = int(before[-1]) + 1 if before.size else first
+        end = int(after[0]) - 1 if after.size else last
+        lasting.append(float(time[end] - time[begin]))
+    return float(np.median(lasting))
 
 
 def _longest_row(true: Bools) -> Indices:
@@ -609,7 +643,8 @@ def find_half_cycles(
     30 % of a half cycle.  It cycles where two half cycles in a row have ranges that
     differ by at most 30 %: the moves between holds before a test do not.  A standstill
     at a reversal is a *dwell* and ends no run where three or more peaks in a row, or
-    valleys, have one at the same level, and their durations differ by at most a factor 2.
+    valleys, have one at the same level, and their durations differ by at most a factor 2, or
+    where it lasts at most twice as long as the turns of its kind do.
     A half cycle at least as long as its two neighbours together is a move from one level
     to another: the run is parted there, and the move serves as an end of both parts.
 
@@ -642,7 +677,7 @@ def find_half_cycles(
     [2 3 5 6] [3 5 6 7] [ True False  True False]
     """
     half_duration = float(np.median(np.diff(take_samples(time, reversals))))
-    at, is_dwell = _dwells_of_cycles(values, reversals, standstills, band=band)
+    at, is_dwell = _dwells_of_cycles(time, values, reversals, standstills, band=band)
     longest = max(_GAP_SHARE * half_duration, _GAP_STEPS * median_step(time))
     gap_before, gap_after = _gaps_of_record(time, values, longest=longest)
     apart = np.empty(0, dtype=np.intp) if skips is None else skips
@@ -650,9 +685,7 @@ def find_half_cycles(
         np.concatenate([standstills.first[~is_dwell], gap_before, apart]),
         np.concatenate([standstills.last[~is_dwell], gap_after, apart + 1]),
     )
-    # of the channel that stands still: the tension where it is held, else the position
-    still = standstills.tension_tolerance
-    tolerance = standstills.position_tolerance if still is None else still
+    tolerance = _still(standstills)
     noise = max(noise_range(values), _CODES_APART * step_of_codes(values))
     runs = [
         _fit_ends(time, values, run, is_sinusoidal=is_sinusoidal, still=tolerance, tolerance=noise)
