@@ -12,6 +12,7 @@ from reduction.stages.cycles.cycle_product import Cycles
 from reduction.stages.cycles.cycle_search import find_cycles
 from reduction.stages.cycles.loops import (
     _cycle_basis,
+    _energy_by_chance,
     _fundamental,
     _loop_energy,
     _mean_drift,
@@ -1731,3 +1732,40 @@ def test_ramps_of_a_hose_that_locks_end_beyond_their_readings(per_cycle, noise):
     ):  # fmt: skip
         assert abs(value - true) < 2 * own
         assert own < 0.08 * true
+
+
+@pytest.mark.parametrize("per_cycle", [12, 14, 15, 16, 18, 20])
+def test_the_energy_of_slips_in_step_with_the_log_is_held_whatever_their_place(per_cycle):
+    """Three elements that slip at drawn strains: of each the loop is a parallelogram."""
+    rng = np.random.default_rng(per_cycle)
+    first = per_cycle * np.arange(1, 5)
+    off = []
+    for _ in range(100):
+        slip, stiffness = rng.uniform(0.2, 0.9, (3, 1)), rng.uniform(1, 3, (3, 1))
+        turn = (np.arange(6 * per_cycle + 1) + rng.uniform()) / per_cycle
+        strain = -np.cos(2 * np.pi * turn)
+        rising = np.minimum(strain + 1 - slip, slip)
+        falling = np.maximum(strain - 1 + slip, -slip)
+        force = (stiffness * np.where(turn % 1 < 0.5, rising, falling)).sum(axis=0)
+        energy, _ = _loop_energy(force, strain, first, first + per_cycle, waveform="sinusoidal")
+        true = 4 * np.sum(stiffness * slip * (1 - slip))
+        off.append((energy[0] - true) / _energy_by_chance(force, strain, first, first + per_cycle))
+    assert np.mean(np.abs(off) > 2) < 0.09
+
+
+@pytest.mark.parametrize("per_cycle", [12.37, 17.3])
+def test_the_energy_of_a_sine_that_relaxes_out_of_step_with_its_log(per_cycle):
+    """Tension of a loss factor of .06 falls beside its wave; a cycle has 17 readings or 18."""
+    time = np.arange(per_cycle * 22) / per_cycle
+    strain = 1 - AMPLITUDE * np.cos(2 * np.pi * time)
+    wave = AMPLITUDE * (50 * np.sin(2 * np.pi * time) - STORAGE * np.cos(2 * np.pi * time))
+    tension = 1000 + wave - 15 * np.log1p(time)
+    first = np.round(np.arange(1, 21) * per_cycle).astype(int)
+    middle = np.round((np.arange(1, 21) + 0.5) * per_cycle).astype(int)[:-1]
+    ends = np.column_stack([first[:-1], middle]), np.column_stack([middle, first[1:]])
+    none = np.zeros(time.size, np.int8)
+    cycles = Cycles(first[:-1], first[1:], *ends, np.ones((19, 2)), none, none, none > 0, 0.1)
+    loops = close_loops(time, tension[None], strain[None], cycles, waveform="sinusoidal")
+    summary = summarise_amplitude(loops, area=[1.0], break_in_cycles=3)
+    for name, true in (("hysteresis_energy", np.pi * 50 * AMPLITUDE**2), ("loss_factor", 1 / 18)):
+        assert getattr(summary, name)[0] == pytest.approx(true, rel=2e-3)
