@@ -893,7 +893,7 @@ def stream_wave(
 
     Examples
     --------
-    The 3.57 s wave of [8]_ over 3 m of water: by the linear theory 16.3 m, with its height 17.5 m.
+    The 3.57 s wave of [8]_ over 3 m of water: by the linear theory 16.3 m, with its height 17.4 m.
 
     >>> wave = stream_wave(wave_height=1.25, wave_period=3.57, water_depth=3.0, elevation=0.0)
     >>> print(round(2 * np.pi / wave.wave_number, 2))
