@@ -94,6 +94,22 @@ def test_the_bend_of_a_stiffening_curve_is_no_noise():
     assert np.all(noise < 4 * deviations[-1])
 
 
+def test_chance_in_one_bin_takes_no_narrower_window():
+    """A straight line of modulus 1, read by windows of 9 and 3 bins; the narrow ones scatter."""
+    rng = np.random.default_rng(4)
+    deviations = [0.004, 0.02]
+    slopes = [1 + rng.normal(0, u, (1, 400)) for u in deviations]
+    change, _, missed = adapt_window(
+        slopes, [np.full((1, 400), u) for u in deviations], [np.zeros((1, 400))] * 2,
+        half_windows=[4, 1],
+    )  # fmt: skip
+    error = np.abs(slopes[0] + change - 1)[0]
+    # of 400 comparisons with two deviations 18 are beyond them by chance, few of them side by side
+    assert np.count_nonzero(np.abs(slopes[0] - slopes[1]) > 2 * deviations[1]) > 10
+    assert np.count_nonzero(change) <= 6
+    assert np.mean(error < 1.96 * np.hypot(deviations[0], missed[0])) > 0.93
+
+
 @pytest.mark.parametrize("shape", ["bend", "step"])
 def test_what_one_width_may_miss_is_more_at_a_step_than_in_a_bend(shape):
     half, place = 4, np.arange(60.0)

@@ -32,7 +32,7 @@ import scipy
 from numpy.typing import ArrayLike
 
 from reduction.record.errors import DataError, SettingsError
-from reduction.record.measurement import Floats
+from reduction.record.measurement import Floats, Integers
 from reduction.record.samples import step_that_fills, take_samples
 from reduction.record.settings import ModulusSettings
 from reduction.stages.cycles.cycle_product import Cycles
@@ -453,6 +453,29 @@ def _near(values: Floats, half_window: int, *, is_highest: bool) -> Floats:
     return np.asarray(total / np.maximum(count, 1 / size))
 
 
+def _without_lone_choices(chosen: Integers, slope: Sequence[Floats], half_window: int) -> Integers:
+    """Windows without those that a single bin has narrower than both bins beside it.
+
+    A bend or a step contradicts a window in several bins; of many comparisons with two standard
+    deviations one in twenty does by chance, and the narrow window is the noisier one.  Within half
+    the widest window from the ends of a curve, where it changes fastest, all stay.
+
+    Examples
+    --------
+    >>> slope = [np.ones(9)] * 3
+    >>> print(_without_lone_choices(np.array([0, 2, 0, 2, 1, 2, 2, 0, 0]), slope, 1))
+    [0 2 0 1 1 2 2 0 0]
+    """
+    is_known = np.isfinite(slope).any(axis=0).astype(np.uint8)
+    is_inside = scipy.ndimage.minimum_filter1d(
+        is_known, 2 * half_window + 3, axis=-1, mode="constant"
+    )
+    wider = chosen.copy()
+    wider[..., 1:-1] = np.minimum(chosen[..., 1:-1], np.maximum(chosen[..., :-2], chosen[..., 2:]))
+    is_better = (is_inside > 0) & np.isfinite(np.choose(wider, slope))
+    return np.where(is_better, wider, chosen)
+
+
 def adapt_window(
     slope: Sequence[Floats],
     deviation: Sequence[Floats],
@@ -492,8 +515,9 @@ def adapt_window(
     a braid in steps as one contact after the other begins to slip.  `window_blur` takes off what
     a smooth bend adds; at a step no window is right.  In each bin the windows are compared ([4]_):
     the widest is used whose slope lies within two standard deviations of that of every narrower
-    one.  A deviation is no smaller than the roughness of the curve says, as the same
-    quantisation in every cycle leaves no trace in the residuals.
+    one; a bin that alone takes a narrower one than both beside it takes theirs.  A deviation is no
+    smaller than the roughness of the curve says, as the same quantisation in every cycle leaves no
+    trace in the residuals.
 
     What is missed is the root mean square difference from the narrower windows over the window's
     width, less their noise.  Of the narrowest it is the greatest difference from the next wider
@@ -524,7 +548,8 @@ def adapt_window(
     # of the widest window the scatter of the cycles says what the residuals of all together do not
     rough = [0 * slope[0] + roughness[0], *noises[1:]]
     last = len(slope) - 1
-    chosen, finest = (np.zeros(slope[0].shape, dtype=np.int64) for _ in range(2))
+    chosen: Integers = np.zeros(slope[0].shape, dtype=np.int64)
+    finest: Integers = np.zeros_like(chosen)
     for wide in range(last, -1, -1):
         is_sound = np.isfinite(slope[wide])
         finest = np.where(is_sound & (finest == 0), wide, finest)
@@ -532,6 +557,7 @@ def adapt_window(
             away = np.abs(slope[wide] - slope[narrow])
             is_sound &= ~(away > _CONTRADICTED * noises[narrow])
         chosen = np.where(is_sound, wide, chosen)
+    chosen = _without_lone_choices(chosen, slope, half_windows[0])
     missed = _unseen_by_one(blur[0], half_windows[0], noise=deviation[0]) ** 2
     # of a curve shorter than two windows no blur is known: its modulus may change within one
     is_blind = [(one == 0).all(axis=-1, keepdims=True) for one in blur]
