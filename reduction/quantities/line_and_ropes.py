@@ -87,7 +87,7 @@ OF_LINE: tuple[Quantity, ...] = (
         measured(
             "test_quasi_static_spring_constant",
             "N",
-            "slope of the slow pull at the mean tension of the test, or midline of bent loops",
+            "slope of the slow pull at the mean tension of the test, or chord of bent loops",
             shares_errors=True,
             tables=("line",),
             page=("line", "K_0, quasi-static spring constant"),

@@ -1107,9 +1107,9 @@ _OF_LINE: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "bent-loops": (
         "note",
-        "the loops are bent as the slow pull is: K_0 is that of the pull at {at:.4g} N, the tension"
-        " of their midline at the mean strain, and not at the mean of peak and valley, {mean:.4g} N"
-        " ({effect:+.1%})",
+        "the loops are bent as the slow pull is: K_0 is that of the pull over the cycle, about"
+        " {at:.4g} N, the tension of their midline at the mean strain, and not its slope at the"
+        " mean of peak and valley, {mean:.4g} N ({effect:+.1%})",
     ),
     "mean-tension-drifts": (
         "warning",

@@ -3,7 +3,11 @@
 import numpy as np
 import pytest
 
-from reduction.stages.three_parameter_line.loop_midline import tension_above_midline
+from reduction.stages.three_parameter_line.loop_midline import (
+    chord_of_spring,
+    spring_of_cycle,
+    tension_above_midline,
+)
 
 N, CYCLES = 60, 8
 PHASE = np.arange(N * CYCLES + 1) * 2 * np.pi / N
@@ -46,3 +50,28 @@ def test_too_few_cycles_or_samples_say_nothing():
     assert np.isnan(few).all()
     short = tension_above_midline(np.cos(PHASE), PHASE, first=FIRST, turn=FIRST + 3, last=FIRST + 8)
     assert np.isnan(short).all()
+
+
+def test_the_chord_of_an_exponential_spring():
+    """T = 2e4 (exp(e / .05) - 1), K_0 = (T + 2e4) / .05: chord and middle in closed form."""
+    middle, d = np.array([1e4, 2e4]), np.array([0.009, 0.012])
+    at = 0.05 * np.log1p(middle / 2e4)
+    high, low = (2e4 * np.expm1((at + side * d) / 0.05) for side in (1, -1))
+
+    def constant_at(tension):
+        return (tension + 2e4) / 0.05
+
+    chord, above = chord_of_spring(constant_at, middle, d)
+    assert chord == pytest.approx((high - low) / (2 * d), rel=5e-5)
+    assert above == pytest.approx((high + low) / 2 - middle, rel=1e-3)
+    assert spring_of_cycle(constant_at, (high + low) / 2, d) == pytest.approx(chord, rel=1e-5)
+
+
+def test_a_chord_beyond_the_pull_is_not_known():
+    def constant_at(tension):
+        return np.where(tension < 2.1e4, 8e5, np.nan)
+
+    assert np.isnan(chord_of_spring(constant_at, [2e4, 2e4], [0.001, 0.002])[0]).tolist() == [
+        False,
+        True,
+    ]

@@ -1,3 +1,5 @@
+import dataclasses
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -430,6 +432,24 @@ class TestRun:
         for above in ((600.0, 400.0), (1.0, 0.01), (np.nan, np.nan)):
             found, _, notes = quasi_static_of_run(loops, [pull], above_midline=[above])
             assert found[0] == plain[0] and notes == ()
+
+    def test_the_chord_counts_where_the_slope_itself_is_bent(self):
+        """T = 2e4 (exp(e / .05) - 1): the chord over +- d is sinh(d / .05) / (d / .05) slopes.
+
+        About 20 kN, 800 kN, over 12 to 30 kN; a loss angle of pi/6 makes d .015 cos(pi/6).
+        """
+        at = np.linspace(0.0, 0.06, 2000)
+        load = 2e4 * np.expm1(at / 0.05) + np.random.default_rng(6).normal(0, 20, at.size)
+        pull = fit_pull(np.arange(2000.0), at, load, specimen="rope")
+        of_cycle = {"tension_amplitude": 9e3, "strain_amplitude": 0.015}
+        of_cycle["hysteresis_energy"] = np.pi * 9e3 * 0.015 / 2
+        loops = dataclasses.replace(
+            loops_at([[20_700.0] * 4]), **{key: np.full((1, 4), v) for key, v in of_cycle.items()}
+        )
+        bent, _, _ = quasi_static_of_run(loops, [pull], above_midline=[(700.0, 5.0)])
+        d = 0.015 * np.cos(np.pi / 6) / 0.05
+        assert bent[0] == pytest.approx(800e3 * np.sinh(d) / d, rel=2e-3)
+        assert np.sinh(d) / d > 1.01
 
     def test_what_is_missing_is_nan_and_said(self):
         pull = fit_pull(*rising(), specimen="line 2")

@@ -63,6 +63,7 @@ from reduction.stages.cycles.loops import reading_noise
 from reduction.stages.moduli.least_squares import lag_one_inflation
 from reduction.stages.moduli.local_regression import sums_by_cell
 from reduction.stages.three_parameter_line.line_product import SlowPull
+from reduction.stages.three_parameter_line.loop_midline import chord_of_spring
 
 # a rise out of slack shows above this many standard deviations of a reading
 _NOISE_FACTOR = 6.0
@@ -1150,6 +1151,24 @@ def error_of_pull_rate(
     return constant * float(np.sqrt(np.mean((of_rest / of_pull - 1) ** 2))) if at.size else constant
 
 
+def _spring_of_loops(
+    pull: SlowPull, middle: float, loops: Loops, row: int, break_in_cycles: int
+) -> tuple[float, float]:
+    """Chord of the pull about a tension over the loops of a run, and its uncertainty. [N]."""
+    slope, spread = quasi_static_spring_constant(pull, middle)
+    load, stretch, energy = (
+        one[row, break_in_cycles:]
+        for one in (loops.tension_amplitude, loops.strain_amplitude, loops.hysteresis_energy)
+    )
+    sine = energy / (np.pi * load * stretch)
+    half = float(np.nanmean(stretch * np.sqrt(np.maximum(1 - sine**2, 0.0))))
+    chord, _ = chord_of_spring(
+        lambda tension: quasi_static_spring_constant(pull, tension)[0], middle, half
+    )
+    share = float(chord / slope) if np.isfinite(chord) else 1.0
+    return share * float(slope), share * float(spread)
+
+
 def quasi_static_of_run(
     loops: Loops,
     pulls: Sequence[SlowPull | None],
@@ -1190,7 +1209,8 @@ def quasi_static_of_run(
     [6]_ means small cycles.  The slow spring of a large one is bent, and its slope over the cycle
     is not that of the pull at the mean tension: 1 % in K_0, at a twentieth of a hertz, is 8 % in
     K_1 and 10 % in tau.  Where the loops themselves are bent, by more than K_0 is uncertain, K_0
-    is that of the pull at the tension of their midline; straight loops keep that at the mean.
+    is the chord of the pull about the tension of their midline (`chord_of_spring`), or its slope
+    there where the pull does not reach the ends; straight loops keep the slope at the mean.
 
     Examples
     --------
@@ -1234,8 +1254,8 @@ def quasi_static_of_run(
             continue
         if len(above_midline):
             above, u_above = above_midline[row]
-            bent, u_bent = quasi_static_spring_constant(pull, mean - above)
-            effect = float(bent / constant[row]) - 1
+            bent, u_bent = _spring_of_loops(pull, mean - above, loops, row, break_in_cycles)
+            effect = bent / float(constant[row]) - 1
             amplitude = float(np.nanmean(loops.tension_amplitude[row, break_in_cycles:]))
             is_bent = abs(above) > max(_BENT * u_above, _LEAST_BEND * amplitude)
             if is_bent and abs(effect) * constant[row] > uncertainty[row]:
