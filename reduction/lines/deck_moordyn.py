@@ -352,13 +352,15 @@ def _running_words(part: Viscoelasticity) -> str:
     if not math.isfinite(part.frequency):
         return "MoorDyn uses the running tension of the slow part as the mean"
     running, held = part.running_stiffness_at(part.frequency), part.stiffness_at(part.frequency)
+    # H = pi T_a^2 E'' / K_ap^2: a cycle of the same tension amplitude stretches less where stiffer
+    energy = running.imag / held.imag * (abs(held) / abs(running)) ** 2
     return (
         "MoorDyn uses the running tension of the slow part as the mean: a small cycle at "
         f"{plain_number(part.frequency, 4)} Hz differs from static-dynamic by "
         f"{100 * (abs(running) / abs(held) - 1):+.1f} percent in K_ap, "
         f"{plain_number(abs(running))} N, and by "
-        f"{100 * (running.imag / held.imag - 1):+.1f} percent in hysteresis energy; where the "
-        "energy matters, use static-dynamic"
+        f"{100 * (energy - 1):+.1f} percent in hysteresis energy at equal tension amplitude; where "
+        "the energy matters, use static-dynamic"
     )
 
 

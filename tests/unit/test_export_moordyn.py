@@ -1,4 +1,5 @@
 import math
+from dataclasses import replace
 
 import pytest
 from export_lines import constant, growing, line, syrope
@@ -39,6 +40,18 @@ def test_a_stiffness_that_grows_is_written_as_three_numbers():
     files = moordyn_files(line(viscoelasticity=growing()), "x", form="load-dependent")
     assert row_of(files)[3] == "20000|30000|10"
     assert "found at mean tension 2 kN" in files[""]
+
+
+def test_the_energy_of_a_running_stiffness_is_that_of_the_tension_that_was_asked_for():
+    """H = pi T_a^2 Im(-1/K): at equal stretch it would be another share."""
+    part = replace(growing(), frequency=0.005)
+    text = " ".join(
+        moordyn_files(line(viscoelasticity=part), "x", form="load-dependent")[""].split()
+    )
+    running, held = part.running_stiffness_at(0.005), part.stiffness_at(0.005)
+    share = 100 * ((1 / running).imag / (1 / held).imag - 1)
+    assert f"{share:+.1f} percent in hysteresis energy at equal tension amplitude" in text
+    assert abs(share - 100 * (running.imag / held.imag - 1)) > 1
 
 
 def test_a_syrope_has_its_three_files_and_its_initial_conditions():
