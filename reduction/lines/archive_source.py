@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -26,6 +27,7 @@ from reduction.experiments.fit_results import FIT_REASONS, ResponseSurfaces
 from reduction.experiments.surface_discrepancy import discrepancy_of
 from reduction.experiments.surface_points import greatest_leverage
 from reduction.lines.archive_pieces import alignment_words, check_words
+from reduction.lines.bent_loops import RunOfLine, with_bend_of_runs
 from reduction.lines.line_lookup import Branch
 from reduction.lines.line_search import joined_conditions
 from reduction.lines.lookup_product import LineCurve, LineLevels, LineSource, LineSurface
@@ -514,7 +516,12 @@ def lines_of_open_archive(
         ]
         settings = json.loads(str(archive.attrs.get("settings", "{}")))
         return [
-            replace(one, slow_pulls=_slow_pulls(path, settings.get(one.name, {}), opener))
+            replace(
+                one,
+                slow_pulls=_slow_pulls(
+                    path, settings.get(one.name, {}), opener, _runs_of(archive, one.name)
+                ),
+            )
             if set(one.factor_names) == _OF_A_CYCLE
             else one
             for one in made
@@ -534,7 +541,9 @@ def lines_of_open_archive(
 _OF_A_CYCLE = {"frequency", "mean_tension", "tension_amplitude"}
 
 
-def _slow_pulls(path: Path, settings: Mapping[str, Any], opener: Opener) -> dict[str, LineCurve]:
+def _slow_pulls(
+    path: Path, settings: Mapping[str, Any], opener: Opener, runs: Sequence[tuple[str, str]]
+) -> dict[str, LineCurve]:
     """K_0 by the slow pull of each specimen of an experiment, as far as its archive is there."""
     pulls = settings.get("quasi_static", {})
     found = {}
@@ -544,8 +553,43 @@ def _slow_pulls(path: Path, settings: Mapping[str, Any], opener: Opener) -> dict
         except ArchiveError:
             continue
         label = f"slow pull {test}" + (f" of {specimen}" if len(pulls) > 1 else "")
-        found[label] = next(one for one in pulled.curves if one.quantity == _K_0)
+        curves = _with_bend(path.parent, specimen, pulled.curves, opener, runs)
+        found[label] = next(one for one in curves if one.quantity == _K_0)
     return found
+
+
+def _runs_of(dataset: xr.Dataset, experiment: str) -> list[tuple[str, str]]:
+    """Test and specimen of each run of an experiment."""
+    row = dataset.variables["experiment"].values.astype(str).tolist().index(experiment)
+    tests, specimens = (
+        dataset.variables[name].values[row].astype(str).tolist()
+        for name in ("run_name", "run_specimen")
+    )
+    return list(zip(tests, specimens, strict=True))
+
+
+def _with_bend(
+    folder: Path,
+    specimen: str,
+    curves: tuple[LineCurve, ...],
+    opener: Opener,
+    runs: Sequence[tuple[str, str]],
+) -> tuple[LineCurve, ...]:
+    """Curves of a slow pull, K_0 with the bend of the loops of its runs."""
+    tests = {test for test, own in runs if own == specimen}
+    found = []
+    for path in archives_of_tests(folder):
+        if path.stem not in tests:
+            continue
+        # one that cannot be read is told of by itself
+        with suppress(ArchiveError), opener(path) as archive:
+            names = [f"test_{one}" for one in RunOfLine._fields]
+            if all(one in archive for one in names):
+                place = archive.variables["specimen"].values.astype(str).tolist().index(specimen)
+                found.append(
+                    RunOfLine(*(float(archive.variables[one].values[place]) for one in names))
+                )
+    return tuple(with_bend_of_runs(one, found) if one.quantity == _K_0 else one for one in curves)
 
 
 def lines_of_folder(folder: Path) -> list[LineSource]:
@@ -735,6 +779,7 @@ def experiments_with_pulls(path: Path) -> list[LineSource]:
     with reading(path) as archive:
         found = lines_of_open_archive(archive, path)
         settings = json.loads(str(archive.attrs.get("settings", "{}")))
+        runs = {line.name: _runs_of(archive, line.name) for line in found}
     made = []
     for line in found:
         pulls = settings.get(line.name, {}).get("quasi_static", {})
@@ -745,7 +790,9 @@ def experiments_with_pulls(path: Path) -> list[LineSource]:
                     line,
                     name=line.name if len(pulls) == 1 else f"{line.name} {specimen}",
                     source=f"{line.source}; slow pull {pulled.source}",
-                    curves=pulled.curves,
+                    curves=_with_bend(
+                        path.parent, specimen, pulled.curves, reading, runs[line.name]
+                    ),
                     notes=tuple(dict.fromkeys((*line.notes, *pulled.notes))),
                 )
             )

@@ -38,6 +38,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from reduction.lines.bent_loops import constant_of_cycles
 from reduction.lines.line_curve import own_half_width, shared_half_width, shared_of
 from reduction.lines.line_levels import SAME_LEVEL
 from reduction.lines.line_lookup import look_up
@@ -626,13 +627,13 @@ def line_dynamics(
         raise SettingsError(
             "static and dynamic stiffness need a mean tension", needed="--mean-tension"
         )
-    rest = _value(source, _REST, levels, extrapolate)
     known = set(source.quantities)
 
     def values(*names: str) -> dict[str, DesignValues]:
         return {name: _value(source, name, levels, extrapolate) for name in names}
 
     measured = values(_APPARENT, _ENERGY) if {_APPARENT, _ENERGY} <= known else {}
+    rest = _rest_of_cycle(source, measured, levels, extrapolate)
     printed = values(_SPRING, _TIME) if {_SPRING, _TIME} <= known or not measured else {}
     amplitude, frequency = (
         float(levels.get(name, math.nan)) for name in ("tension_amplitude", "frequency")
@@ -722,6 +723,27 @@ def _value(
         if name in levels or name == "tension"
     }
     return look_up(source, quantity, extrapolate=extrapolate, **given)
+
+
+def _rest_of_cycle(
+    source: LineSource,
+    measured: Mapping[str, DesignValues],
+    levels: Mapping[str, Any],
+    extrapolate: Extrapolate,
+) -> DesignValues:
+    """K_0: slope of the pull at the mean tension, or over the cycle where the runs are bent."""
+    slope = _value(source, _REST, levels, extrapolate)
+    curve = next((one for one in source.curves if one.quantity == _REST), None)
+    if curve is None or not measured:
+        return slope
+    return constant_of_cycles(
+        curve,
+        slope,
+        mean_tension=levels["mean_tension"],
+        tension_amplitude=levels["tension_amplitude"],
+        apparent_spring_constant=measured[_APPARENT].value,
+        hysteresis_energy=measured[_ENERGY].value,
+    )
 
 
 def _identified(
@@ -852,9 +874,10 @@ def _tested_means(source: LineSource, levels: Mapping[str, float]) -> Floats:
 
 def _totals(source: LineSource, over: Mapping[str, Floats], *, is_identified: bool) -> Floats:
     """K_0 + K_1 at points, NaN where there is none. [N]."""
-    rest = _value(source, _REST, over, "flag")
+    names = (_APPARENT, _ENERGY) if is_identified else ()
+    measured = {name: _value(source, name, over, "flag") for name in names}
+    rest = _rest_of_cycle(source, measured, over, "flag")
     if is_identified:
-        measured = {name: _value(source, name, over, "flag") for name in (_APPARENT, _ENERGY)}
         spring = _identified(rest, measured, over).dissipation_spring_constant
     else:
         spring = _value(source, _SPRING, over, "flag").value

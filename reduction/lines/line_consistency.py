@@ -35,6 +35,7 @@ import scipy
 from numpy.typing import ArrayLike
 
 from reduction.experiments.designs import box_behnken, model_matrix
+from reduction.lines.bent_loops import share_of_slope
 from reduction.lines.line_curve import evaluate_curve, half_width_of_parts
 from reduction.lines.line_surface import SurfacePoints, evaluate_surface
 from reduction.lines.lookup_product import LineSource, LineSurface
@@ -68,7 +69,8 @@ class ConsistentValues:
     of_surfaces : dict of str to ndarray
         K_ap, H, K_1 and tau, as far as the line has surfaces of them. [N], [J m-1], [s]
     quasi_static_spring_constant : ndarray
-        K_0 of that slow pull at the mean tension. [N]
+        K_0 of that slow pull at the mean tension, or over the cycle where the loops of the runs are
+        bent. [N]
     dissipation_spring_constant, relaxation_time : ndarray
         Solved from the K_ap and H of the surfaces; NaN where there is no solution. [N], [s]
     excess : ndarray
@@ -207,6 +209,13 @@ def consistent_values(
         pull = evaluate_curve(curve, mean)
         # a printed curve is shown as far as its page has it
         rest = pull.value if line.is_printed else np.where(pull.is_inside, pull.value, np.nan)
+        share = np.ones(shape)
+        if curve.loop_bend:
+            share = share_of_slope(
+                curve, mean_tension=mean, tension_amplitude=amplitude,
+                apparent_spring_constant=columns[K_AP], hysteresis_energy=columns[ENERGY],
+            )  # fmt: skip
+            rest = share * rest
 
         def solve(apparent: Floats, energy: Floats, rest: Floats) -> LineParameters:
             return identify_by_amplitude(
@@ -224,7 +233,12 @@ def consistent_values(
             parts = [
                 _part(line, points, K_AP, shape),
                 _part(line, points, ENERGY, shape),
-                _Part(curve.component, pull.contribution, pull.random, pull.freedom),
+                _Part(
+                    curve.component,
+                    share * pull.contribution,
+                    np.hypot(share * pull.random, curve.loop_bend_misfit * rest),
+                    pull.freedom,
+                ),
             ]
             half = {
                 name: _half_of_difference(

@@ -174,6 +174,11 @@ class LineCurve:
         Of a cycle, where the quantity differs.
     is_inverse_slope : bool
         The value is the inverse of the slope of the polynomial: K_0 from strain on tension.
+    loop_bend : float
+        Of K_0: share of the way from its slope at the mean tension to its chord over the cycle that
+        the loops of the runs go; zero where they are straight, or not known. [1]
+    loop_bend_misfit : float
+        What that misses of the K_0 of the runs, as a standard deviation over K_0. [1]
     errata, notes : tuple of str
         As `LineSurface`.
     warnings : tuple of str
@@ -196,6 +201,8 @@ class LineCurve:
     range_note: str = ""
     branch: Literal["", "ascending", "descending"] = ""
     is_inverse_slope: bool = False
+    loop_bend: float = 0.0
+    loop_bend_misfit: float = 0.0
     errata: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()

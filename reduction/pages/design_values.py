@@ -143,7 +143,7 @@ def _curve(curve: LineCurve) -> dict[str, Any]:
             name: _numbers(getattr(curve, name))
             for name in (
                 "low", "high", "coefficient", "at", "value", "standard_uncertainty",
-                "degrees_of_freedom", "contribution", "gaps",
+                "degrees_of_freedom", "contribution", "gaps", "loop_bend", "loop_bend_misfit",
             )
         },
         "component": _components(curve.component),
@@ -383,7 +383,7 @@ MOST_BYTES = 2_500_000
 
 _REPORT = "index.html"
 
-_FORMAT = 4
+_FORMAT = 5
 """Of what one page keeps for the next."""
 
 _TIMES = 3

@@ -35,6 +35,33 @@ function halfOfDifference(parts) {
     parts.map(([, one]) => one.freedom), rows.map((one) => one[0]), rows.map((one) => one[1]));
 }
 
+// Chord of a bent spring between ends of a mean tension, as stages.three_parameter_line.loop_midline has it.
+function springOfCycle(constantAt, mean, half) {
+  const end = (start, step) => {
+    const first = constantAt(start), second = constantAt(start + (step / 2) * first);
+    const third = constantAt(start + (step / 2) * second), last = constantAt(start + step * third);
+    return start + (step / 6) * (first + 2 * second + 2 * third + last);
+  };
+  let middle = mean;
+  for (let round = 0; round < 12; round += 1) {
+    middle = mean - ((end(middle, half) + end(middle, -half)) / 2 - middle);
+  }
+  return (end(middle, half) - end(middle, -half)) / (2 * half);
+}
+
+// K_0 of a cycle over its slope at the mean tension, by the bend of the runs: reduction.lines.bent_loops.
+function shareOfSlope(curve, at, apparent, energy) {
+  if (!curve.loop_bend) return 1;
+  const constantAt = (tension) => {
+    const found = evaluateCurve(curve, tension);
+    return found.inside ? found.value : NaN;
+  };
+  const load = at.tension_amplitude, sine = (energy * apparent) / (Math.PI * load ** 2);
+  const ratio = springOfCycle(constantAt, at.mean_tension, (load / apparent) * Math.sqrt(1 - sine ** 2))
+    / constantAt(at.mean_tension);
+  return Number.isFinite(ratio) && ratio > 0 ? 1 + curve.loop_bend * (ratio - 1) : 1;
+}
+
 // Of each slow pull what the surfaces give at a point and what would hold together there.
 function consistentValues(line, at) {
   if (!line.surfaces[AP] || !line.surfaces[LOST] || !("mean_tension" in at && "tension_amplitude" in at)) return [];
@@ -46,7 +73,10 @@ function consistentValues(line, at) {
   }
   return Object.entries(line.slow_pulls).map(([of, curve]) => {
     const pull = { ...evaluateCurve(curve, at.mean_tension), component: curve.component };
-    const rest = line.is_printed || pull.inside ? pull.value : NaN;
+    const share = shareOfSlope(curve, at, printed[AP], printed[LOST]);
+    const rest = line.is_printed || pull.inside ? share * pull.value : NaN;
+    pull.contribution = pull.contribution.map((one) => share * one);
+    pull.random = Math.hypot(share * pull.random, curve.loop_bend_misfit * rest);
     const solve = ([apparent, energy, slow]) => (
       solvedLine(apparent, energy, at.tension_amplitude, at.frequency, slow));
     const inputs = [printed[AP], printed[LOST], rest], solved = solve(inputs);
