@@ -1166,7 +1166,22 @@ def _of_hold(hold: HoldResult, errors: InstrumentErrors, model: StrainModel) -> 
             errors, model, strain=strain, tension=tension, held=_constant_channel(hold)
         )
 
-    return hold_contributions(field_at, hold)
+    found = hold_contributions(field_at, hold)
+    if not (errors.splice_friction and hold.is_unloading):
+        return found
+    longer = splice_friction_error(
+        errors, model, strain=hold.hold_strain, tension=hold.hold_final_tension
+    )
+    values = {
+        name: np.concatenate(
+            [rows, np.full((1, *rows.shape[1:]), longer if name in _STRAINS_OF_HOLD else 0.0)]
+        )
+        for name, rows in found.values.items()
+    }
+    return Contributions((*found.component, Component("splice_friction", errors.specimen)), values)
+
+
+_STRAINS_OF_HOLD = ("hold_strain", "strain_at_time")
 
 
 def _of_creep(

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from reduction.record.contributions import InstrumentErrors
+from reduction.stages.holds.relaxation_and_creep import HoldResult
 from reduction.stages.strain.strain_model import StrainModel
 from reduction.uncertainty.propagation import loop_contributions
-from reduction.uncertainty.shared_contributions import _friction_on_branches
+from reduction.uncertainty.shared_contributions import _friction_on_branches, _of_hold
 
 MODEL = StrainModel(
     "new", "tension-driven",
@@ -46,6 +47,24 @@ def test_strain_is_as_the_marks_say_on_the_way_up_and_too_large_on_the_way_down(
     assert away[1, -1] == pytest.approx(0.0)
     assert (steeper[1, -5:] < 0).all()
     assert (steeper[0, :5] < 0).all()
+
+
+@pytest.mark.parametrize(("is_unloading", "moved"), [(True, 0.05 * 0.1), (False, 0.0)])
+def test_strain_of_a_hold_has_the_friction_where_it_was_approached_by_unloading(
+    is_unloading, moved
+):
+    """By hand: splices of 1.25 m that are 20 % longer at 450 N, over 2.5 m, known to 5 %."""
+    none, at = np.empty(0), np.array([10.0])
+    hold = HoldResult(
+        "new", "relaxation", 0.0, 600.0, 1.0, 460.0, 450.0, 0.02, 0.0, 0.0, 0.0, at,
+        np.array([450.0]), np.array([1.0]), none, none, none, none, np.nan, np.nan,
+        is_unloading=is_unloading,
+    )  # fmt: skip
+    found = _of_hold(hold, ERRORS, MODEL)
+    error = {name: np.sum(rows, axis=0) for name, rows in found.values.items()}
+    assert error["hold_strain"] == pytest.approx(moved)
+    assert error["strain_at_time"] == pytest.approx(moved)
+    assert not error["hold_final_tension"].any()
 
 
 def test_a_specimen_without_splices_has_no_such_error():

@@ -249,6 +249,8 @@ class HoldResult:
         [N]
     tension_at_time_standard_uncertainty, strain_at_time_standard_uncertainty : ndarray
         Shape (n_times,), or empty. [N], [1]
+    is_unloading : bool
+        Whether tension fell on the ramp that led to it.
     """
 
     specimen: str
@@ -285,6 +287,7 @@ class HoldResult:
     hold_final_tension_standard_uncertainty: float = float("nan")
     tension_at_time_standard_uncertainty: Floats = field(default_factory=lambda: np.empty(0))
     strain_at_time_standard_uncertainty: Floats = field(default_factory=lambda: np.empty(0))
+    is_unloading: bool = False
 
     @property
     def refused(self) -> str:
@@ -1732,6 +1735,7 @@ def _result(
         hold_final_tension_standard_uncertainty=ends.final_uncertainty,
         tension_at_time_standard_uncertainty=tension_at[1],
         strain_at_time_standard_uncertainty=strain_at[1],
+        is_unloading=hold.ramp is not None and not hold.ramp.added.size,
     )
 
 
