@@ -61,6 +61,10 @@ _SPREAD, _BEYOND = 1.1, 1.5  # greatest strain of the others over their least, a
 
 _OFF_CURVE = 1.7  # peak tension over that of the others at its strain
 
+_SOFTENED = 3.0  # what rubber may lose by a greater stretch: half in WHOI-2005-10, more in others
+
+_GREATER = 1.05  # stretch before a test over that of the test itself
+
 _MOST_COMPARED = 40  # tests of one specimen
 
 _FALLEN = 0.5  # of the greatest tension, at the end
@@ -449,21 +453,39 @@ def _of_pairs(
                 by_specimen.setdefault(name, []).append(survey)
     for name, several in by_specimen.items():
         compared = several[:_MOST_COMPARED]
-        unlike = list(_of_stiffness(name, compared, models))
+        softens = campaign.specimens[name].kind in ("rubber tether", "elastomer")
+        unlike = list(_of_stiffness(name, compared, models, softens=softens))
         yield from unlike
         if not unlike:
-            yield from _off_the_others(name, compared, models)
+            yield from _off_the_others(name, compared, models, softens=softens)
+
+
+def _strains(name: str, several: Sequence[Survey], models: Models) -> tuple[Floats, Floats]:
+    """Greatest strain of each test, and of the tests before it; that is 0 without an order."""
+    strain = np.array([
+        greatest_strain(one.extremes, name, models.get((one.plan.id, name))) for one in several
+    ])  # fmt: skip
+    order = np.array([np.nan if one.plan.order is None else one.plan.order for one in several])
+    is_before = order < order[:, None]
+    return strain, np.where(is_before, np.nan_to_num(strain), 0.0).max(axis=1)
 
 
 def _of_stiffness(
-    name: str, several: Sequence[Survey], models: Models
+    name: str, several: Sequence[Survey], models: Models, *, softens: bool
 ) -> Iterator[tuple[str, Note]]:
     """Tests of a specimen that are unlike most that should be like them; of two the later one."""
     others: list[list[tuple[str, float, bool]]] = [[] for _ in several]
+    strain, before = _strains(name, several, models)
+    reached = np.fmax(strain, before)
     for one, other in combinations(range(len(several)), 2):
         ratio, limit = _stiffness_ratio(several[one], several[other], name, models)
         if np.isfinite(ratio):
-            is_far = not 1 / limit <= ratio <= limit
+            low, high = 1 / limit, limit
+            if softens and before[other] > _GREATER * reached[one]:
+                low = min(low, 1 / _SOFTENED)
+            if softens and before[one] > _GREATER * reached[other]:
+                high = max(high, _SOFTENED)
+            is_far = not low <= ratio <= high
             others[other].append((several[one].plan.id, ratio, is_far))
             others[one].append((several[other].plan.id, 1 / ratio, is_far))
     for place, survey in enumerate(several):
@@ -480,31 +502,41 @@ def _of_stiffness(
 
 
 def _off_the_others(
-    name: str, several: Sequence[Survey], models: Models
+    name: str, several: Sequence[Survey], models: Models, *, softens: bool
 ) -> Iterator[tuple[str, Note]]:
     """The test of a specimen whose peak lies far off the curve through the peaks of the others.
 
     Tension as a power of strain, by least squares: runs at several means follow one such curve,
-    though none of them is like another.
+    though none of them is like another.  Rubber that was stretched further before follows another
+    one: such tests are held against each other, and one alone may lie below those of the rest by
+    what rubber softens.
     """
     rows = [
-        (survey.plan.id, strain, tension)
-        for survey in several if survey.plan.kind == "cyclic"
-        for strain in [greatest_strain(survey.extremes, name, models.get((survey.plan.id, name)))]
+        (survey.plan.id, strain, tension, softens and before > _GREATER * strain)
+        for survey, strain, before in zip(
+            several, *_strains(name, several, models), strict=True)
+        if survey.plan.kind == "cyclic"
         for tension in [survey.extremes.greatest_tension.get(name, np.nan)]
         if strain > 0 and tension > 0
     ]  # fmt: skip
     if len(rows) < _FEWEST_ON_CURVE:
         return
-    strain, tension = np.log([row[1:] for row in rows]).T
+    strain, tension = np.log([row[1:3] for row in rows]).T
+    softened = np.array([row[3] for row in rows])
     off = np.full(len(rows), np.nan)
     for place in range(len(rows)):
         of_others = np.arange(len(rows)) != place
-        x, y = strain[of_others], tension[of_others]
+        alike = of_others & (softened == softened[place])
+        is_alone = alike.sum() < _FEWEST_ON_CURVE - 1
+        x, y = strain[of_others if is_alone else alike], tension[of_others if is_alone else alike]
         beyond = max(x.min() - strain[place], strain[place] - x.max())
         if np.ptp(x) > np.log(_SPREAD) and beyond < np.log(_BEYOND):
             slope, start = np.polyfit(x, y, 1)
-            off[place] = tension[place] - (start + slope * strain[place])
+            away = tension[place] - (start + slope * strain[place])
+            if not (is_alone and softened[place] and -np.log(_SOFTENED) < away < 0):
+                off[place] = away
+            elif away < -np.log(_OFF_CURVE):
+                yield rows[place][0], note("softer-by-stretch", name, ratio=float(np.exp(away)))
     if np.isnan(off).all():
         return
     worst = int(np.nanargmax(np.abs(off)))

@@ -1804,6 +1804,12 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             " theirs, and that file and specimen are not swapped"
         ),
     ),
+    "softer-by-stretch": (
+        "note",
+        "its greatest tension is {ratio:.3g} times what the tests before it have at this strain: it"
+        " was stretched further before it, which softens rubber by up to so much. A wrong unit or"
+        " gain of the load looks the same",
+    ),
     "tension-behind-position": (
         "warning",
         "tension lags position by {delay:.2g} s, which no specimen causes: the load was logged"

@@ -45,3 +45,33 @@ def test_two_sheets_of_a_workbook_are_two_logs_and_one_sheet_twice_is_one():
     assert list(_of_pairs(campaign, apart, {})) == []
     ((test, found),) = _of_pairs(campaign, [survey("T-1", "one"), survey("T-2", "one")], {})
     assert test == "T-2" and found.code == "log-used-twice"
+
+
+def pulled(order, strain, tension, kind="cyclic"):
+    """A test of one specimen that went so far; rubber by no law, numbers that are written down."""
+    one = survey(f"T-{order}", digest=f"{order:064d}")
+    one.plan.kind, one.plan.order = kind, order
+    one.levels = SimpleNamespace(frequency=0.1)
+    one.extremes = SimpleNamespace(
+        is_stepwise=True, greatest_measured_strain={"b": strain}, greatest_tension={"b": tension}
+    )
+    return one
+
+
+@pytest.mark.parametrize(
+    ("kind", "last", "told"),
+    [
+        ("rubber tether", (2.0, 500.0), ["softer-by-stretch"]),  # half, as WHOI-2005-10 found
+        ("rubber tether", (2.0, 220.0), ["stiffness-jumps"]),  # newtons for pounds
+        ("rope", (2.0, 500.0), ["stiffness-jumps"]),  # grows stiffer with the load that it has seen
+        ("rubber tether", (2.7, 900.0), ["stiffness-jumps"]),  # not stretched further before
+    ],
+)
+def test_rubber_that_was_stretched_further_before_may_be_softer(kind, last, told):
+    campaign = SimpleNamespace(
+        layouts={"log": layout("Force")}, specimens={"b": SimpleNamespace(kind=kind)}
+    )
+    virgin = [(1.25, 550.0), (1.5, 700.0), (1.75, 850.0), (2.0, 1050.0), (2.75, 2000.0)]
+    tests = [pulled(order, *one) for order, one in enumerate([*virgin, last], start=1)]
+    found = list(_of_pairs(campaign, tests, {}))
+    assert [(test, one.code) for test, one in found] == [("T-6", code) for code in told]
