@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from reduction.archive.open import Opener, reading
+from reduction.archive.open import Opener, ReadOnce, reading
 from reduction.archive.product_files import archives_of_tests
 from reduction.archive.shared_errors import components_of, shared_contributions
 from reduction.archive.surfaces_dataset import surface_names, surfaces_of
@@ -488,16 +488,17 @@ def lines_of_archive(path: Path) -> list[LineSource]:
 
     Surfaces come with the conditions and checks of the tests that lie beside them.
     """
-    lines = _lines_at(path)
+    opener = ReadOnce()
+    lines = _lines_at(path, opener)
     if not any(line.surfaces for line in lines):
         return lines
-    tests = [line for one in archives_of_tests(path.parent) for line in _lines_at(one)]
+    tests = [line for one in archives_of_tests(path.parent) for line in _lines_at(one, opener)]
     return [_with_runs(line, tests) if line.surfaces else line for line in lines]
 
 
-def _lines_at(path: Path) -> list[LineSource]:
-    with reading(path) as archive:
-        return lines_of_open_archive(archive, path)
+def _lines_at(path: Path, opener: Opener) -> list[LineSource]:
+    with opener(path) as archive:
+        return lines_of_open_archive(archive, path, opener)
 
 
 def lines_of_open_archive(
@@ -600,7 +601,8 @@ def lines_of_folder(folder: Path) -> list[LineSource]:
     its slow pull.  It bears the name of the specimen, its tests are called TEST SPECIMEN.  So is
     one whose only test is of holds, where these have a static stiffness.
     """
-    found = [(path.stem, _lines_at(path)) for path in archives_of_lines(folder)]
+    opener = ReadOnce()  # surfaces take K_0 of their runs and pulls, too
+    found = [(path.stem, _lines_at(path, opener)) for path in archives_of_lines(folder)]
     named = _with_unique_names(found)
     fitted = {one for line in named if line.surfaces for one in line.specimens}
     tests: dict[str, list[LineSource]] = {}
@@ -776,22 +778,23 @@ def experiments_with_pulls(path: Path) -> list[LineSource]:
     ArchiveError
         If the archive of a pull is missing, or holds none.
     """
-    with reading(path) as archive:
-        found = lines_of_open_archive(archive, path)
+    opener = ReadOnce()
+    with opener(path) as archive:
+        found = lines_of_open_archive(archive, path, opener)
         settings = json.loads(str(archive.attrs.get("settings", "{}")))
         runs = {line.name: _runs_of(archive, line.name) for line in found}
     made = []
     for line in found:
         pulls = settings.get(line.name, {}).get("quasi_static", {})
         for specimen, test in pulls.items():
-            pulled = _pull_of(path.parent, test, specimen)
+            pulled = _pull_of(path.parent, test, specimen, opener)
             made.append(
                 replace(
                     line,
                     name=line.name if len(pulls) == 1 else f"{line.name} {specimen}",
                     source=f"{line.source}; slow pull {pulled.source}",
                     curves=_with_bend(
-                        path.parent, specimen, pulled.curves, reading, runs[line.name]
+                        path.parent, specimen, pulled.curves, opener, runs[line.name]
                     ),
                     notes=tuple(dict.fromkeys((*line.notes, *pulled.notes))),
                 )
