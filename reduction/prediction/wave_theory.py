@@ -56,7 +56,7 @@ Cnoidal waves of first order ([15]_), with the parameter m and the integrals K a
 
 For m = 1 it is the solitary wave, H sech^2 over still water with c^2 = g (d + H).
 
-The steady wave of `reduction.prediction.stream_function`, right at every depth and height.
+The steady wave of `reduction.prediction.stream_function`, for waves that do not break.
 
 Table of wave theories by relative depth, as it is meant and to the letter.
 
