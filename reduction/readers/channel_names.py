@@ -15,7 +15,14 @@ from functools import lru_cache
 import numpy as np
 
 from reduction.quantities.units import DIMENSIONS, Dimension
-from reduction.readers.columns import CLOCK_TEXT, FORCE_OF_MASS, UNIT_BEHIND_NAME, stated_scale
+from reduction.readers.columns import (
+    CLOCK_TEXT,
+    FORCE_OF_MASS,
+    UNIT_BEHIND_NAME,
+    orders_of_dates,
+    plain_date,
+    stated_scale,
+)
 from reduction.readers.layout import CLOCK, UNKNOWN
 from reduction.record.errors import SettingsError
 from reduction.record.measurement import Floats
@@ -187,7 +194,8 @@ def _unit(column: SeenColumn, dimension: Dimension) -> str | None:
 
 def _is_clock(column: SeenColumn) -> bool:
     """Whether all texts are clock times; four digits only where one begins with 0."""
-    texts = [text for text in column.texts if text]
+    order = (orders_of_dates(column.texts) or (None,))[0]
+    texts = [plain_date(text, order) for text in column.texts if text]
     return (
         bool(texts)
         and all(
@@ -270,6 +278,20 @@ def _reference(column: SeenColumn, columns: Sequence[SeenColumn]) -> str:
 
 def _line(key: str, column: str, unit: str, more: str = "") -> str:
     return f"{key} = {{ column = {column}, unit = {toml_text(unit)}{more} }}"
+
+
+def _date_order(column: SeenColumn) -> tuple[str, list[str]]:
+    """Which number of a date is the day, as TOML, and what stands behind it."""
+    orders = orders_of_dates(column.texts)
+    if orders is None:
+        return "", []
+    if len(orders) == 1:
+        return f', date_order = "{orders[0]}"', [
+            f"sure: dates are {orders[0]}, the other number being above 12"
+        ]
+    return f', date_order = "{UNKNOWN}"', [
+        'unknown: whether dates are "month first" or "day first" (date_order)'
+    ]
 
 
 def _without_repeats(
@@ -375,6 +397,8 @@ def propose_channels(columns: Sequence[SeenColumn]) -> _Proposal:
     start = _Start.of(chosen)
     for key, (column, unit) in chosen.items():
         more, said = start.settings(key, unit) if start is not None else ("", [])
+        if unit == CLOCK:
+            more, said = _date_order(column)
         if key == "crosshead_position" and not more:
             more, said = f', datum = "{UNKNOWN}"', ["unknown: whether the position is pin-to-pin or"
                                                    " a displacement (datum)"]  # fmt: skip

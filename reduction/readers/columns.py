@@ -9,13 +9,13 @@ from dataclasses import dataclass
 from datetime import date
 from pathlib import Path
 from tokenize import TokenError
-from typing import Any, Protocol
+from typing import Any, Protocol, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from reduction.quantities.units import Dimension, scale_to_si
-from reduction.readers.layout import CLOCK, Layout, LogParts, Watch
+from reduction.readers.layout import CLOCK, DateOrder, Layout, LogParts, Watch
 from reduction.readers.text_rows import split_line
 from reduction.record.errors import LogError, SettingsError
 from reduction.record.measurement import Bools, Floats, Integers
@@ -23,11 +23,62 @@ from reduction.record.plain_text import cut
 from reduction.record.samples import ColumnWriter, check_room
 
 CLOCK_TEXT = re.compile(
-    r"(?:(?:(\d{4})-(\d\d)-(\d\d)|(\d{1,2})\.(\d{1,2})\.(\d{4}))[T ]\s*)?"
+    r"(?:(?:(\d{4})[-/](\d{1,2})[-/](\d{1,2})|(\d{1,2})\.(\d{1,2})\.(\d{4}))[T ]\s*)?"
     r"(\d{1,2}):?([0-5]\d)(?::([0-5]\d(?:[.,]\d+)?))?(?:\s*([AaPp])\.?[Mm]\.?)?"
     r"(Z|(?:\s*[+-][01]\d:?[0-5]\d))?"
 )
-"""A time of day, with a date before it or none; of a date with slashes nobody knows the month."""
+"""A time of day, with a date before it or none; other dates become one of these by `plain_date`."""
+
+_MONTHS = ("jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec")
+
+_NAMED_DATE = re.compile(
+    rf"(\d{{1,2}})[- ]({'|'.join(_MONTHS)})[a-z]*[- ](\d{{4}})(?=[T ])", re.IGNORECASE
+)
+
+_DATE_OF_EITHER_ORDER = re.compile(r"(\d{1,2})([-/])(\d{1,2})\2(\d{4}|\d\d)(?=[T ])")
+
+_CENTURY = 69  # years of two digits from here on are of the last one, as POSIX has them
+
+
+def plain_date(text: str, order: DateOrder | None) -> str:
+    """A clock time whose date, if one is before it, is that of `CLOCK_TEXT` where it can be.
+
+    Examples
+    --------
+    >>> plain_date("05/31/2005 09:45", "month first"), plain_date("31-May-2005 09:45", None)
+    ('31.05.2005 09:45', '31.5.2005 09:45')
+    >>> plain_date("05/06/05 09:45", "day first"), plain_date("05/06/05 09:45", None)
+    ('05.06.2005 09:45', '05/06/05 09:45')
+    """
+    if found := _NAMED_DATE.match(text):
+        day, month, year = found[1], f"{_MONTHS.index(found[2].lower()) + 1}", found[3]
+    elif order is not None and (found := _DATE_OF_EITHER_ORDER.match(text)):
+        day, _, month, year = found.groups()
+        if order == "month first":
+            day, month = month, day
+        if len(year) < len("2005"):
+            year = f"{19 if int(year) >= _CENTURY else 20}{year}"
+    else:
+        return text
+    return f"{day}.{month}.{year}{text[found.end() :]}"
+
+
+def orders_of_dates(texts: Sequence[str]) -> tuple[DateOrder, ...] | None:
+    """In which orders all dates of clock times are dates; None where none has a date of either.
+
+    Examples
+    --------
+    >>> orders_of_dates(["05/12/2005 23:59", "05/13/2005 00:01"])
+    ('month first',)
+    """
+    dates = [either for text in texts if (either := _DATE_OF_EITHER_ORDER.match(text))]
+    if not dates:
+        return None
+    return tuple(
+        order for order in get_args(DateOrder)
+        if all(clock_reading(plain_date(either.string, order)) is not None for either in dates)
+    )  # fmt: skip
+
 
 DAY = 86400.0
 
@@ -56,6 +107,7 @@ def clock_to_seconds(
                 found=f"'{text}'",
                 needed="hours and minutes, such as 0945, 09:45, 09:45:30 or 9:45:30 PM, or a date "
                 "before them, 2024-05-31 09:45:30 or 31.05.2024 09:45:30",
+                hint=_order_to_set(texts),
             )
         days[index], seconds[index] = reading
     valid = np.flatnonzero(np.isfinite(seconds))
@@ -73,6 +125,21 @@ def clock_to_seconds(
         )  # fmt: skip
     seconds[valid] = read + DAY * day - read[0]
     return seconds
+
+
+def _order_to_set(texts: Sequence[str]) -> str | None:
+    """What a layout is to state of the dates of a clock."""
+    orders = orders_of_dates(texts)
+    if orders is None:
+        return None
+    if len(orders) == 1:
+        return f'Set date_order = "{orders[0]}" for the time: no other order makes dates of them.'
+    return (
+        'Set date_order = "month first" or "day first" for the time: of a date with slashes or '
+        "dashes, the first number may be either."
+        if orders
+        else "Neither number of these dates is a month in every row."
+    )
 
 
 def clock_reading(text: str) -> tuple[float, float] | None:

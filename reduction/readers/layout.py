@@ -25,6 +25,8 @@ CLOCK = "clock"
 
 Format = Literal["delimited", "blocks", "spreadsheet", "tdms", "matlab", "hdf5", "parquet", "json"]
 
+DateOrder = Literal["day first", "month first"]
+
 _CHANNEL_DIMENSION: dict[str, Dimension] = {
     "time": "time",
     "crosshead_position": "length",
@@ -63,6 +65,8 @@ class Channel(BaseModel):
     """Tension at which ``reference_length`` was read; slack where not given."""
     standard_uncertainty: str | None = None
     verified_range: tuple[str, str] | None = None
+    date_order: DateOrder | None = None
+    """Of a clock whose dates are written 05/06/2005: which of the two numbers is the day."""
     time_column: str | int | None = None
     """The channel's own time stamps, where it has them."""
     time_unit: str = "s"
@@ -76,6 +80,8 @@ def _check_keys(name: str, channel: Channel) -> None:
     if name == "time":
         keys += ("sign", "zero")
         keys += ("factor",) if channel.unit == CLOCK else ()
+    if name != "time" or channel.unit != CLOCK:
+        keys += ("date_order",)
     for key in keys:
         if getattr(channel, key) != Channel.model_fields[key].default:
             raise SettingsError(

@@ -16,7 +16,12 @@ import pyarrow.compute as pc  # type: ignore[import-untyped]
 import pyarrow.csv as pa_csv  # type: ignore[import-untyped]
 
 from reduction.quantities.units import Dimension, scale_to_si
-from reduction.readers.columns import DeclaredColumn, clock_to_seconds, without_marks
+from reduction.readers.columns import (
+    DeclaredColumn,
+    clock_to_seconds,
+    plain_date,
+    without_marks,
+)
 from reduction.readers.layout import CLOCK, Layout
 from reduction.readers.text_rows import TextRows, count_lines, split_line
 from reduction.record.errors import LogError, ReductionError, SettingsError
@@ -85,7 +90,8 @@ def _read(rows: TextRows, wanted: Sequence[tuple[DeclaredColumn, int]], n_fields
     for want, place in wanted:
         column = table.column(str(place))
         if want.unit == CLOCK:
-            clock[want.key] = [field.strip() for field in column.to_pylist()]
+            order = layout.channels[want.key].date_order
+            clock[want.key] = [plain_date(field.strip(), order) for field in column.to_pylist()]
             continue
         pieces = _numbers(column)
         if pieces is None:

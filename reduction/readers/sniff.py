@@ -28,7 +28,7 @@ from reduction.readers.channel_names import (
     is_unit,
     propose_channels,
 )
-from reduction.readers.columns import CLOCK_TEXT, ColumnTable, matrix_table
+from reduction.readers.columns import CLOCK_TEXT, ColumnTable, matrix_table, plain_date
 from reduction.readers.delimited import without_comment_name
 from reduction.readers.hdf5 import data_set, group_table, open_hdf5, read_texts
 from reduction.readers.json_matrix import json_content
@@ -95,7 +95,7 @@ _DATE = re.compile(r"\d{1,4}[-./]\d{1,2}[-./]\d{2,4}")
 
 def _is_time(text: str) -> bool:
     """Whether a field is a clock time, a date, or both."""
-    is_clock = ":" in text and CLOCK_TEXT.fullmatch(text) is not None
+    is_clock = ":" in text and CLOCK_TEXT.fullmatch(plain_date(text, "day first")) is not None
     return is_clock or _DATE.fullmatch(text) is not None
 
 

@@ -27,6 +27,7 @@ from reduction.readers.columns import (
     clock_to_seconds,
     declared_columns,
     find_column,
+    plain_date,
     without_marks,
 )
 from reduction.readers.layout import CLOCK, Layout, Watch
@@ -236,7 +237,8 @@ def _exact_columns(
         blank[[i for i in odd if isinstance(cells[i], str) and not cells[i].strip()]] = True
         found.blanks.append(blank)
         if want.unit == CLOCK:
-            found.text[want.key] = tuple(_clock_text(cell) for cell in cells)
+            order = layout.channels[want.key].date_order
+            found.text[want.key] = tuple(plain_date(_clock_text(cell), order) for cell in cells)
             found.values.append(
                 clock_to_seconds(
                     path,

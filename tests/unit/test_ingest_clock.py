@@ -4,7 +4,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from reduction.readers.columns import clock_to_seconds
+from reduction.readers.columns import clock_to_seconds, plain_date
 from reduction.readers.record_in_si import _between_ticks
 from reduction.record.errors import LogError
 
@@ -78,10 +78,40 @@ def test_a_date_in_some_rows_is_refused():
         seconds("2024-02-28 10:00", "10:01")
 
 
-@pytest.mark.parametrize("text", ["03/04/2024 10:00", "31.02.2024 10:00", "2023-02-29 10:00"])
-def test_a_date_with_slashes_or_of_no_day_is_refused(text):
+@pytest.mark.parametrize("text", ["31.02.2024 10:00", "2023-02-29 10:00", "2023/13/01 10:00"])
+def test_a_date_of_no_day_is_refused(text):
     with pytest.raises(LogError, match=f"a reading is not a clock time; found '{text}'"):
         seconds(text)
+
+
+@pytest.mark.parametrize(
+    ("texts", "told"),
+    [
+        (["03/04/2024 10:00"], '"month first" or "day first"'),
+        (["12-05-24 10:00", "13-05-24 10:00"], 'date_order = "day first" .* no other'),
+        (["5/31/2024 10:00"], 'date_order = "month first" .* no other'),
+        (["13/01/2024 10:00", "01/13/2024 10:00"], "Neither number"),
+    ],
+)
+def test_a_date_that_may_be_of_either_order_is_refused_and_the_order_asked_for(texts, told):
+    with pytest.raises(LogError, match=f"found '{texts[0]}'.*{told}"):
+        seconds(*texts)
+
+
+def test_dates_are_read_in_the_order_that_is_stated():
+    # across the end of May, that of a leap February, and of the century in two digits
+    texts = ["05/31/2005 11:59:30 PM", "06/01/2005 12:00:30 AM"]
+    assert seconds(*(plain_date(text, "month first") for text in texts)) == [0.0, 60.0]
+    texts = ["28-02-24 12:00", "01-03-24 12:00"]
+    assert seconds(*(plain_date(text, "day first") for text in texts)) == [0.0, 2 * 86400.0]
+    texts = ["12/31/99 12:00", "1/1/00 12:00"]
+    assert seconds(*(plain_date(text, "month first") for text in texts)) == [0.0, 86400.0]
+
+
+def test_months_by_name_and_years_first_need_no_order():
+    texts = ["30-Sep-2005 12:00", "1 october 2005 12:00"]
+    assert seconds(*(plain_date(text, None) for text in texts)) == [0.0, 86400.0]
+    assert seconds("2005/12/31 12:00", "2006/1/1 12:00") == [0.0, 86400.0]
 
 
 def test_rows_of_one_second_are_spread_evenly_where_the_clock_agrees():

@@ -305,6 +305,12 @@ def test_a_clock_is_kept_as_text_and_made_elapsed_seconds(read):
     assert log.columns["time"].tolist() == [0.0, 1440.0]
 
 
+def test_dates_of_a_clock_are_read_in_the_order_of_the_layout(read):
+    channels = CHANNELS | {"time": {"column": "t", "unit": "clock", "date_order": "month first"}}
+    log = read("t,x,F\n05/31/2005 23:59,1,2\n06/01/2005 0:00,2,3\n", channels)
+    assert log.columns["time"].tolist() == [0.0, 60.0]
+
+
 def test_own_time_stamps_are_read_beside_their_channel(read):
     channels = CHANNELS | {
         "tension.1": {"column": "F", "unit": "N", "time_column": "tF", "time_unit": "ms"}

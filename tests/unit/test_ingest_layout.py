@@ -48,6 +48,7 @@ def test_a_clock_is_a_unit_of_time_alone():
         ("time", {"unit": "s", "sign": -1}, "sign"),
         ("time", {"unit": "s", "zero": "5 s"}, "zero"),
         ("time", {"unit": "clock", "factor": 2.0}, "factor"),
+        ("time", {"unit": "s", "date_order": "day first"}, "date_order"),
         ("tension.1", {"unit": "N", "reference_length": "2 m"}, "reference_length"),
         ("tension.1", {"unit": "N", "datum": "displacement"}, "datum"),
     ],

@@ -349,6 +349,16 @@ def test_a_clock_is_seen(tmp_path):
         assert columns(found)["time"] == ("time_est", "clock")
 
 
+@pytest.mark.parametrize(
+    ("last", "order"), [("05/31/2005 9:45:02 AM", "month first"), ("05/06/2005 9:45:02 AM", "?")]
+)
+def test_the_order_of_dates_is_drafted_where_a_number_above_12_decides_it(tmp_path, last, order):
+    times = ["05/06/2005 9:45:00 AM", "05/06/2005 9:45:01 AM", last]
+    path = write(tmp_path, "Time,load_lb\n" + "".join(f"{time},1\n" for time in times))
+    channel = next(line for line in sniff_layout(path).toml.split("\n") if "clock" in line)
+    assert f'date_order = "{order}"' in channel
+
+
 def test_time_that_goes_back_is_said(tmp_path):
     rows = list(range(30))
     rows[20] = 5

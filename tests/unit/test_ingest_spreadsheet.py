@@ -187,6 +187,13 @@ def test_a_clock_of_four_digits_becomes_elapsed_time(tmp_path):
     assert log.columns["time"].tolist() == [0.0, 900.0]
 
 
+def test_dates_of_a_sheet_are_read_in_the_order_of_the_layout(tmp_path):
+    time = {"column": "time", "unit": "clock", "date_order": "day first"}
+    rows = [["time", "load"], ["30/09/05 23:59", 1.0], ["01/10/05 00:00", 2.0]]
+    log = read(tmp_path, rows, channels={"time": time, "tension": {"1": LOAD}})
+    assert log.columns["time"].tolist() == [0.0, 60.0]
+
+
 def test_sheets_are_given_by_name_or_number(tmp_path):
     path = write_xlsx(tmp_path / "b.xlsx", {"notes": [["x"]], "T-1": HEAD + ROWS})
     for sheet in ("T-1", 2):
