@@ -61,7 +61,7 @@ _PINT_SI = {
 # as test machines write them, where pint has no such name
 _SPELLINGS = {
     "Sec": "s", "SEC": "s", "Secs": "s", "Sek": "s", "sek": "s", "mSec": "ms", "msec": "ms",
-    "lb": "pound", "IN": "in", "KN": "kN", "MM": "mm", "Kgf": "kgf", "KGF": "kgf", "LBF": "lbf",
+    "lb": "pound", "te": "tonne", "IN": "in", "KN": "kN", "MM": "mm", "Kgf": "kgf", "KGF": "kgf", "LBF": "lbf",
     "с": "s", "сек": "s", "мм": "mm", "Н": "N", "кН": "kN",  # noqa: RUF001
     "秒": "s", "毫米": "mm", "牛": "N", "千牛": "kN",
 }  # fmt: skip
@@ -211,10 +211,14 @@ def scale_to_si(unit: str, dimension: Dimension) -> tuple[float, float]:
 
 
 def _of_other_dimension(unit: str, dimension: Dimension, found: str) -> SettingsError:
+    is_weight = dimension == "force" and found.strip("[]") == "mass"
     return SettingsError(
         f"unit '{unit}' is not a unit of {dimension}",
         found=f"'{unit}', a unit of {found or 'another dimension'}",
         needed=f"a unit of {dimension}, such as {DIMENSIONS[dimension]}",
+        hint='A load in kilograms is in "kgf", in tonnes in "tf", in pounds in "lbf".'
+        if is_weight
+        else None,
     )
 
 

@@ -63,6 +63,13 @@ def test_unit_of_the_wrong_dimension_is_refused():
         scale_to_si("ft", "force")
 
 
+@pytest.mark.parametrize("unit", ["te", "t", "kg", "pounds"])
+def test_a_mass_for_a_load_is_told_how_the_force_is_written(unit):
+    with pytest.raises(SettingsError, match='in tonnes in "tf", in pounds in "lbf"'):
+        scale_to_si(unit, "force")
+    assert scale_to_si("te", "mass") == (1000.0, 0.0)
+
+
 @pytest.mark.parametrize("text", ["12", "", "abc", "1.2.3 ft", "nan ft"])
 def test_a_text_without_a_number_or_a_unit_is_refused(text):
     with pytest.raises(SettingsError, match="unit"):
