@@ -56,7 +56,7 @@ from reduction.batch.survey import survey_log
 from reduction.campaign.load import load_campaign
 from reduction.readers.layout import LogParts
 if sys.argv[2:] in (["memory"], ["disk"]):
-    Parts.folder_of = lambda self, n_bytes: {"memory": None, "disk": self.folder}[sys.argv[2]]
+    LogParts.folder_of = lambda self, n_bytes: {"memory": None, "disk": self.folder}[sys.argv[2]]
 campaign = load_campaign(Path(sys.argv[1]))
 start = time.perf_counter()
 [survey] = survey_log(campaign, "long")
@@ -155,16 +155,27 @@ def seconds_of(side: Sequence[Mapping[str, Any]], key: str = "seconds") -> tuple
     return tuple(one[key] for one in side)
 
 
-def print_sides(sides: Mapping[str, Sequence[Mapping[str, Any]]]) -> tuple[float, ...]:
-    """Print seconds and memory of both sides, and give the ratios of the first to the second."""
+def print_sides(
+    sides: Mapping[str, Sequence[Mapping[str, Any]]], to: Sequence[str] = ()
+) -> tuple[float, ...]:
+    """Print seconds and memory of all sides, and give the ratios of the first to another one.
+
+    That is the second, or of those named the one whose median is least.
+    """
     print("| | median s | min | max | peak MB |\n|---|---|---|---|---|")
     for name, side in sides.items():
         taken = seconds_of(side)
         peak = max(one["peak_mb"] for one in side)
         print(f"| {name} | {_spread(taken)} | {peak:.0f} |")
-    first, second = map(seconds_of, sides.values())
-    ratios = tuple(ours / theirs for ours, theirs in zip(first, second, strict=True))
-    print(f"| ratio | {_spread(ratios)} | |")
+    first, *others = sides
+    fastest = min(to or others[:1], key=lambda name: median(seconds_of(sides[name])))
+    ratios = tuple(
+        ours / theirs
+        for ours, theirs in zip(
+            *(seconds_of(sides[name]) for name in (first, fastest)), strict=True
+        )
+    )
+    print(f"| ratio{f' to {fastest}' if to else ''} | {_spread(ratios)} | |")
     return ratios
 
 
