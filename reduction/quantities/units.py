@@ -61,7 +61,8 @@ _PINT_SI = {
 # as test machines write them, where pint has no such name
 _SPELLINGS = {
     "Sec": "s", "SEC": "s", "Secs": "s", "Sek": "s", "sek": "s", "mSec": "ms", "msec": "ms",
-    "lb": "pound", "te": "tonne", "IN": "in", "KN": "kN", "MM": "mm", "Kgf": "kgf", "KGF": "kgf", "LBF": "lbf",
+    "lb": "pound", "te": "tonne", "IN": "in", "KN": "kN", "MM": "mm", "Kgf": "kgf", "KGF": "kgf",
+    "LBF": "lbf",
     "с": "s", "сек": "s", "мм": "mm", "Н": "N", "кН": "kN",  # noqa: RUF001
     "秒": "s", "毫米": "mm", "牛": "N", "千牛": "kN",
 }  # fmt: skip

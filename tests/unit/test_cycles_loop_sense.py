@@ -161,6 +161,14 @@ def test_the_work_of_a_drift_is_told():
     assert abs(note.numbers["closed"] - energy) == pytest.approx(1.0, rel=0.02)
 
 
+def test_a_drift_of_an_elastic_specimen_is_not_told():
+    """A tenth of a percent of the loop is nothing, whatever it is of a loss of zero."""
+    loops = loops_of(1e-5, drift=-0.05)
+    drift = loops.closed_loop_energy - loops.hysteresis_energy
+    assert (np.abs(drift) > 2 * np.abs(loops.hysteresis_energy)).all()
+    assert notes(loops) == ()
+
+
 @pytest.mark.parametrize("loss_angle", [0.0, 0.02, 0.3])
 def test_loops_of_a_sine_are_those_of_a_sine(loss_angle):
     assert not contradicts_sine(loops_of(loss_angle, drift=0.2)).any()

@@ -42,6 +42,8 @@ _BEYOND_SCATTER = 3.0
 
 _DRIFT_TOLD = 0.02  # of the energy
 
+_LEAST_LOSS = 1e-3  # loss factor that no rubber and no fibre comes near
+
 _FRICTION = 2.0  # loss over the fall of tension with stretch: less may be damping beside inertia
 
 _PLACED = 0.5  # of what is not known of the work of a drift whose cycles tell nothing of its place
@@ -476,7 +478,10 @@ def notes_of_loops(
         later = np.flatnonzero(np.isfinite(energy))[int(known.size > 2) :]
         mean = float(energy[later].mean())
         closed = float(np.nanmean(loops.closed_loop_energy[row, later]))
-        if abs(closed - mean) > max(_DRIFT_TOLD * abs(mean), _BEYOND_SCATTER * scatter):
+        # of an elastic specimen any drift is many times what is lost
+        elastic = np.pi * abs(storage) * _median(loops.strain_amplitude[row]) ** 2
+        least = max(_DRIFT_TOLD * abs(mean), _BEYOND_SCATTER * scatter, _LEAST_LOSS * elastic)
+        if abs(closed - mean) > least:
             effect = (closed - mean) / abs(mean)
             found = note("drift-in-energy", name, energy=mean, closed=closed, effect=effect)
             # cycles that drift unequally and lose alike show that what was taken off is right

@@ -475,6 +475,10 @@ _PEAK_FACTOR = 2.0
 
 _LAST_STEPS = 9
 
+_MAY_BE_GREATEST = 4.0  # noises below the greatest reading: one more than that may be the greatest
+
+_LEAST_TOP = 8  # readings that show whether a load still rises
+
 
 @dataclass(frozen=True)
 @read_only_arrays
@@ -484,10 +488,11 @@ class TensilePull:
     Parameters
     ----------
     peak_tension, peak_tension_standard_uncertainty : ndarray
-        Greatest tension; the noise of one reading and what the line gains between two. [N]
+        Greatest reading; what noise and codes make of it, and what the line gains from one reading
+        to the next, as it may have parted or turned just before that. [N]
     strain_at_peak, strain_at_peak_standard_uncertainty : ndarray
-        The same of strain, and half the range over which the tension is not told from its
-        greatest, over root three. [1]
+        Of the last reading of a load that rises to its end, else of the middle of the readings
+        that may be the greatest; and half the range of these. [1]
     is_break : ndarray of bool
         True where the line broke.
     peak_tension_over_strength, peak_tension_over_strength_standard_uncertainty : ndarray
@@ -592,8 +597,9 @@ def tensile_pull(
     A break: after its greatest the tension falls below half of it while the crosshead has
     gone back by less than a twentieth of its travel, for three readings.  A pull that was
     stopped gives a lower bound.  [4]_ prints strength and strain at failure of each pull and
-    no uncertainty.  The greatest of readings with noise reads high, by less than the noise of
-    one reading where the record rises by more than that from reading to reading.
+    no uncertainty.  The greatest of readings with noise reads high: by less than the noise of
+    one reading where the record rises by more than that from reading to reading, and by up to
+    two and a half times the noise where thousands are nearly as great.
 
     Examples
     --------
@@ -624,16 +630,13 @@ def tensile_pull(
                 needed=f"{_FEWEST_SAMPLES} or more",
             )
         peak = int(np.nanargmax(load))
-        noise = reading_noise(load[: peak + 1])
-        # it broke somewhere between its greatest reading and the next, which shows it parted
-        numbers[:2, row] = load[peak], np.hypot(noise, _gain(load[: peak + 1]) / np.sqrt(12))
-        numbers[2:, row] = _strain_there(load, stretch, peak, noise)
         begin, reached = np.nanmin(place[: peak + 1]), np.nanmax(place[: peak + 1])
         parting = parting_sample(
             place, load, last=peak, least_position=reached - _GIVEN_BACK * (reached - begin),
             tension_low=_FALLEN * load[peak],
         )  # fmt: skip
         fell[row] = parting > 0
+        numbers[:, row] = _at_the_top(load, stretch, parting if parting > 0 else load.size)
         if broke is not None:
             how.append("as stated")
         elif fell[row]:
@@ -664,17 +667,40 @@ def _gain(series: Floats) -> float:
     return float(np.abs(np.median(steps))) if steps.size else 0.0
 
 
-def _strain_there(load: Floats, stretch: Floats, peak: int, noise: float) -> tuple[float, float]:
-    """Strain at the peak, and what is not known of it where the top of the curve is flat."""
+def _at_the_top(load: Floats, stretch: Floats, end: int) -> tuple[float, float, float, float]:
+    """Greatest tension, its standard uncertainty, and the same of the strain there.
+
+    Noise makes an early reading the greatest: where the load rises until it ends, the strain is
+    the greatest of the readings that may be it, and else that of their middle.  Line and turn lie
+    up to a reading beyond the last one.
+    """
+    peak = int(np.nanargmax(load))
     rise = stretch[: peak + 1]
-    top = np.flatnonzero(load[: peak + 1] >= load[peak] - _PEAK_FACTOR * noise)
-    there = rise[top][np.isfinite(rise[top])]
-    if not there.size or _stands_still(load[: peak + 1], rise, float(there[-1])):
-        return np.nan, np.nan
-    flat = (there.max() - there.min()) / 2 / np.sqrt(3)
-    spread = np.sqrt(flat**2 + reading_noise(rise) ** 2 + _gain(rise) ** 2 / 12)
-    # where the reading at the peak itself is missing, the nearest one before it
-    return float(there[-1]), float(spread)
+    noise, step = reading_noise(load[: peak + 1]), step_of_codes(load[: peak + 1])
+    hidden = _MAY_BE_GREATEST * noise + step
+    top = np.flatnonzero(load[:end] >= load[peak] - hidden)
+    # of many readings that noise may make the greatest, one is by more than the noise of one
+    excess = np.sqrt(1 + np.log1p(top.size / _MAY_BE_GREATEST**2))
+    missed = _gain(load[: peak + 1])
+    spread = np.sqrt((excess * noise) ** 2 + (step**2 + missed**2) / 3)
+    top = top[np.isfinite(stretch[top])]
+    if not top.size or _stands_still(load[: peak + 1], rise, float(stretch[top[-1]])):
+        return float(load[peak]), float(spread), np.nan, np.nan
+    reached, missed = stretch[top], _gain(rise)
+    width = float(np.ptp(reached))
+    # nothing is strained by more than a reading further while it is sound
+    rises = np.nanmax(stretch[:end]) <= reached.max() + 2 * missed
+    before = np.flatnonzero(np.isfinite(load[: top[-1] + 1] + stretch[: top[-1] + 1]))
+    before = before[-max(top.size, _LEAST_TOP) :]
+    if rises and np.ptp(stretch[before]) > 0:
+        gain = np.polyfit(stretch[before], load[before], 1)[0] * np.ptp(stretch[before])
+        rises = bool(gain > hidden / 2)
+    strain = float(reached.max()) - (0.0 if rises else width / 2)
+    beyond = missed if rises else missed + width / 2
+    strain_spread = np.sqrt(
+        reading_noise(rise) ** 2 + (step_of_codes(rise) ** 2 / 4 + beyond**2) / 3
+    )
+    return float(load[peak]), float(spread), strain, float(strain_spread)
 
 
 _STOOD_STILL = 0.02  # of the greatest load, gained without strain
