@@ -590,6 +590,19 @@ def test_the_frequency_of_a_few_noisy_ramps_is_that_of_the_machine_within_its_un
         assert np.median(stated) < 2 * error.std()
 
 
+@pytest.mark.parametrize("longer", [1.05, 1.14, 1.4])
+def test_a_first_cycle_behind_a_slower_ramp_is_no_measure_of_the_others(longer):
+    time, wave, cycles = triangles(200.0, 12, 0.2)
+    strain = wave + np.random.default_rng(3).normal(0, 2e-4, time.size)
+    end = time[cycles.last[0]]
+    time = np.where(time < end, longer * time, time + (longer - 1) * end)
+    loops = close_loops(time, wave[None], strain[None], cycles)
+    summary = summarise_amplitude(loops, area=[1.0])
+    error = summary.frequency[0] * 200 - 1
+    assert abs(error) < 3 * summary.uncertainty["frequency"][0] * 200
+    assert abs(error) < 1e-4
+
+
 @pytest.mark.parametrize("growth", [0.02, -0.02])
 def test_a_sine_that_grows_has_the_stiffness_of_its_extremes(growth):
     # each stroke has one amplitude; a spring with a Maxwell element of a fifth of it and .15 cycles

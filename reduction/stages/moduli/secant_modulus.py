@@ -302,7 +302,10 @@ def _mean_frequency(loops: Loops, break_in_cycles: int) -> tuple[Floats, Floats]
         n = int(known.sum())
         if n:
             middle = np.median(frequency[row, known])
-            alike = known & (np.abs(frequency[row] - middle) < _WAITING * middle)
+            off = np.abs(frequency[row] - middle)
+            scatter = max(np.median(off[known]), np.median(own[row, known]))
+            limit = np.clip(_BEYOND_SCATTER * scatter, _LEAST_WAIT * middle, _WAITING * middle)
+            alike = known & (off < limit)
             known = alike if alike.sum() >= _MOST_ALIKE * n else known
             n = int(known.sum())
         if not n:
@@ -340,7 +343,9 @@ _FEWEST_OF_LINE = 4
 
 _APART = 1.5  # periods from the beginning of a cycle to that of the next one
 
-_WAITING, _MOST_ALIKE = 0.15, 0.75  # of a frequency; of the cycles
+_WAITING, _MOST_ALIKE = 0.15, 0.75  # of a frequency, whatever the scatter; of the cycles
+
+_BEYOND_SCATTER, _LEAST_WAIT = 10.0, 0.005  # median deviations; of a frequency
 
 _IMPRECISE = 1.3  # times the usual uncertainty of a cycle's frequency
 
