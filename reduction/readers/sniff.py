@@ -278,8 +278,22 @@ def _without_comments(lines: Sequence[str], comment: str) -> list[str]:
 
 def _best_table(lines: Sequence[str]) -> tuple[str, str, _TableShape] | None:
     """Delimiter, decimal mark and table that make the most of the fields numbers."""
+    # all delimiters are tried on the beginning of a long table alone
+    found = _best_of(lines[:_FEW_LINES], _DELIMITERS)
+    if found is not None and 2 * len(found[2].rows) > _FEW_LINES:
+        return _best_of(lines, found[:1])
+    return _best_of(lines, _DELIMITERS)
+
+
+_FEW_LINES = 1000
+
+
+def _best_of(
+    lines: Sequence[str], delimiters: Sequence[str]
+) -> tuple[str, str, _TableShape] | None:
+    """The best table by some delimiters."""
     best, best_score = None, (0.0, 0)
-    for delimiter in _DELIMITERS:
+    for delimiter in delimiters:
         rows = _split(lines, delimiter)
         for decimal in ".,":
             is_apart = decimal != delimiter or any('"' in line for line in lines[-_RUN:])
