@@ -22,6 +22,8 @@ from reduction.stages.standstills import Standstills
 
 _MOST_CYCLES = 40  # that are looked at, spread over the test
 
+_NEXT = 2.0  # of a cycle, within which the next one begins where all are logged
+
 _MOST_POINTS = 4000  # of a record without cycles
 
 
@@ -157,8 +159,7 @@ def levels_of_test(
         some = np.unique(
             np.linspace(0, cycles.n_cycles - 1, min(cycles.n_cycles, _MOST_CYCLES)).astype(int)
         )
-        period = take_samples(time, cycles.last) - take_samples(time, cycles.first)
-        frequency = 1 / float(np.median(period))
+        frequency = 1 / _period(take_samples(time, cycles.first), take_samples(time, cycles.last))
         peak, valley = cycles.branch_last[some, 0], cycles.branch_first[some, 0]
         rise = take_samples(position, peak) - take_samples(position, valley)
         # a cycle that a machine counted without a stroke takes no time to its peak
@@ -228,6 +229,22 @@ def _rests_after(standstills: Standstills, last: int) -> bool:
     """Whether the record is slack, or no longer than slack, after its cycles."""
     slack = stands_at_slack_length(standstills, standstills.is_rest)
     return bool((slack & (standstills.first >= last)).any())
+
+
+def _period(begin: Floats, end: Floats) -> float:
+    """Median time of a cycle, with the dwell at the valley that lies between two of them.
+
+    Where single cycles are logged of many, or each is the only one, that of the cycle itself.
+
+    Examples
+    --------
+    >>> print(_period(np.array([0.0, 10.0, 20.0]), np.array([8.0, 18.0, 28.0])))
+    10.0
+    """
+    own = float(np.median(end - begin))
+    between = np.diff(begin)
+    whole = between[between < _NEXT * own]
+    return float(np.median(whole)) if 2 * whole.size > between.size else own
 
 
 def _alike(middle: Floats, stroke: Floats) -> Bools:

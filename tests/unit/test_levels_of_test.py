@@ -57,6 +57,17 @@ def test_a_triangle_is_told_from_a_sine():
     assert found.speed == pytest.approx(0.4, rel=0.02)
 
 
+@pytest.mark.parametrize("dwell", [1.0, 3.5, 5.0])
+def test_dwells_at_both_ends_are_part_of_the_period(dwell):
+    # 20 s a cycle, with a rest at the valley that may be long enough for a standstill
+    ramp = 10.0 - dwell
+    times = np.cumsum([5.0, *[ramp, dwell] * 12])
+    time = 0.05 * np.arange(int(times[-1] / 0.05))
+    position = 2 + np.interp(time, times, [0.0, *[1, 1, 0, 0] * 6])
+    found = levels(position, 100 * (position - 1), waveform="other")
+    assert found.frequency == pytest.approx(0.05, rel=0.01)
+
+
 @pytest.mark.filterwarnings("error")
 def test_a_cycle_that_a_machine_counts_without_a_stroke_has_no_speed():
     time = 0.05 * np.arange(1200)
