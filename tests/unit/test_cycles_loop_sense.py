@@ -1,5 +1,7 @@
 """Loops that run the wrong way: which channel, which lag, or a specimen that is driven."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -99,6 +101,21 @@ def test_work_that_is_given_out_is_held_against_the_stated_lag(lag, cause):
     assert note.numbers["delay"] == pytest.approx(0.2 / np.pi, rel=1e-3)
     assert note.numbers["n_cycles"] == N_CYCLES
     assert "so no sign is reversed" in str(note)
+    # the interval of an energy that the stated lag explains holds zero
+    assert note.severity == ("note" if cause == "lag" else "warning")
+
+
+def test_ramps_give_out_work_by_a_delay_that_their_fundamental_may_not_show():
+    # 16 f times both amplitudes is what a delay takes off the energy of ramps
+    loops = loops_of(-0.02)
+    energy = np.full_like(loops.hysteresis_energy, -16 * 0.5 * 0.03 * 180 * 0.2)
+    ramps = replace(
+        loops, loss_over_time=np.abs(loops.loss_over_time), hysteresis_energy=energy,
+        closed_loop_energy=energy,
+    )  # fmt: skip
+    (note,) = notes(ramps)
+    assert 0.75 * 0.03 < note.numbers["delay"] <= 0.03
+    assert note.numbers["cause"] == "driven"
 
 
 def test_less_than_a_sample_is_how_channels_are_read():

@@ -387,6 +387,21 @@ _SINE_LEAST = 5e-4  # of the storage: no lag is known to so little of a radian
 _FEWEST_CYCLES = 3
 
 
+def _least_delay(loops: Loops, row: int) -> float:
+    r"""Delay of tension that explains an energy below zero, or the fundamental over time. [s].
+
+    A delay turns the fundamental, and takes off the energy of a loop: of a sine most,
+    :math:`2 \pi^2 f` times both amplitudes; of ramps without a rest 16 f times.
+    """
+    frequency, tension, strain, energy, loss, storage = (
+        _median(getattr(loops, one)[row])
+        for one in ("frequency", "tension_amplitude", "strain_amplitude", "hysteresis_energy",
+                    "loss_over_time", "storage_over_time")
+    )  # fmt: skip
+    by_energy = -energy / (2 * np.pi**2 * frequency * tension * strain)
+    return max(0.0, -float(np.arctan2(loss, storage)) / (2 * np.pi * frequency), by_energy)
+
+
 def notes_of_loops(
     loops: Loops,
     *,
@@ -431,8 +446,8 @@ def notes_of_loops(
     >>> one = {name: np.ones((1, 9)) for name in Loops.__dataclass_fields__}
     >>> found, = notes_of_loops(
     ...     Loops(**one | {"frequency": np.full((1, 9), 2.0), "uncertainty": {},
-    ...         "hysteresis_energy": np.full((1, 9), -1.0), "closed_loop_energy":
-    ...         np.full((1, 9), -1.0), "loss_over_time": np.full((1, 9), -0.1)}),
+    ...         "hysteresis_energy": np.full((1, 9), -0.3), "closed_loop_energy":
+    ...         np.full((1, 9), -0.3), "loss_over_time": np.full((1, 9), -0.1)}),
     ...     names=["rope"], lag=[0.0], time_step=0.016)
     >>> print(found.code, round(found.numbers["delay"], 4), found.numbers["cause"])
     loops-give-work 0.0079 sampling
@@ -462,18 +477,18 @@ def notes_of_loops(
             continue
         mean, scatter = float(known.mean()), float(known.std()) / np.sqrt(max(known.size - 1, 1))
         if mean < -_BEYOND_SCATTER * scatter:
-            angle = np.arctan2(_median(loops.loss_over_time[row]), storage)
-            delay = max(-angle, 0.0) / (2 * np.pi * _median(loops.frequency[row]))
+            delay = _least_delay(loops, row)
             cause = (
                 "lag" if delay <= _WITHIN * stated
                 else "sampling" if not stated and delay <= time_step
                 else "driven"
             )  # fmt: skip
-            told.append(
-                note("loops-give-work", name, energy=mean, n_cycles=int((known < 0).sum()),
-                     n_known=known.size, delay=delay, stated=stated, time_step=time_step,
-                     cause=cause)
+            found = note(
+                "loops-give-work", name, energy=mean, n_cycles=int((known < 0).sum()),
+                n_known=known.size, delay=delay, stated=stated, time_step=time_step, cause=cause,
             )  # fmt: skip
+            # the interval of the energy has the stated lag, and holds zero
+            told.append(replace(found, severity="note") if cause == "lag" else found)
         # of a first cycle the ramp before it makes most of the drift, and little of the mean
         later = np.flatnonzero(np.isfinite(energy))[int(known.size > 2) :]
         mean = float(energy[later].mean())
