@@ -474,13 +474,13 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         ),
     ),
     "splice-side-rejected": (
-        "warning",
+        "note",
         lambda is_strain: (
             f"the marks follow a splice law of {'strain' if is_strain else 'tension'}, and none of"
             f" {'tension' if is_strain else 'strain'}, but have so nearly one tension at each"
-            " strain that only the shape of the laws decides. Splices that lock up at high tension"
-            " look the same; strain amplitude and EA may then be off by more than their intervals."
-            " Read marks in a test with another range"
+            " strain that only the shape of the laws decides. The nearest law of"
+            f" {'tension' if is_strain else 'strain'} is in the mean and in the intervals; marks in"
+            " a test with another range would narrow them"
         ),
     ),
     "splice-friction": (

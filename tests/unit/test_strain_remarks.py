@@ -87,6 +87,11 @@ def test_scatter_beyond_the_tape_is_named():
     )
 
 
+def test_what_an_average_over_laws_is_off_by_is_in_its_interval_and_not_said_of_the_marks():
+    residual = 0.004 * np.array([1, -1, 1, -1, 1, -1])
+    assert remarks(model(residual, method="mixed"), marks()) == []
+
+
 def test_a_misread_mark_is_named_by_test_and_hold():
     notes = tuple(map(str, remarks(model((0.0, 0.0005, -0.0005, 0.02, 0.0, 0.0005)), marks())))
     assert any(
