@@ -46,7 +46,7 @@ class TestLevels:
     mean_tension, tension_amplitude : ndarray, shape (n_specimens,)
         Medians over the cycles. [N]
     lead : ndarray, shape (n_specimens,)
-        Time by which tension leads position, of their fundamentals. [s]
+        Time by which tension leads position, at equal strain: of any elastic curve none. [s]
     strain_per_length : ndarray, shape (n_specimens,)
         Range of the strain that was measured over that of position; negative where one falls
         while the other rises. [m-1]
@@ -308,12 +308,15 @@ def _of_cycle(
         return (np.nan,) * 3
     t, x, force = t[known], x[known], force[known]
     low, high = float(force.min()), float(force.max())
-    phase = 2 * np.pi * (t - t[0]) / (t[-1] - t[0])
-    weight = np.gradient(t)
-    wave = weight * np.exp(-1j * phase)
-    of_force, of_position = ((force - force.mean()) * wave).sum(), ((x - x.mean()) * wave).sum()
-    angle = np.angle(of_force * np.conj(of_position))
-    lead = float(angle / (2 * np.pi) * (t[-1] - t[0]))
+    # the loop of a delay, in any wave and of any elastic curve: its area is the delay times the
+    # integral of both rates. The fundamental over time has a phase where a bent curve is pulled
+    # and released at two speeds
+    period = float(t[-1] - t[0])
+    x, force = (one - np.interp(t, t[[0, -1]], one[[0, -1]]) for one in (x, force))
+    moved, steps = np.diff(x), np.diff(t)
+    area = float(np.sum((force[1:] + force[:-1]) / 2 * moved))
+    rates = float(np.sum((np.diff(force) * moved)[steps > 0] / steps[steps > 0]))
+    lead = float(np.arctan2(2 * np.pi / period * area, rates) / (2 * np.pi) * period)
     return (low + high) / 2, (high - low) / 2, lead
 
 

@@ -36,6 +36,19 @@ def test_a_sine_whose_tension_leads_by_a_known_time():
     assert found.n_strokes == 24
 
 
+@pytest.mark.parametrize("late", [0.0, 0.15])
+@pytest.mark.parametrize("bend", [-2.0, 0.1, 2.0])
+def test_an_elastic_curve_has_no_lead_in_strokes_of_unequal_speed(bend, late):
+    time = 0.05 * np.arange(2400)
+
+    def stretch(time):
+        return np.interp(time % 10, [0, 8, 10], [2.0, 3.0, 2.0])
+
+    tension = np.expm1(bend * (stretch(time - late) - 2)) / bend + 1
+    found = levels(stretch(time), tension, waveform="triangular")
+    assert found.lead == pytest.approx([-late], abs=0.015)
+
+
 @pytest.mark.parametrize(("reached", "ends_in_pull"), [(2.0, True), (1.1, False)])
 @pytest.mark.parametrize("returns", [True, False])
 def test_a_pull_to_more_than_the_cycles_before_it_is_told_from_one_more(

@@ -49,6 +49,13 @@ def test_uneven_times_and_missing_samples_leave_a_sine_what_it_is():
     assert np.allclose(found[inside], -((2 * np.pi) ** 2) * position[inside], atol=0.02 * 39.5)
 
 
+def test_rounded_times_leave_the_narrowest_window_all_its_samples():
+    time = np.round(np.arange(600) * 0.0053721, 5)  # an even clock, written to 10 microseconds
+    position = np.cos(2 * np.pi * time)
+    found = acceleration(time, position, half_width=4 * 0.0053721)[10:-10]
+    assert np.allclose(found, -((2 * np.pi) ** 2) * position[10:-10], atol=0.002 * 39.5)
+
+
 def logged(train, *, mass=0.0, compliance=0.0, rate=64, n_cycles=12):
     """Ten newton a centimetre, 1 Hz, 0.2 m about 0.5 m, with a rest before."""
     time = np.arange(-5 * rate, n_cycles * rate + 1) / rate
