@@ -170,7 +170,8 @@ def _of_specimen(
         yield note(
             "modulus-outside-band", name, modulus=modulus, low=low, high=high, of=bands.of,
             readings=readings_that_fit(
-                modulus, bands.modulus, load_unit=_load_unit(campaign, survey, name)
+                modulus, bands.modulus, load_unit=_load_unit(campaign, survey, name),
+                strength=strength,
             ),
         )  # fmt: skip
 

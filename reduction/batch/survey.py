@@ -303,6 +303,11 @@ _AT_SLACK_LENGTH = 4 * TAPE_UNCERTAINTY
 # of the greatest load: what a wrong zero may be, while a hold under tension is more
 _LITTLE = 0.1
 
+# the same where a tape read that length slack: a stretch within its tolerance pulls little
+_LITTLE_BY_TAPE = 0.5
+
+_SHORT = 0.01  # of the slack length: a tolerance within which a specimen pulls little
+
 
 def _with_load_at_slack(
     located: Located,
@@ -318,16 +323,19 @@ def _with_load_at_slack(
     found, zeros = [], []
     stroke = float(np.subtract(*finite_extremes(whole.position)[::-1]))
     for number, (name, tension) in enumerate(zip(plan.specimens, whole.tension, strict=True), 1):
-        lengths = [] if slack_length is None else [slack_length]
+        little = finite_extremes(tension)[1]
+        lengths = [] if slack_length is None else [(slack_length, _LITTLE * little)]
         if name in campaign.marks and whole.record.position_is_length:
             tape = campaign.marks[name]
             of_log = np.array([test == plan.log for test in tape.test], dtype=bool)
-            lengths += tape.far_thimble[of_log & tape.is_slack].tolist()
+            lengths += [
+                (one, little * (_LITTLE_BY_TAPE if _AT_SLACK_LENGTH < _SHORT * one else _LITTLE))
+                for one in tape.far_thimble[of_log & tape.is_slack].tolist()
+            ]
         is_slack = stands.is_rest.copy()
-        little = _LITTLE * finite_extremes(tension)[1]
-        for length in lengths:
+        for length, most in lengths:
             near = np.abs(stands.mean_position - length) <= _AT_SLACK_LENGTH
-            is_slack |= near & (stands.mean_tension[number - 1] < little)
+            is_slack |= near & (stands.mean_tension[number - 1] < most)
         can_push = campaign.specimens[name].can_push
         if not can_push and rises_with_stretch(whole.position, tension):
             is_slack = stands_at_slack_length(stands, is_slack)

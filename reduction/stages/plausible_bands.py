@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import inf, pi
+from math import inf, nan, pi
 
 _MEGA, _GIGA = 1e6, 1e9
 
@@ -95,6 +95,7 @@ def bands_of(kind: str, material: str) -> Bands | None:
 
 _LOAD: Mapping[str, float] = {
     "N": 1.0, "daN": 10.0, "kN": 1000.0, "lbf": 4.4482216152605, "kgf": 9.80665,
+    "kip": 4448.2216152605,
 }  # fmt: skip
 
 _LENGTH: Mapping[str, float] = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "in": 0.0254, "ft": 0.3048}
@@ -131,7 +132,12 @@ _BY_STRAIN: Mapping[str, float] = {
 
 
 def readings_that_fit(
-    value: float, band: tuple[float, float], *, load_unit: str = "", of_strength: bool = False
+    value: float,
+    band: tuple[float, float],
+    *,
+    load_unit: str = "",
+    of_strength: bool = False,
+    strength: float = nan,
 ) -> str:
     """Readings of the inputs by which a stress, modulus or strength would lie in its band.
 
@@ -145,6 +151,8 @@ def readings_that_fit(
         As declared: another one is named beside it.
     of_strength : bool, optional
         Of a stated strength, of which no log and no strain is a part.
+    strength : float, optional
+        Rated, of the specimen: the load may be a share of it. [N]
 
     Returns
     -------
@@ -166,6 +174,11 @@ def readings_that_fit(
 
     >>> readings_that_fit(0.25e6, (0.3e6, 3.2e6), load_unit="lbf")[:80]
     'load in daN, not lbf; load in kgf, not lbf; half that diameter (was it doubled?)'
+
+    A load in percent of 4 kN, read as newtons:
+
+    >>> readings_that_fit(25e3, (0.3e6, 3.2e6), load_unit="N", strength=4000.0)[:37]
+    'load in % of the rated_break_strength'
     """
     low, high = band
     factors = {
@@ -174,6 +187,8 @@ def readings_that_fit(
         for right in _LOAD
         if load_unit in _LOAD and right != load_unit
     }  # fmt: skip
+    if load_unit in _LOAD:
+        factors["load in % of the rated_break_strength"] = strength / 100 / _LOAD[load_unit]
     groups = [factors, _BY_DIAMETER]
     if not of_strength:
         groups += [_BY_GAIN, _BY_STRAIN]

@@ -123,6 +123,16 @@ def test_a_wrong_zero_of_the_load_cell_is_told_from_a_wrong_sign(tethers, comman
             assert "sign = -1" not in message
 
 
+def test_a_zero_above_a_tenth_of_the_peak_is_told_by_the_length_that_the_tape_read(
+    tethers, command
+):
+    folder, rewrite = tethers
+    rewrite(lambda time, place, new, used: (time, place, new + 25, used))
+    done = command("check", folder / "campaign.toml", "--json", cwd=folder)
+    messages = {one["id"]: one["message"] for one in json.loads(done.stdout)["tests"]}
+    assert 'its zero is wrong. Set zero = "24.9' in messages["A"]
+
+
 def test_the_zero_that_is_named_puts_it_right(tethers, command):
     folder, rewrite = tethers
     rewrite(lambda time, place, new, used: (time, place, new - 14.4 / POUND, used))

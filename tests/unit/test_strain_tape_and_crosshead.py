@@ -51,6 +51,14 @@ def test_every_unit_that_was_meant_is_named(meant, written):
     assert "the crosshead at 5.9 m" in str(raised.value)
 
 
+@pytest.mark.parametrize(("of_log", "stated"), [("ft", "m"), ("mm", "m"), ("in", "ft")])
+def test_a_crosshead_in_another_unit_than_stated_is_named(of_log, stated):
+    factor = UNITS[stated] / UNITS[of_log]
+    with pytest.raises(DataError, match=f"as {of_log} stated as {stated} would be") as raised:
+        check(HOLDS, holds=factor * HOLDS, rest=factor * SLACK, reach=(factor * 3.7, factor * 7.4))
+    assert f"the crosshead at {factor * HOLDS[0]:.4g} m" in str(raised.value)
+
+
 def test_without_a_hold_in_the_log_its_range_names_the_unit():
     with pytest.raises(DataError, match=r"is the header far_thimble_ft\?"):
         check(HOLDS / 0.3048, holds=np.empty(0), slack=SLACK / 0.3048)

@@ -13,6 +13,8 @@ References
 
 from __future__ import annotations
 
+from itertools import permutations
+
 import numpy as np
 
 from reduction.record.errors import DataError
@@ -214,6 +216,18 @@ def _check_unit(
             hint=f"In {unit} all {rows.size} stretched marks of the test fit: is the header "
             f"far_thimble_{unit}? (Or the log's crosshead_position, stated {factor:.4g} times "
             "too small.)",
+        )  # fmt: skip
+    for stated, of_log in permutations(UNITS, 2):
+        factor = UNITS[stated] / UNITS[of_log]
+        if np.unique(tape).size < 2 or not _meets(factor * tape, holds, factor * allowance).all():
+            continue
+        row = int(rows[0])
+        beside = float(holds[np.abs(holds - factor * tape[0]).argmin()])
+        raise _contradiction(
+            marks, row, f"the crosshead at {beside:.4g} m",
+            hint=f"All {rows.size} stretched marks of the test fit if crosshead_position is stated "
+            f"{factor:.4g} times too large, as {of_log} stated as {stated} would be: correct its "
+            "unit in the layout.",
         )  # fmt: skip
 
 
