@@ -1891,7 +1891,8 @@ CAUSES = (
     "stretched-diameters-apart",
     "cycles-in-other-kind", "rate-not-as-stated", "level-not-as-stated",
     "load-never-falls", "load-zero-drifts", "load-zero-wrong", "load-negative",
-    "load-falls-with-stretch", "extensometer-late", "extensometer-ends", "load-in-steps",
+    "load-falls-with-stretch", "pushed-in-cycles", "reference-length-under-preload",
+    "reference-length-elsewhere", "tension-far-below-strength", "extensometer-late", "extensometer-ends", "load-in-steps",
     "tape-off-crosshead", "marks-alike", "loops-run-backward",
     "extensometer-against-stroke", "gauge-against-length",
     "modulus-outside-band", "strength-outside-band", "tension-above-strength", "stiffness-jumps",
@@ -1906,3 +1907,6 @@ CAUSES = (
     "loops-give-work", "loops-not-of-a-sine", "hold-load-late",
 )  # fmt: skip
 """What is wrong with an input as it was stated, first what explains those behind it."""
+
+UNSTATED = ("attached-mass-matters", "compliance-matters")
+"""What a machine may do that no log shows: said behind what this one shows."""

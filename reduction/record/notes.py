@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from math import isfinite
 from typing import Any
 
-from reduction.record.note_sentences import CAUSES, SENTENCES, Severity
+from reduction.record.note_sentences import CAUSES, SENTENCES, UNSTATED, Severity
 
 SEVERITIES: tuple[Severity, ...] = ("warning", "refusal", "note")
 """Most serious first."""
@@ -90,8 +90,12 @@ def note(code: str, subject: str = "", /, **numbers: Any) -> Note:
 
 
 def urgency(one: Note) -> tuple[int, float]:
-    """Rank of a note among those as serious: causes first, then by how far they move an answer."""
+    """Rank of a note among those as serious: causes first, then by how far they move an answer.
+
+    What is only not stated of a machine comes last.
+    """
     place = CAUSES.index(one.code) if one.code in CAUSES else len(CAUSES)
+    place += one.code in UNSTATED
     effect = one.numbers.get("effect")
     far = abs(effect) if isinstance(effect, int | float) and isfinite(effect) else 0.0
     return place, -far

@@ -148,3 +148,11 @@ def test_a_late_load_comes_before_what_follows_from_it():
     work = note("loops-give-work", "cord", energy=-1.0, n_cycles=9, n_known=9, delay=0.02,
                 stated=0.005, time_step=0.05, cause="driven")  # fmt: skip
     assert by_severity([identity, work, late]) == (late, work, identity)
+
+
+def test_what_is_only_not_stated_of_a_machine_comes_behind_what_the_log_shows():
+    unstated = note("compliance-matters", "a", compliance=1e-9, usual=3.8e-9, effect=0.0001)
+    shown = note("few-samples-a-cycle", n_samples=7, needed=12, step=0.1)
+    wrong = note("reference-length-under-preload", stated=0.0, found=900.0, specimen="a")
+    ordered = by_severity([unstated, shown, wrong])
+    assert [one.code for one in ordered] == [wrong.code, shown.code, unstated.code]
