@@ -1507,7 +1507,7 @@ def test_strain_that_creeps_on_behind_a_fast_stroke_is_farthest_within_the_slow_
     assert abs(found.strain_amplitude[0] - 0.02 * half) < 2 * spread < 0.01 * half * 0.02
 
 
-def summary_of_log(time, load, strain, control):
+def summary_of_log(time, load, strain, control, waveform="other"):
     """A log whose cycles and rests are found as in a run, and its amplitudes."""
     stands = (
         find_tension_stands(time, strain, load[None], settings=PhaseSettings())
@@ -1517,7 +1517,7 @@ def summary_of_log(time, load, strain, control):
     settings = CycleSettings(control=control)
     cycles = find_cycles(time, strain, load[None], stands, settings=settings)
     loops = close_loops(
-        time, load[None], strain[None], cycles, waveform="other", control=control,
+        time, load[None], strain[None], cycles, waveform=waveform, control=control,
         driven=load if control == "load" else strain,
     )  # fmt: skip
     return summarise_amplitude(loops, area=[1e-4])
@@ -1782,3 +1782,28 @@ def test_the_energy_of_a_sine_that_relaxes_out_of_step_with_its_log(per_cycle):
     summary = summarise_amplitude(loops, area=[1.0], break_in_cycles=3)
     for name, true in (("hysteresis_energy", np.pi * 50 * AMPLITUDE**2), ("loss_factor", 1 / 18)):
         assert getattr(summary, name)[0] == pytest.approx(true, rel=2e-3)
+
+
+@pytest.mark.parametrize("per_cycle", [16, 24])
+@pytest.mark.parametrize("place", [0.35, 0.6])
+@pytest.mark.parametrize("sticks", [0.05, 0.1, 0.2])
+def test_k_ap_of_a_rope_that_sticks_behind_the_corners_of_a_load_in_step_with_the_log(
+    per_cycle, place, sticks
+):
+    # elastic by D / K of D newtons behind a turn, and friction of that share of the stroke gives
+    # way behind it by twice as much: K_ap = K / (1 + 2 (1 - share))
+    amplitude, constant = 6e3, 1e6
+    turn = np.arange(25 * per_cycle + 1) / per_cycle + place / per_cycle
+    down = 1 - 4 * np.abs(turn % 1 - 0.5)  # of the amplitude
+    is_up = turn % 1 < 0.5
+    share = np.where(is_up, 1 + down, 1 - down) / 2
+    way = 2 * amplitude / constant * (share + 2 * np.maximum(share - sticks, 0))
+    full = 2 * amplitude / constant * (1 + 2 * (1 - sticks))
+    strain = 0.01 + np.where(is_up, way, full - way)
+    found = summary_of_log(
+        turn / 0.1, 2e4 + amplitude * down, strain, "load", waveform="triangular"
+    )
+    truth = 2 * amplitude / full
+    spread = found.uncertainty["apparent_spring_constant"][0]
+    assert abs(found.apparent_spring_constant[0] - truth) < 2.2 * spread + 1e-3 * truth
+    assert spread < 0.05 * truth

@@ -105,6 +105,7 @@ from reduction.stages.cycles.periods import (
     touching,
 )
 from reduction.stages.cycles.turns import (
+    STEEP,
     Turn,
     energy_beside_polygon,
     has_corners,
@@ -1351,6 +1352,7 @@ def _readings_at_turns(
     way: int,
     moved: Floats,
     answers: bool,
+    sticks: bool,
 ) -> tuple[Floats, Floats, Floats, Floats]:
     """Greatest reading near each peak, least ones near both valleys, and what they miss.
 
@@ -1358,7 +1360,8 @@ def _readings_at_turns(
     since no machine turns at once: half way, and half the range is missed by as much again.  Of a
     turn that is rounded over samples the readings miss less.  What answers a corner of the channel
     that ``moved`` it, if it ``answers``, turns where its approach meets that corner: it may relax
-    before the next reading.  A series of way -1 falls where the driven channel rises.
+    before the next reading, or ``sticks`` there, as strain does under a driven load.  A series of
+    way -1 falls where the driven channel rises.
     Between two cycles is a rest, unless they share a reading or are stored one below the other.
     """
     values = way * series
@@ -1403,7 +1406,14 @@ def _readings_at_turns(
         of_peak, of_valley = (
             np.abs(
                 level_at_corner(
-                    values, moved, at, sign=sign, noise=noise, rests=rest, own_noise=own
+                    values,
+                    moved,
+                    at,
+                    sign=sign,
+                    noise=noise,
+                    rests=rest,
+                    own_noise=own,
+                    steep=_SHOWN if sticks else STEEP,
                 )
                 - level
             )
@@ -1421,7 +1431,11 @@ def _readings_at_turns(
             if not answers:
                 last = -_mean_of_rest(-values, at_last, -last, within=_OF_A_STEP * step)
         if answers:
-            of_peak, of_valley = np.fmax(of_peak, above), np.fmax(of_valley, below)
+            # what sticks behind a corner falls off slowly there under a load, and lines beside it
+            # cross above the level to which the approach leads; a force falls off at once
+            is_led = np.isfinite(of_peak), np.isfinite(of_valley)
+            of_peak = np.where(is_led[0] & sticks, of_peak, np.fmax(of_peak, above))
+            of_valley = np.where(is_led[1] & sticks, of_valley, np.fmax(of_valley, below))
             for level, at, sign, reading, is_rest in (
                 (of_peak, peak, 1, top, rests), (of_valley, end, -1, last, rests_below)
             ):  # fmt: skip
@@ -1429,9 +1443,14 @@ def _readings_at_turns(
                 beyond = sign * (level_beside_corner(values, moved, at, sign=sign) - reading)
                 if not is_rest and np.nanmedian(beyond) > _STIFFENS * np.nanmedian(level):
                     np.fmax(level, beyond, out=level)
-            excess = of_peak - above, of_valley - below
+            excess = np.maximum(of_peak - above, 0.0), np.maximum(of_valley - below, 0.0)
             above, below = of_peak, of_valley
             missed = (_EITHER - 1) * (excess[0] + excess[1]) / 2
+            if sticks:  # steps of the driven channel move its corner, in step in all cycles alike
+                grain = rounding_left(*_noise_and_step(moved, reading_noise(moved))[::-1])
+                missed = np.hypot(
+                    missed, _OF_CORNER * grain * (top - last) / np.abs(moved[peak] - moved[end])
+                )
         else:
             # a machine that dwells is at the level of its corner, and misses nothing
             upper = _plateau(values, peak - on_rise, after_peak, top)
@@ -1603,6 +1622,12 @@ D times the root of 16 / 720."""
 _EITHER = 2**0.5
 """What relaxes at a corner is at one end of its range or at the other, and not between them: the
 whole of half the range, where `Loops.shared_by_cycles` takes it over this."""
+
+_SHOWN = 3.0  # noise of a reading of the load, by which its steps show a corner, also in a mean
+
+_OF_CORNER = 10**0.5
+"""Of both levels at which steps of two readings on either side let a corner lie, over the rounding
+of a reading and the ratio of the channels: the root of 10 over twice the ramp, at either turn."""
 
 _STIFFENS = 2.0  # times what lines show to lie beyond a reading, by which they are of no use
 
@@ -2124,6 +2149,7 @@ def _measure(
                 # of two the other one answers: strain follows the position that is driven
                 moved=ways[moved is stretch] * moved,
                 answers=(series is force) != (moved is force),
+                sticks=moved is force,
             )
         )
     )
@@ -2287,7 +2313,7 @@ def close_loops(
     answer = int(control == "load")
     turns = _turns(
         (tension, strain)[answer], moved, cycles, waveform,
-        [one[answer] for one in noises], [one[answer] for one in ways],
+        [one[answer] for one in noises], [one[answer] for one in ways], sticks=control == "load",
     )  # fmt: skip
     # on a plateau the driven channel turns anywhere, and the other one at its beginning
     share = 1.0 if waveform == "other" else _REACH_OF_TURN
@@ -2478,6 +2504,8 @@ def _turns(
     waveform: Waveform,
     noises: list[float],
     ways: list[int],
+    *,
+    sticks: bool,
 ) -> list[Turn]:
     """How the wave of each specimen turns; a sine has no corner, another wave what it shows.
 
@@ -2501,10 +2529,12 @@ def _turns(
     kind = kind_of_turns(driven, peak, noise=reading_noise(driven))
     if kind != "sharp":
         return [kind] * len(noises)
-    return [
-        "sharp" if kind_of_turns(way * answer, peak, noise=own, in_doubt=kind) == kind else "hidden"
+    found = [
+        kind_of_turns(way * answer, peak, noise=own, in_doubt=kind)
         for answer, own, way in zip(answers, noises, ways, strict=True)
     ]
+    # strain that sticks behind a corner of the load seems rounded there
+    return ["sharp" if one == kind or (sticks and one == "rounded") else "hidden" for one in found]
 
 
 def _way(values: Floats, cycles: Cycles) -> int:

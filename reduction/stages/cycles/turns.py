@@ -44,7 +44,7 @@ _PASSES = (
 
 _CLEAR = 3.0  # noise of a reading, by which a step from sample to sample shows where a turn is
 
-_STEEP = 10.0  # noise of a reading, by which the steps of one turn show a corner
+STEEP = 10.0  # noise of a reading, by which the steps of one turn show a corner
 
 _ROUNDED = 0.2  # of that step, by which a turn lies below the lines beside it
 
@@ -304,6 +304,7 @@ def level_at_corner(
     noise: float,
     rests: bool,
     own_noise: float = 0.0,
+    steep: float = STEEP,
 ) -> Floats:
     """Level to which the approach of a series goes on, to the corner of the channel that moves it.
 
@@ -327,11 +328,13 @@ def level_at_corner(
         Whether ``moved`` stays where it turns: `rests_at_turns`. [-]
     own_noise : float
         Standard deviation of one reading of ``values``. [any]
+    steep : float
+        Least step of ``moved`` beside a corner, over its noise. [1]
 
     Returns
     -------
     level : ndarray, shape (n_turns,)
-        The extreme reading where ``moved`` has no corner beside it, or is past it. [any]
+        NaN where ``moved`` has no corner beside it, or the series went on beyond it. [any]
 
     Raises
     ------
@@ -355,8 +358,10 @@ def level_at_corner(
     ...     noise=0, rests=False))
     [60.5]
     """
-    offset = _offset_of_corner(moved, extreme_at, sign=sign, noise=noise, rests=rests)
-    reading = sign * take_samples(values, extreme_at)
+    offset, leaving = (
+        _offset_of_corner(series, at, sign=sign, noise=noise, rests=rests, steep=steep)
+        for series, at in ((moved, extreme_at), (moved[::-1], moved.size - 1 - extreme_at))
+    )
     level = sign * values
 
     def led_to(series: Floats, at: Integers, offset: Floats) -> Floats:
@@ -369,13 +374,14 @@ def level_at_corner(
 
     # what creeps while its channel rests is farthest where that leaves: the same, backward in time
     backward = moved.size - 1 - extreme_at
-    leaving = _offset_of_corner(moved[::-1], backward, sign=sign, noise=noise, rests=rests)
     beyond = np.where(
         np.isfinite(offset),
         led_to(level, extreme_at, offset),
         led_to(level[::-1], backward, leaving),
     )
-    return np.asarray(sign * np.fmax(beyond, reading))
+    reading = take_samples(level, extreme_at)
+    goes_on = beyond < reading - _CLEAR * own_noise
+    return np.asarray(sign * np.where(goes_on, np.nan, np.maximum(beyond, reading)))
 
 
 def level_beside_corner(values: Floats, moved: Floats, turn: Integers, *, sign: int) -> Floats:
@@ -528,7 +534,7 @@ def energy_beside_polygon(
     fastest = np.maximum(np.abs(before), np.abs(after))
     unlike = np.maximum(np.abs(before - second), np.abs(after - third))
     change = before - after
-    is_corner = (fastest > _STEEP * noise) & (unlike < _ROUNDED * fastest + 2 * noise)
+    is_corner = (fastest > STEEP * noise) & (unlike < _ROUNDED * fastest + 2 * noise)
     is_corner &= np.abs(change) > 2 * _ROUNDED * fastest
     at = np.flatnonzero(is_corner)
     share = (own[at] - after[at]) / change[at]
@@ -564,7 +570,13 @@ def has_corners(
 
 
 def _offset_of_corner(
-    moved: Floats, extreme_at: Integers, *, sign: int, noise: float, rests: bool
+    moved: Floats,
+    extreme_at: Integers,
+    *,
+    sign: int,
+    noise: float,
+    rests: bool,
+    steep: float = STEEP,
 ) -> Floats:
     """Samples from an extreme to the corner beside it; NaN where there is none.
 
@@ -593,7 +605,7 @@ def _offset_of_corner(
         usable &= rise - on > 2 * _ROUNDED * rise
         with np.errstate(divide="ignore", invalid="ignore"):
             offset = (drive[:, 4] - drive[:, 2] - rise - on) / (rise - on)
-    usable &= (rise > _STEEP * noise) & (alike < _ROUNDED * rise + 2 * noise)
+    usable &= (rise > steep * noise) & (alike < _ROUNDED * rise + 2 * noise)
     return np.where(usable & (np.abs(offset) <= 1), offset, np.nan)
 
 
