@@ -27,7 +27,12 @@ from reduction.experiments.fit_results import FIT_REASONS, ResponseSurfaces
 from reduction.experiments.surface_discrepancy import discrepancy_of
 from reduction.experiments.surface_points import greatest_leverage
 from reduction.lines.archive_pieces import alignment_words, check_words
-from reduction.lines.bent_loops import RunOfLine, with_bend_of_runs
+from reduction.lines.bent_loops import (
+    RunOfLine,
+    constant_of_level,
+    with_bend_of_levels,
+    with_bend_of_runs,
+)
 from reduction.lines.line_lookup import Branch
 from reduction.lines.line_search import joined_conditions
 from reduction.lines.lookup_product import LineCurve, LineLevels, LineSource, LineSurface
@@ -36,6 +41,7 @@ from reduction.quantities.names import RESPONSES, SCALES, quantity
 from reduction.record.contributions import Component, Contributions, stacked
 from reduction.record.errors import ArchiveError, DataError
 from reduction.record.measurement import Bools, Floats
+from reduction.stages.three_parameter_line.loop_midline import tension_above_midline
 
 _OVER_STRAIN = ("tangent_modulus", "branch_tension")
 
@@ -517,11 +523,8 @@ def lines_of_open_archive(
         ]
         settings = json.loads(str(archive.attrs.get("settings", "{}")))
         return [
-            replace(
-                one,
-                slow_pulls=_slow_pulls(
-                    path, settings.get(one.name, {}), opener, _runs_of(archive, one.name)
-                ),
+            _with_slow_pulls(
+                one, path, settings.get(one.name, {}), opener, _runs_of(archive, one.name)
             )
             if set(one.factor_names) == _OF_A_CYCLE
             else one
@@ -540,6 +543,34 @@ def lines_of_open_archive(
 
 
 _OF_A_CYCLE = {"frequency", "mean_tension", "tension_amplitude"}
+
+
+def _with_slow_pulls(
+    line: LineSource,
+    path: Path,
+    settings: Mapping[str, Any],
+    opener: Opener,
+    runs: Sequence[tuple[str, str]],
+) -> LineSource:
+    """Surfaces over the cycles of a rope, with K_0 and how its K_1 and tau were read."""
+    pulls = _slow_pulls(path, settings, opener, runs)
+    return replace(
+        line,
+        slow_pulls=pulls,
+        by_fundamental=bool(pulls) and _are_other_waves(path.parent, runs, opener),
+    )
+
+
+def _are_other_waves(folder: Path, runs: Sequence[tuple[str, str]], opener: Opener) -> bool:
+    """Whether a run of an experiment was reduced as a wave that is no sine."""
+    tests = {test for test, _ in runs}
+    for path in archives_of_tests(folder):
+        if path.stem in tests:
+            # one that cannot be read is told of by itself
+            with suppress(ArchiveError), opener(path) as archive:
+                if _cycle_settings(archive).get("waveform", "sinusoidal") != "sinusoidal":
+                    return True
+    return False
 
 
 def _slow_pulls(
@@ -663,7 +694,118 @@ def ropes_with_pulls(folder: Path) -> list[LineSource]:
             needed="cyclic tests in load and a quasi-static test of the same specimen",
             hint=next(why, ""),
         )
-    return found
+    return [_with_bend_of_levels(folder, one) for one in found]
+
+
+def _with_bend_of_levels(folder: Path, line: LineSource) -> LineSource:
+    """A rope with what the loops of its levels tell of a three-parameter line.
+
+    K_0 of its slow pull is as bent as they are; K_ap and H of a wave that is no sine are those of
+    its fundamental, as K_1 and tau of a run.
+    """
+    curve = next((one for one in line.curves if one.quantity == _K_0), None)
+    tests = {test for one in line.levels if one.variables == CYCLE for test in one.tests}
+    if curve is None:
+        return line
+    cycles = []
+    of_sine: dict[str, dict[str, float]] = {}
+    for path in archives_of_tests(folder):
+        with reading(path) as archive:
+            test = str(archive.attrs.get("test", ""))
+            if test in tests:
+                names = archive.variables["specimen"].values.astype(str).tolist()
+                place = names.index(line.specimens[0])
+                cycles.append(_cycle_of_level(archive, place, curve))
+                of_sine[test] = _sine_over_wave(archive, place)
+    bent = with_bend_of_levels(curve, cycles)
+    return replace(
+        line,
+        curves=tuple(bent if one is curve else one for one in line.curves),
+        levels=tuple(_as_sine(one, of_sine) for one in line.levels),
+    )
+
+
+_WAVE = ("apparent_spring_constant", "hysteresis_energy")
+
+
+def _as_sine(levels: LineLevels, of_sine: Mapping[str, Mapping[str, float]]) -> LineLevels:
+    """K_ap and H of tests by their fundamentals, with the same relative uncertainties."""
+    if levels.quantity not in _WAVE:
+        return levels
+    share = np.array([of_sine.get(test, {}).get(levels.quantity, 1.0) for test in levels.tests])
+    if np.all(share == 1):
+        return levels
+    said = (
+        "a wave that is no sine: K_ap and H are those of its fundamental, which a three-parameter"
+        " line has in a sine; the look-up has those of the wave"
+    )
+    return replace(
+        levels,
+        value=share * levels.value,
+        random_standard_uncertainty=share * levels.random_standard_uncertainty,
+        contribution=share * levels.contribution if levels.component else levels.contribution,
+        notes=(*levels.notes, said),
+    )
+
+
+def _sine_over_wave(archive: xr.Dataset, place: int) -> dict[str, float]:
+    """K_ap and H of the fundamental of a test over those of its wave; none of a sine."""
+    cycles = _cycle_settings(archive)
+    if cycles.get("waveform") == "sinusoidal" or "storage_over_time" not in archive:
+        return {}
+    storage, loss = (
+        float(np.nanmean(archive.variables[name].values[place, _break_in(cycles) :]))
+        for name in ("storage_over_time", "loss_over_time")
+    )
+    load, apparent, energy = (
+        float(archive.variables[f"test_{name}"].values[place])
+        for name in ("tension_amplitude", *_WAVE)
+    )
+    square = storage**2 + loss**2
+    found = (square**0.5 / apparent, np.pi * load**2 * loss / square / energy)
+    return dict(zip(_WAVE, found, strict=True)) if min(found) > 0 else {}
+
+
+def _cycle_settings(archive: xr.Dataset) -> dict[str, Any]:
+    settings = json.loads(str(archive.attrs.get("settings", "{}")))
+    return dict(settings.get("reduction", {}).get("cycles", {}))
+
+
+def _break_in(cycles: Mapping[str, Any]) -> int:
+    return int(cycles.get("break_in_cycles") or 0)
+
+
+def _cycle_of_level(archive: xr.Dataset, place: int, curve: LineCurve) -> RunOfLine:
+    """A cyclic test of a rope at its level, with K_0 by the bend of its loops."""
+
+    def values(name: str) -> Any:
+        return archive.variables[name].values
+
+    settings = _cycle_settings(archive)
+    kept = _break_in(settings)
+    first, turn, last = (
+        ends[kept:]
+        for ends in (
+            values("cycle_first_sample"),
+            values("branch_first_sample")[:, 1],
+            values("cycle_last_sample"),
+        )
+    )
+    if "sample_index" in archive:  # of a long record some cycles are stored
+        index = values("sample_index")
+        at = [np.searchsorted(index, one) for one in (first, turn, last)]
+        whole = at[2] - at[0] == last - first
+        first, turn, last = (one[whole] for one in at)
+    above = tension_above_midline(
+        values("strain")[place], values("tension")[place], first=first, turn=turn, last=last
+    )
+    mean, load, apparent, energy = (
+        float(values(f"test_{one}")[place]) for one in RunOfLine._fields[:-1]
+    )
+    cycle = RunOfLine(mean, load, apparent, energy, np.nan)
+    return constant_of_level(
+        curve, cycle, *above, waveform=settings["waveform"], control=settings["control"]
+    )
 
 
 def _rope(folder: Path, name: str, tests: Sequence[LineSource]) -> LineSource:

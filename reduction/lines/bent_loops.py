@@ -9,7 +9,7 @@ slope to the chord that their own K_0 goes.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -19,7 +19,13 @@ from numpy.typing import ArrayLike
 from reduction.lines.line_curve import evaluate_curve
 from reduction.lines.lookup_product import DesignValues, LineCurve
 from reduction.record.measurement import Floats
-from reduction.stages.three_parameter_line.loop_midline import spring_of_cycle
+from reduction.stages.three_parameter_line.loop_midline import (
+    Control,
+    Waveform,
+    is_bent,
+    spring_of_cycle,
+    spring_of_wave,
+)
 
 _FEWEST_RUNS = 3
 
@@ -66,22 +72,94 @@ def chord_over_slope(
         )
     )  # fmt: skip
 
-    def constant_at(tension: Floats) -> Floats:
+    with np.errstate(invalid="ignore", divide="ignore"):
+        half = _half_strain(load, stiffness, energy)
+        chord = spring_of_cycle(_constant_at(curve), mean, half)
+        ratio = chord / _constant_at(curve)(mean)
+    return np.asarray(np.where(np.isfinite(ratio) & (ratio > 0), ratio, 1.0))
+
+
+def _constant_at(curve: LineCurve) -> Callable[[Floats], Floats]:
+    """K_0 at tensions, NaN beyond the pull. [N]."""
+
+    def constant(tension: Floats) -> Floats:
         found = evaluate_curve(curve, tension)
         return np.asarray(np.where(found.is_inside, found.value, np.nan))
 
-    with np.errstate(invalid="ignore", divide="ignore"):
-        cosine = np.sqrt(1 - (energy * stiffness / (np.pi * load**2)) ** 2)
-        chord = spring_of_cycle(constant_at, mean, load / stiffness * cosine)
-        ratio = chord / constant_at(mean)
-    return np.asarray(np.where(np.isfinite(ratio) & (ratio > 0), ratio, 1.0))
+    return constant
+
+
+def _half_strain(load: Floats, stiffness: Floats, energy: Floats) -> Floats:
+    """From the mean strain to the strains of peak and valley of the tension. [1]."""
+    sine = energy * stiffness / (np.pi * load**2)
+    return np.asarray(load / stiffness * np.sqrt(1 - sine**2))
+
+
+def constant_of_level(
+    curve: LineCurve,
+    cycle: RunOfLine,
+    above_midline: float,
+    standard_uncertainty: float,
+    *,
+    waveform: Waveform = "sinusoidal",
+    control: Control = "load",
+) -> RunOfLine:
+    """A test at a level with K_0 of its loops, as `quasi_static_of_run` has it of a run.
+
+    NaN where the bend of the loops is not known.
+
+    Parameters
+    ----------
+    curve : LineCurve
+        K_0 over mean tension, of the slow pull. [N]
+    cycle : RunOfLine
+        Without K_0.
+    above_midline, standard_uncertainty : float
+        From `reduction.stages.three_parameter_line.loop_midline.tension_above_midline`. [N]
+    waveform : {"sinusoidal", "triangular", "other"}
+        Of the driven channel. [-]
+    control : {"load", "position"}
+        Which that is. [-]
+    """
+    constant_at = _constant_at(curve)
+    mean, load, stiffness, energy = (np.asarray(one) for one in cycle[:4])
+    found = np.nan
+    if is_bent(above_midline, standard_uncertainty, cycle.tension_amplitude):
+        found = spring_of_wave(
+            constant_at, cycle.mean_tension, above_midline,
+            float(_half_strain(load, stiffness, energy)), waveform=waveform, control=control,
+        )  # fmt: skip
+    elif np.isfinite(above_midline):
+        found = float(constant_at(mean))
+    return cycle._replace(quasi_static_spring_constant=found)
+
+
+def with_bend_of_levels(curve: LineCurve, levels: Sequence[RunOfLine]) -> LineCurve:
+    """K_0 over mean tension with the bend of the loops of single levels, each of which counts.
+
+    Where the loops of none are known K_0 is anywhere between slope and chord.
+    """
+    known = [one for one in levels if np.isfinite(one.quasi_static_spring_constant)]
+    if known or not levels:
+        return _with_bend(curve, np.array(known, dtype=np.float64))
+    mean, load, stiffness, energy, _ = np.array(levels, dtype=np.float64).T
+    bent = chord_over_slope(
+        curve, mean_tension=mean, tension_amplitude=load, apparent_spring_constant=stiffness,
+        hysteresis_energy=energy,
+    ) - 1  # fmt: skip
+    return replace(curve, loop_bend=0.5, loop_bend_misfit=float(np.abs(bent).max() / 12**0.5))
 
 
 def with_bend_of_runs(curve: LineCurve, runs: Sequence[RunOfLine]) -> LineCurve:
     """K_0 over mean tension with the bend that the K_0 of runs shows."""
     table = np.array(runs, dtype=np.float64).reshape(-1, len(RunOfLine._fields))
     table = table[np.isfinite(table).all(axis=1)]
-    if len(table) < _FEWEST_RUNS:
+    return _with_bend(curve, table) if len(table) >= _FEWEST_RUNS else curve
+
+
+def _with_bend(curve: LineCurve, table: Floats) -> LineCurve:
+    """The same with the bend of runs, one a row; of none as it is."""
+    if not len(table):
         return curve
     mean, load, stiffness, energy, own = table.T
     bent = chord_over_slope(
@@ -92,7 +170,7 @@ def with_bend_of_runs(curve: LineCurve, runs: Sequence[RunOfLine]) -> LineCurve:
     if min(np.max(np.abs(bent)), np.max(np.abs(of_runs))) < _STRAIGHT:
         return curve
     share = float(bent @ of_runs / (bent @ bent))
-    misfit = float(np.sqrt(np.sum((of_runs - share * bent) ** 2) / (len(table) - 1)))
+    misfit = float(np.sqrt(np.sum((of_runs - share * bent) ** 2) / max(len(table) - 1, 1)))
     return replace(curve, loop_bend=share, loop_bend_misfit=misfit)
 
 

@@ -632,8 +632,9 @@ def line_dynamics(
     def values(*names: str) -> dict[str, DesignValues]:
         return {name: _value(source, name, levels, extrapolate) for name in names}
 
-    measured = values(_APPARENT, _ENERGY) if {_APPARENT, _ENERGY} <= known else {}
-    rest = _rest_of_cycle(source, measured, levels, extrapolate)
+    loop = values(_APPARENT, _ENERGY) if {_APPARENT, _ENERGY} <= known else {}
+    rest = _rest_of_cycle(source, loop, levels, extrapolate)
+    measured = {} if source.by_fundamental else loop
     printed = values(_SPRING, _TIME) if {_SPRING, _TIME} <= known or not measured else {}
     amplitude, frequency = (
         float(levels.get(name, math.nan)) for name in ("tension_amplitude", "frequency")
@@ -669,7 +670,10 @@ def line_dynamics(
         spring, time = (float(one.value) for one in printed.values())
         part = _part(rest, spring, time, levels)
         notes = [
-            "K_1 and tau are those of the source: it has no K_ap and H for comparison",
+            "K_1 and tau are those of their own surfaces, by the fundamentals of waves that are no"
+            " sine; K_ap and H of such waves are those of no three-parameter line in a sine"
+            if source.by_fundamental
+            else "K_1 and tau are those of the source: it has no K_ap and H for comparison",
             *_warnings_of_printed(printed[_TIME]),
         ]
     slope, growth = _growth(source, levels, part.fast_stiffness, is_identified=is_identified)
@@ -874,7 +878,7 @@ def _tested_means(source: LineSource, levels: Mapping[str, float]) -> Floats:
 
 def _totals(source: LineSource, over: Mapping[str, Floats], *, is_identified: bool) -> Floats:
     """K_0 + K_1 at points, NaN where there is none. [N]."""
-    names = (_APPARENT, _ENERGY) if is_identified else ()
+    names = (_APPARENT, _ENERGY) if is_identified or source.by_fundamental else ()
     measured = {name: _value(source, name, over, "flag") for name in names}
     rest = _rest_of_cycle(source, measured, over, "flag")
     if is_identified:

@@ -162,7 +162,7 @@ def consistent_values(
     Parameters
     ----------
     line : LineSource
-        With surfaces of K_ap and H and its slow pulls; of any other nothing is said.
+        With surfaces of K_ap and H of sines and its slow pulls; of any other nothing is said.
     frequency, mean_tension, tension_amplitude : array_like, shape (...)
         Broadcast together. [Hz], [N], [N]
 
@@ -188,7 +188,7 @@ def consistent_values(
     >>> print(round(float(values.excess) / 4.4482216, -1), bool(values.is_impossible))
     4490.0 True
     """
-    if not ({K_AP, ENERGY} <= line.surfaces.keys() and line.slow_pulls):
+    if line.by_fundamental or not ({K_AP, ENERGY} <= line.surfaces.keys() and line.slow_pulls):
         return ()
     rate, mean, amplitude = np.broadcast_arrays(
         *(np.asarray(one, dtype=np.float64) for one in (frequency, mean_tension, tension_amplitude))

@@ -290,6 +290,9 @@ class LineSource:
     slow_pulls : dict of str to LineCurve
         K_0 over mean tension by each printed way to it, or by each slow pull of an experiment, by
         its name in words; of a rope with response surfaces alone.
+    by_fundamental : bool
+        Whether K_1 and tau are of the fundamentals of waves that are no sines, whose K_ap and H are
+        those of the wave: no line has both.
     levels : tuple of LineLevels
         Quantities that are known at the levels of single tests.
     conditions : dict of str to str
@@ -317,6 +320,7 @@ class LineSource:
     tensile_strength: float = float("nan")
     strength_of: str = ""
     slow_pulls: dict[str, LineCurve] = field(default_factory=dict)
+    by_fundamental: bool = False
     levels: tuple[LineLevels, ...] = ()
     conditions: dict[str, str] = field(default_factory=dict)
     specimens: tuple[str, ...] = ()

@@ -87,7 +87,10 @@ def _line_data(line: LineSource) -> dict[str, Any]:
             "notes": list(line.notes),
             "conditions": dict(line.conditions),
             "rule": line.rule,
-            "slow_pulls": {of: _curve(one) for of, one in line.slow_pulls.items()},
+            # by which the page solves K_1 and tau of sines
+            "slow_pulls": {}
+            if line.by_fundamental
+            else {of: _curve(one) for of, one in line.slow_pulls.items()},
             "is_printed": line.is_printed,
             **_refits(line),
             "is_tether": line.is_tether,

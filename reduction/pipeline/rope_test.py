@@ -114,12 +114,13 @@ def parts_of_line(
         for one, load in zip(strain, tension, strict=True)
     ]  # fmt: skip
     constant, spread, notes = quasi_static_of_run(
-        loops, pulls, break_in_cycles=settings.break_in_cycles, above_midline=above
-    )
+        loops, pulls, break_in_cycles=settings.break_in_cycles, above_midline=above,
+        waveform=settings.waveform, control=settings.control,
+    )  # fmt: skip
     # the amplitudes of a wave that is no sine are not those of its fundamental
     reading = "amplitude" if settings.waveform == "sinusoidal" else "fundamental"
     if reading == "fundamental":  # a linear line has one complex stiffness at one frequency
-        loops = loops.over_time()
+        loops = loops.over_time(float(np.median(cycles.last - cycles.first)))
     given: dict[str, Any] = {
         "quasi_static_spring_constant": constant,
         "quasi_static_standard_uncertainty": spread,

@@ -6,6 +6,7 @@ import pytest
 from reduction.stages.three_parameter_line.loop_midline import (
     chord_of_spring,
     spring_of_cycle,
+    spring_of_wave,
     tension_above_midline,
 )
 
@@ -75,3 +76,37 @@ def test_a_chord_beyond_the_pull_is_not_known():
         False,
         True,
     ]
+
+
+@pytest.mark.parametrize("control", ["load", "position"])
+@pytest.mark.parametrize("waveform", ["triangular", "sinusoidal"])
+def test_k_0_of_a_wave_is_what_its_reading_has_of_an_exponential_spring(waveform, control):
+    """Without a dashpot: the fundamental of a triangle by quadrature, a sine by its extremes."""
+    start, soft = 2e4, 0.05
+    phase = 2 * np.pi * (np.arange(20000) + 0.5) / 20000
+    wave = 2 / np.pi * np.arcsin(np.cos(phase)) if waveform == "triangular" else np.cos(phase)
+    if control == "load":
+        tension = 2e4 + 6e3 * wave
+        strain = soft * np.log1p(tension / start)
+    else:
+        strain = 0.035 + 0.0075 * wave
+        tension = start * np.expm1(strain / soft)
+    true = np.ptp(tension) / np.ptp(strain)
+    if waveform == "triangular":
+        true = (tension @ np.cos(phase)) / (strain @ np.cos(phase))
+    middle = start * np.expm1((strain.max() + strain.min()) / 2 / soft)
+    mean = (tension.max() + tension.min()) / 2
+    k_0 = spring_of_wave(
+        lambda t: (t + start) / soft, mean, mean - middle, np.ptp(strain) / 2,
+        waveform=waveform, control=control,
+    )  # fmt: skip
+    assert k_0 == pytest.approx(true, rel=1e-4)
+    # slope at the mean, and without its share the chord, are both farther off
+    assert abs((mean + start) / soft / true - 1) > 1e-3
+
+
+def test_without_a_chord_k_0_of_a_wave_is_the_slope_at_the_midline():
+    def constant_at(tension):
+        return np.where(tension < 2.1e4, 8e5 + tension, np.nan)
+
+    assert spring_of_wave(constant_at, 2e4, 500.0, 0.002) == 8e5 + 19500

@@ -8,11 +8,22 @@ import pytest
 import xarray as xr
 from export_sources import LEVELS, REST, SPRING, TIME, loop, source, surface
 
-from reduction.lines.archive_source import _with_bend
-from reduction.lines.bent_loops import RunOfLine, chord_over_slope, with_bend_of_runs
+from reduction.lines.archive_source import (
+    _are_other_waves,
+    _as_sine,
+    _cycle_of_level,
+    _sine_over_wave,
+    _with_bend,
+)
+from reduction.lines.bent_loops import (
+    RunOfLine,
+    chord_over_slope,
+    with_bend_of_levels,
+    with_bend_of_runs,
+)
 from reduction.lines.export_dynamics import line_dynamics
 from reduction.lines.line_consistency import consistent_values
-from reduction.lines.lookup_product import LineCurve
+from reduction.lines.lookup_product import LineCurve, LineLevels
 from reduction.record.errors import ArchiveError
 
 BEND, START = 20.0, 1000.0
@@ -157,3 +168,106 @@ def test_a_look_up_solves_k_1_and_tau_of_bent_loops():
     (slope,) = consistent_values(bent_line(0.0), **LEVELS)
     assert slope.quasi_static_spring_constant > 1.01 * REST
     assert found.half_width["relaxation_time"] > slope.half_width["relaxation_time"]
+
+
+def archive_of_level(*, waveform="sinusoidal", bent=True, stored=None):
+    """Cycles of T = START (exp(BEND e) - 1) under a driven load, without loss."""
+    n, cycles = 60, 8
+    turn = np.arange(n * cycles + 1) / n
+    wave = -np.cos(2 * np.pi * turn)
+    if waveform == "triangular":
+        wave = 1 - 4 * np.abs((turn + 0.5) % 1 - 0.5)
+    tension = 2000.0 + 800.0 * wave
+    strain = np.log1p(tension / START) / BEND if bent else tension / (BEND * 3000.0)
+    first = np.arange(cycles) * n
+    ends = np.column_stack([first, first + n // 2])
+    rate = 800.0 / (np.ptp(strain) / 2)
+    each = np.ones((1, cycles))
+    settings = (
+        '{"reduction": {"cycles": {"break_in_cycles": 2, "waveform": "%s", "control": "load"}}}'
+    )
+    values = {
+        "strain": (("specimen", "sample"), strain[None]),
+        "tension": (("specimen", "sample"), tension[None]),
+        "cycle_first_sample": ("cycle", first), "cycle_last_sample": ("cycle", first + n),
+        "branch_first_sample": (("cycle", "branch_name"), ends),
+        "storage_over_time": (("specimen", "cycle"), 4e4 * each),
+        "loss_over_time": (("specimen", "cycle"), 3e4 * each),
+        "test_mean_tension": ("specimen", [2000.0]), "test_tension_amplitude": ("specimen", [800.0]),
+        "test_apparent_spring_constant": ("specimen", [rate]),
+        "test_hysteresis_energy": ("specimen", [1e-3]),
+    }  # fmt: skip
+    if stored is not None:
+        kept = np.flatnonzero(np.isin(np.arange(turn.size) // n, stored) | (turn % 1 == 0))
+        for name in ("strain", "tension"):
+            values[name] = (("specimen", "sample"), values[name][1][:, kept])
+        values["sample_index"] = ("sample", kept)
+    return xr.Dataset(values, attrs={"settings": settings % waveform, "test": "L1"})
+
+
+@pytest.mark.parametrize("stored", [None, [3, 4, 6]])
+def test_a_rope_at_levels_has_k_0_of_its_bent_loops(stored):
+    chord = 1600.0 * BEND / np.log((2800 + START) / (1200 + START))
+    bent = _cycle_of_level(archive_of_level(stored=stored), 0, pull(START))
+    assert bent.quasi_static_spring_constant == pytest.approx(chord, rel=2e-4)
+    straight = _cycle_of_level(archive_of_level(bent=False, stored=stored), 0, pull(START))
+    assert straight.quasi_static_spring_constant == pytest.approx(BEND * (2000 + START))
+    # one level is enough, and the export at it has this K_0
+    found = with_bend_of_levels(pull(START), [bent])
+    assert found.loop_bend == pytest.approx(1.0, abs=0.02)
+    assert with_bend_of_levels(pull(START), [straight]).loop_bend == 0
+
+
+def test_levels_without_stored_cycles_have_k_0_anywhere_between_slope_and_chord():
+    unknown = _cycle_of_level(archive_of_level(stored=[3]), 0, pull(START))
+    assert np.isnan(unknown.quasi_static_spring_constant)
+    found = with_bend_of_levels(pull(START), [unknown])
+    apart = 1 - 1600.0 / np.log((2800 + START) / (1200 + START)) / (2000 + START)
+    assert found.loop_bend == 0.5
+    assert found.loop_bend_misfit == pytest.approx(apart / 12**0.5, rel=0.02)
+
+
+def test_a_triangle_is_exported_by_its_fundamental():
+    """E' 4e4 and E'' 3e4 N of the fundamental, whatever K_ap and H of the triangle are."""
+    archive = archive_of_level(waveform="triangular")
+    share = _sine_over_wave(archive, 0)
+    own = float(archive["test_apparent_spring_constant"][0])
+    assert share["apparent_spring_constant"] == pytest.approx(5e4 / own)
+    energy = np.pi * 800**2 * 3e4 / 5e4**2
+    assert share["hysteresis_energy"] == pytest.approx(energy / 1e-3)
+    assert _sine_over_wave(archive_of_level(), 0) == {}
+    levels = LineLevels(
+        "apparent_spring_constant", ("mean_tension",), np.array([[2000.0], [3000.0]]),
+        np.array([own, 7e4]), np.array([0.01 * own, 700.0]), np.full(2, 9.0), ("L1", "S1"),
+    )  # fmt: skip
+    found = _as_sine(levels, {"L1": share, "S1": {}})
+    assert found.value == pytest.approx([5e4, 7e4])
+    assert found.random_standard_uncertainty == pytest.approx([500, 700])
+    assert "fundamental" in found.notes[0]
+    assert _as_sine(levels, {"S1": {}}) is levels
+
+
+def test_an_experiment_of_triangles_is_exported_by_its_surfaces_of_k_1_and_tau(tmp_path):
+    line = bent_line(1.0)
+    of_wave = {
+        name: replace(one, coefficient=share * one.coefficient)
+        for name, share in (("apparent_spring_constant", 1.01), ("hysteresis_energy", 0.66))
+        for one in [line.surfaces[name]]
+    }
+    line = replace(line, surfaces=line.surfaces | of_wave, by_fundamental=True)
+    found = line_dynamics(line, LEVELS)
+    assert found.part.fast_stiffness - found.part.static_stiffness == pytest.approx(SPRING)
+    assert found.part.relaxation_time == pytest.approx(TIME)
+    assert found.part.static_stiffness == pytest.approx(REST, rel=2e-3)
+    assert any("waves that are no sine" in text for text in found.notes)
+    # K_ap and H of the wave contradict nothing
+    assert consistent_values(line, **LEVELS) == ()
+
+    @contextmanager
+    def opener(path):
+        yield archive_of_level(waveform={"T": "triangular", "S": "sinusoidal"}[path.stem])
+
+    for name in "TS":
+        (tmp_path / f"{name}.nc").touch()
+    assert _are_other_waves(tmp_path, [("T", "rope"), ("S", "rope")], opener)
+    assert not _are_other_waves(tmp_path, [("S", "rope")], opener)

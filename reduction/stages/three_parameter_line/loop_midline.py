@@ -11,7 +11,9 @@ the one over which the cycle goes.  A loop shows its own bend,
 with plus on the rising branch: :math:`a_0` is the tension of the spring.  K_0 of the cycle is the
 chord of the spring about it, between the strains at which the tension has its peak and its valley,
 :math:`\varepsilon_a \cos\varphi` to either side, with the loss angle :math:`\varphi`: there the
-dashpot adds as much to the one as it takes from the other.  K_0 "must be calculated at the mean
+dashpot adds as much to the one as it takes from the other.  Waves that are no sine are read by
+their fundamentals, whose spring is between that chord and the slope (`spring_of_wave`).  K_0
+"must be calculated at the mean
 load level" and be used "for small perturbations around that mean load" ([1]_); this is what a large
 one takes.
 
@@ -24,11 +26,15 @@ References
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from reduction.record.measurement import Floats, Integers
+
+Waveform = Literal["triangular", "sinusoidal", "other"]
+Control = Literal["position", "load"]
 
 _LEAST_SAMPLES = 12  # of a cycle, for five numbers
 
@@ -100,6 +106,22 @@ def tension_above_midline(
     return float(np.mean(found)), float(np.std(found, ddof=1) / np.sqrt(len(found)))
 
 
+_BENT = 3.0  # standard uncertainties by which a loop has to be bent
+
+_LEAST_BEND = 0.005  # of its amplitude: a load cell and a clock may bend it as much
+
+
+def is_bent(above: float, standard_uncertainty: float, amplitude: float) -> bool:
+    """Whether a loop is bent, by `tension_above_midline` and its tension amplitude.
+
+    Examples
+    --------
+    >>> is_bent(30.0, 2.0, 1000.0), is_bent(30.0, 20.0, 1000.0), is_bent(3.0, 0.0, 1000.0)
+    (True, False, False)
+    """
+    return abs(above) > max(_BENT * standard_uncertainty, _LEAST_BEND * amplitude)
+
+
 def chord_of_spring(
     constant_at: Callable[[Floats], Floats], tension: ArrayLike, half_strain: ArrayLike
 ) -> tuple[Floats, Floats]:
@@ -152,6 +174,45 @@ def chord_of_spring(
     high, low = end(step), end(-step)
     return np.asarray((high - low) / (2 * step)), np.asarray((high + low) / 2 - start)
 
+
+def spring_of_wave(
+    constant_at: Callable[[Floats], Floats],
+    mean_tension: float,
+    above_midline: float,
+    half_strain: float,
+    *,
+    waveform: Waveform = "sinusoidal",
+    control: Control = "position",
+) -> float:
+    r"""K_0 of a bent loop: chord of its spring, or what the fundamental of another wave has. [N].
+
+    A sine is read by its peaks, which are on the chord.  Other waves are read by their fundamentals
+    over time; of the way from the slope about the mean of the driven channel to the chord these go
+    the share of :math:`s^3` in the fundamental over that of s: :math:`3 (1 - 8 / \pi^2)` of a
+    triangle, 3/4 of a sine, which stands for others.  Without a chord, as far as the pull goes, the
+    slope at the midline.
+
+    Examples
+    --------
+    The spring of `chord_of_spring`, with loops whose mean is 600 N above their midline:
+
+    >>> constant_at = lambda t: np.sqrt(16e10 + 24e6 * t)
+    >>> for wave in ("sinusoidal", "triangular"):
+    ...     print(round(spring_of_wave(constant_at, 20.6e3, 600.0, 0.01, waveform=wave,
+    ...         control="load") / 1e3, 1))
+    800.0
+    803.9
+    """
+    middle = np.asarray(mean_tension - above_midline)
+    chord = float(chord_of_spring(constant_at, middle, half_strain)[0])
+    about = np.asarray(mean_tension) if waveform != "sinusoidal" and control == "load" else middle
+    slope = float(constant_at(about))
+    if not np.isfinite(chord):
+        return float(constant_at(middle))
+    return slope + _CUBIC_IN_FUNDAMENTAL[waveform] * (chord - slope)
+
+
+_CUBIC_IN_FUNDAMENTAL = {"sinusoidal": 1.0, "triangular": 3 * (1 - 8 / np.pi**2), "other": 0.75}
 
 _ROUNDS = 12  # each makes what is left smaller by the bend of the cycle, a tenth or so
 

@@ -63,7 +63,12 @@ from reduction.stages.cycles.loops import reading_noise
 from reduction.stages.moduli.least_squares import lag_one_inflation
 from reduction.stages.moduli.local_regression import sums_by_cell
 from reduction.stages.three_parameter_line.line_product import SlowPull
-from reduction.stages.three_parameter_line.loop_midline import chord_of_spring
+from reduction.stages.three_parameter_line.loop_midline import (
+    Control,
+    Waveform,
+    is_bent,
+    spring_of_wave,
+)
 
 # a rise out of slack shows above this many standard deviations of a reading
 _NOISE_FACTOR = 6.0
@@ -870,10 +875,6 @@ _BEYOND = 0.01
 # a drift of the mean tension over a run that changes K_0 by more than this is said
 _DRIFT_NOTED = 0.05
 
-_BENT = 3.0  # standard uncertainties by which a loop has to be bent
-
-_LEAST_BEND = 0.005  # of its amplitude: a load cell and a clock may bend it as much
-
 
 def _scaled(pull: SlowPull, tension: ArrayLike) -> tuple[Floats, Bools]:
     """Tension as u of the fit, NaN outside the range of use."""
@@ -1152,21 +1153,28 @@ def error_of_pull_rate(
 
 
 def _spring_of_loops(
-    pull: SlowPull, middle: float, loops: Loops, row: int, break_in_cycles: int
+    pull: SlowPull,
+    mean: float,
+    above: float,
+    loops: Loops,
+    row: int,
+    break_in_cycles: int,
+    waveform: Waveform,
+    control: Control,
 ) -> tuple[float, float]:
-    """Chord of the pull about a tension over the loops of a run, and its uncertainty. [N]."""
-    slope, spread = quasi_static_spring_constant(pull, middle)
+    """K_0 of the pull over the bent loops of a run, and its uncertainty. [N]."""
+    slope, spread = quasi_static_spring_constant(pull, mean - above)
     load, stretch, energy = (
         one[row, break_in_cycles:]
         for one in (loops.tension_amplitude, loops.strain_amplitude, loops.hysteresis_energy)
     )
     sine = energy / (np.pi * load * stretch)
     half = float(np.nanmean(stretch * np.sqrt(np.maximum(1 - sine**2, 0.0))))
-    chord, _ = chord_of_spring(
-        lambda tension: quasi_static_spring_constant(pull, tension)[0], middle, half
-    )
-    share = float(chord / slope) if np.isfinite(chord) else 1.0
-    return share * float(slope), share * float(spread)
+    constant = spring_of_wave(
+        lambda tension: quasi_static_spring_constant(pull, tension)[0], mean, above, half,
+        waveform=waveform, control=control,
+    )  # fmt: skip
+    return constant, constant / float(slope) * float(spread)
 
 
 def quasi_static_of_run(
@@ -1175,6 +1183,8 @@ def quasi_static_of_run(
     *,
     break_in_cycles: int = 0,
     above_midline: Sequence[tuple[float, float]] = (),
+    waveform: Waveform = "sinusoidal",
+    control: Control = "load",
 ) -> tuple[Floats, Floats, tuple[Note, ...]]:
     """K_0 of each specimen at the mean tension of a run.
 
@@ -1189,6 +1199,10 @@ def quasi_static_of_run(
     above_midline : sequence of tuple of float, length n_specimens, optional
         How far the mean tension of the loops is above their midline at the mean strain, with its
         standard uncertainty, from `reduction.stages.three_parameter_line.loop_midline`. [N]
+    waveform : {"sinusoidal", "triangular", "other"}, optional
+        Of the driven channel. [-]
+    control : {"load", "position"}, optional
+        Which that is. [-]
 
     Returns
     -------
@@ -1209,7 +1223,7 @@ def quasi_static_of_run(
     [6]_ means small cycles.  The slow spring of a large one is bent, and its slope over the cycle
     is not that of the pull at the mean tension: 1 % in K_0, at a twentieth of a hertz, is 8 % in
     K_1 and 10 % in tau.  Where the loops themselves are bent, by more than K_0 is uncertain, K_0
-    is the chord of the pull about the tension of their midline (`chord_of_spring`), or its slope
+    is the chord of the pull about the tension of their midline (`spring_of_wave`), or its slope
     there where the pull does not reach the ends; straight loops keep the slope at the mean.
 
     Examples
@@ -1254,11 +1268,13 @@ def quasi_static_of_run(
             continue
         if len(above_midline):
             above, u_above = above_midline[row]
-            bent, u_bent = _spring_of_loops(pull, mean - above, loops, row, break_in_cycles)
+            bent, u_bent = _spring_of_loops(
+                pull, mean, above, loops, row, break_in_cycles, waveform, control
+            )
             effect = bent / float(constant[row]) - 1
             amplitude = float(np.nanmean(loops.tension_amplitude[row, break_in_cycles:]))
-            is_bent = abs(above) > max(_BENT * u_above, _LEAST_BEND * amplitude)
-            if is_bent and abs(effect) * constant[row] > uncertainty[row]:
+            is_clear = abs(effect) * constant[row] > uncertainty[row]
+            if is_clear and is_bent(above, u_above, amplitude):
                 constant[row], uncertainty[row] = bent, u_bent
                 notes.append(note("bent-loops", mean=mean, at=mean - above, effect=effect))
         ends, _ = quasi_static_spring_constant(pull, [float(load[0]), float(load[-1])])
