@@ -133,6 +133,9 @@ class _Proposal:
     remarks: tuple[str, ...]
 
 
+_EXTREME = re.compile(r"\b(max|min|maximum|minimum|peak|valley)\b", re.IGNORECASE)
+
+
 @lru_cache(maxsize=4096)
 def is_unit(text: str, dimension: Dimension | None = None) -> bool:
     """Whether a text is a unit, of one dimension or of any."""
@@ -417,6 +420,16 @@ def propose_channels(columns: Sequence[SeenColumn]) -> _Proposal:
             is_commented = not is_blind or bool(keys[1:])
             lines.append(f"# {text}" if is_commented else text)
             remarks.append(f"unknown: which column is {key}, if one is")
+    extremes = [column for column in columns if _EXTREME.search(column.name)]
+    if len(extremes) > 1 and all(
+        _EXTREME.search(column.name)
+        for key, (column, _) in chosen.items()
+        if key == "crosshead_position" or key.startswith("tension.")
+    ):
+        remarks.append(
+            f"guess: {_label(extremes[0])} and {_label(extremes[1])} are extremes of each cycle, by"
+            " their names: such a table has no loops, so take the log of the readings"
+        )
     lines += [
         f"# not used: column {column.number}{_described(column)}"
         for column in seen

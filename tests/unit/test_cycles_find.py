@@ -516,6 +516,13 @@ def test_counted_cycles_that_are_missing_or_without_stroke_are_noted(twenty):
     assert "the log contains 21 of the machine cycles 1 to 22: 22 follows 20" in notes
 
 
+def test_a_table_of_one_row_a_cycle_is_refused_as_such():
+    time = 4.0 * np.arange(60)
+    greatest = 1.13 + 1e-5 * np.sin(np.arange(60))
+    with pytest.raises(DataError, match=r"one row a cycle; found 60 rows.*reduction surface"):
+        find(time, greatest, counter=np.arange(1, 61))
+
+
 def test_a_counter_that_never_changes_is_not_used(twenty):
     cycles = find(*twenty, counter=np.ones(twenty[0].size, dtype=int))
     assert cycles.n_cycles == 20

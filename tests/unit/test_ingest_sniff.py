@@ -287,6 +287,17 @@ def test_a_distance_of_grips_or_a_travel_is_the_position(tmp_path, name):
     assert columns(proposed(path))["crosshead_position"] == (f"{name} (mm)", "mm")
 
 
+def test_a_table_of_extremes_is_no_log_of_loops(tmp_path):
+    rows = [f"{one},{900 + one},{300 - one},{20 + one / 9:.2f},{10:.2f}" for one in range(1, 30)]
+    text = "Cycle,Max Load (N),Min Load (N),Max Position (mm),Min Position (mm)\n"
+    path = tmp_path / "log.csv"
+    path.write_text(text + "\n".join(rows) + "\n")
+    said = '"Max Load (N)" and "Min Load (N)" are extremes of each cycle'
+    assert said in " ".join(sniff_layout(path).remarks)
+    path.write_text(text.replace("Max Load", "Load").replace("Max Pos", "Pos") + "\n".join(rows))
+    assert "extremes of each cycle" not in " ".join(sniff_layout(path).remarks)
+
+
 def test_a_decimal_comma_that_may_part_thousands_is_a_guess(tmp_path):
     path = write(tmp_path, "a;b\n" + "".join(f"1,{i:03};2,{i:03}\n" for i in range(9)))
     assert any(

@@ -838,6 +838,12 @@ _AT_TOP = 1e-3  # of the range
 _AT_TURNS = 0.9  # of the readings
 
 
+_BETWEEN = (
+    "Loops and moduli need the readings between: take the log that was not thinned. The ranges of"
+    " load and strain give K_ap alone, of which `reduction surface` takes a table of runs."
+)
+
+
 _NO_LOAD = 0.1  # of the greatest
 
 
@@ -858,7 +864,7 @@ def _hint(time: Floats, values: Floats) -> str:
     if values.size > FEWEST_SAMPLES and _turning_points(values).size > _AT_TURNS * values.size:
         return (
             "Nearly every reading is a turn: the log holds the greatest and least value of each"
-            " cycle. Loops and moduli need the readings between: take the log that was not thinned."
+            f" cycle. {_BETWEEN}"
         )
     top = float(np.nanmax(values))
     share = float(np.mean(values > top - _AT_TOP * (top - float(np.nanmin(values)))))
@@ -1197,6 +1203,14 @@ def find_cycles(
     counter, counted = cycle_counter, None
     if counter is not None and not _changes_of_count(counter).size:
         counter = None
+    if counter is not None and _changes_of_count(counter).size > _AT_TURNS * counter.size:
+        raise DataError(
+            "the log has one row a cycle",
+            found=f"{counter.size} rows, and {_changes_of_count(counter).size} changes of the"
+            " cycle_counter",
+            needed=f"{FEWEST_SAMPLES} readings a cycle or more",
+            hint=f"It is a table of the values of each cycle. {_BETWEEN}",
+        )
     if counter is not None:
         counted = _counted_cycles(time, values, counter)
     at_valleys = counted is not None and _change_at_valleys(values, *counted[:4])
