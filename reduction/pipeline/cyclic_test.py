@@ -269,6 +269,7 @@ def parts_of_cycles(
             names=record.specimens,
             time=record.time,
             lag=lag,
+            control=settings.cycles.control,
         ),
         "amplitude": amplitude,
         "trend": trend,

@@ -133,14 +133,15 @@ def sampled(lag, *, per_cycle=100, n_cycles=40, noise=0.05, bend=30.0):
     return np.stack([stretch, stretch]), np.stack(loads)
 
 
-def judged(lag, triangle, **options):
+def judged(lag, triangle, control="position", **options):
     strain, tension = sampled(lag, **options)
     _, cycles = triangle(
         n_cycles=options.get("n_cycles", 40), per_cycle=options.get("per_cycle", 100)
     )
     return check_identity(
-        strain, tension, area=[AREA, AREA], cycles=cycles, names=("sound", "late")
-    )
+        strain, tension, area=[AREA, AREA], cycles=cycles, names=("sound", "late"),
+        control=control,
+    )  # fmt: skip
 
 
 def test_tension_sampled_late_is_noted_and_sound_channels_are_not(triangle):
@@ -157,6 +158,8 @@ def test_tension_sampled_late_is_noted_and_sound_channels_are_not(triangle):
     assert note.startswith("late: the difference between the mean slopes of the two branches")
     assert "residual -0." in note and "channel lag" in note
     assert "few samples" not in note
+    (note,) = map(str, judged(0.005, triangle, control="load").notes)
+    assert note.startswith("late: the difference")
 
 
 @pytest.mark.parametrize(("stated", "severity"), [(0.0025, "note"), (0.0005, "warning")])
@@ -315,3 +318,36 @@ def test_readings_in_step_on_a_curve_that_bends_open_no_cycle(per_cycle):
     found = check_identity(strain[None], tension[None], area=[AREA], cycles=cycles)
     assert abs(found.mean_identity_residual[0]) < 0.001
     assert found.notes == ()
+
+
+def test_strain_that_goes_on_behind_the_turn_of_a_driven_load_opens_no_cycle():
+    """A rope that stiffens, creeps within seconds and has friction, read 40 times a cycle."""
+    half, n_cycles, fine = 20, 12, 50
+    at = np.arange(half * fine * (2 * n_cycles + 1) + 1) / fine + 0.1 - half
+    driven = 1 + 0.67 * (1 - 2 * np.abs(at / half % 2 - 1))
+    elastic = np.log1p(np.expm1(3.0) * driven / 1.67)
+    strain = elastic.copy()
+    for reach in (2.0, 20.0):
+        left = np.exp(-1 / (fine * reach))
+        strain += 0.05 * lfilter([1 - left], [1, -left], elastic, zi=[left * elastic[0]])[0]
+    held, room = elastic.copy(), 0.04 * np.ptp(elastic)
+    for place in range(1, held.size):
+        held[place] = np.clip(held[place - 1], elastic[place] - room, elastic[place] + room)
+    strain += 0.3 * (held - elastic)
+    read = slice(half * fine, None, fine)
+    first = 2 * half * np.arange(n_cycles)
+    begin = np.column_stack([first, first + half])
+    order = np.arange(2 * half * n_cycles + 1)
+    cycles = Cycles(
+        first, first + 2 * half, begin, begin + half, np.ones((n_cycles, 2)),
+        np.maximum(order - 1, 0) // (2 * half) + 1,
+        np.where(np.maximum(order - 1, 0) % (2 * half) < half, 1, 2),
+        np.ones(order.size, dtype=bool), 0.0,
+    )  # fmt: skip
+    sides = 0.05 * strain[read][None], 1e4 * driven[read][None]
+    over_strain, over_load = (
+        check_identity(*sides, area=[AREA], cycles=cycles, control=one)
+        for one in ("position", "load")
+    )
+    assert [one.severity for one in over_strain.notes] == ["warning"]
+    assert over_load.notes == ()
