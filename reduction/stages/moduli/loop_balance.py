@@ -324,8 +324,8 @@ def check_identity(
     turn between two readings, which cycles out of step with the clock have at all places and those
     in step at one: of these the branches without the readings at their turns are judged, and a lag
     of less than a reading cannot be told.  Under a driven load, strain goes on behind a turn of the
-    tension, where slopes over strain have no branch: there the strain that a cycle gains has to
-    differ from the compliances of its branches as well.  Tension logged late
+    tension, where slopes over strain have no branch: above zero, as that makes it, the strain that
+    a cycle gains has to differ from the compliances of its branches as well.  Tension logged late
     makes it negative on a curve that stiffens: by some 0.7 to 1.1 % for a two-hundredth of
     the period.
 
@@ -434,7 +434,8 @@ def check_identity(
     for row, (name, one, spread) in enumerate(zip(names, mean, error, strict=True)):
         least = max(_SIGNIFICANT * spread, worth_a_note)
         if abs(one) > least and abs(one) > (most := least + of_bend(row)):
-            if control == "load" and of_strain(row) <= most:
+            # what creeps goes on behind a turn of the load; a late load is on the other side
+            if control == "load" and 0 < one and of_strain(row) <= most:
                 continue
             explained = of_lag(row)
             # intervals hold the stated lag already, and what it leaves is not worth a warning
