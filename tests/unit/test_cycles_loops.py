@@ -10,6 +10,7 @@ from reduction.record.errors import DataError
 from reduction.record.settings import CycleSettings, PhaseSettings
 from reduction.stages.cycles.cycle_product import Cycles
 from reduction.stages.cycles.cycle_search import find_cycles
+from reduction.stages.cycles.loop_sense import unlike_neighbours
 from reduction.stages.cycles.loops import (
     _cycle_basis,
     _energy_by_chance,
@@ -1824,3 +1825,40 @@ def test_k_ap_of_a_rope_that_sticks_behind_the_corners_of_a_load_in_step_with_th
     spread = found.uncertainty["apparent_spring_constant"][0]
     assert abs(found.apparent_spring_constant[0] - truth) < 2.2 * spread + 1e-3 * truth
     assert spread < 0.05 * truth
+
+
+def one_stored_cycle(place, per_cycle, *, n_cycles=1, skip=20):
+    """Triangles of 200 N and 10 s that are stored with their count, cycle by cycle, and nothing
+    between them; the first reading is ``place`` of a sample behind the valley."""
+    at = (np.arange(per_cycle * (1 + skip * (n_cycles - 1)) + 1) + place) / per_cycle
+    at = at[(at // 1 % skip == 0) & (at < 1 + skip * (n_cycles - 1))]
+    count = (at // 1).astype(int) + 7
+    wave = 200 * (1 - np.abs(2 * (at % 1) - 1))
+    return 10 * at, wave, count
+
+
+@pytest.mark.parametrize("place", [0.1, 0.5, 0.8])
+@pytest.mark.parametrize("per_cycle", [16, 25, 60])
+def test_a_single_stored_cycle_goes_on_to_its_first_reading(place, per_cycle):
+    time, wave, count = one_stored_cycle(place, per_cycle)
+    stands = find_standstills(time, wave, wave[None], settings=PhaseSettings())
+    cycles = find_cycles(
+        time, wave, wave[None], stands, settings=CycleSettings(), cycle_counter=count
+    )
+    strain = 1 + wave / 200
+    loops = close_loops(time, wave[None], strain[None], cycles, waveform="triangular")
+    found = summarise_amplitude(loops, area=[1e-4])
+    # of 0.1 Hz and 100 N: it had ended with its last reading, and at the lower of both
+    for name, true in (("frequency", 0.1), ("tension_amplitude", 100.0)):
+        spread = found.uncertainty[name][0]
+        assert abs(getattr(found, name)[0] - true) < 2 * spread + 1e-9 < 0.2 * true
+
+
+def test_cycles_that_are_stored_one_by_one_are_no_waves_that_do_not_repeat():
+    time, wave, count = one_stored_cycle(0.4, 40, n_cycles=6)
+    stands = find_standstills(time, wave, wave[None], settings=PhaseSettings())
+    cycles = find_cycles(
+        time, wave, wave[None], stands, settings=CycleSettings(), cycle_counter=count
+    )
+    assert cycles.n_cycles == 6
+    assert unlike_neighbours(time, wave, cycles, stands) == 0

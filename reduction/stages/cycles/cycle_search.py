@@ -1251,6 +1251,8 @@ def find_cycles(
             )  # fmt: skip
         branch_first, branch_last = branch_first[steady], branch_last[steady]
         first, last = first[steady], last[steady]
+        if cycle_counter is not None and counter is None and first.size == 1:
+            counted_by = "machine counter"  # the one cycle of a log, which a machine stored
         n_moves = reversals.size // 2
         has_gaps = any(one.code == "gaps-end-runs" for one in notes)
         if counted is None and has_gaps and 0 < first.size < _READ_CLOSELY * n_moves:

@@ -192,6 +192,9 @@ def unlike_neighbours(
             for first, end in zip(cycles.first.tolist(), stop.tolist(), strict=True)
         ]
         pairs = take_samples(time, _spread(ends[np.array(goes_on, dtype=bool)]))
+        # behind a cycle that is stored alone the log goes on with one that is another time's
+        own, following = np.diff(pairs, axis=1).T
+        pairs = pairs[following < _GAP * own]
     phase = np.linspace(0, 1, _PHASES, endpoint=False)
     left, gone, noise = [], [], []
     for times in pairs:
@@ -222,6 +225,8 @@ def unlike_neighbours(
 _PHASES = 64
 
 _GOES_ON = 3  # durations of a cycle
+
+_GAP = 1.3  # times as long for as many readings
 
 
 def _spread(values: Integers) -> Integers:

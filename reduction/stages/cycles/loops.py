@@ -98,6 +98,7 @@ from reduction.stages.cycles.cycle_product import (
     drift_not_placed,
 )
 from reduction.stages.cycles.periods import (
+    is_alone,
     own_periods,
     periods_alone,
     spread_of_turns,
@@ -1397,6 +1398,7 @@ def _readings_at_turns(
     moved: Floats,
     answers: bool,
     sticks: bool,
+    alone: bool,
 ) -> tuple[Floats, Floats, Floats, Floats]:
     """Greatest reading near each peak, least ones near both valleys, and what they miss.
 
@@ -1407,10 +1409,13 @@ def _readings_at_turns(
     before the next reading, or ``sticks`` there, as strain does under a driven load.  A series of
     way -1 falls where the driven channel rises.
     Between two cycles is a rest, unless they share a reading or are stored one below the other.
+    One that is ``alone`` is followed by itself.
     """
-    values = way * series
     on_rise, on_fall = reach
     begin, peak, end = branch_first[:, 0], branch_last[:, 0], branch_last[:, 1]
+    if alone:  # its valley is between its last reading and its first
+        series, moved = (np.append(one, one[:_BEHIND_TURN]) for one in (series, moved))
+    values = way * series
     is_stored_alone = ends[0][1:] == ends[1][:-1] + 1
     earliest = np.append(begin[:1], np.where(is_stored_alone, ends[0][1:], end[:-1]))
     latest = np.append(np.where(is_stored_alone, ends[1][:-1], begin[1:]), end[-1:])
@@ -1662,6 +1667,8 @@ _MOST_FOLDED = 50  # cycles that say how far chance puts all of them off
 _OF_A_KINK = 0.45
 """Of a third of D, standard deviation over all places of a kink between two readings: it is
 D times the root of 16 / 720."""
+
+_BEHIND_TURN = 5  # readings behind a turn, of which it is seen
 
 _EITHER = 2**0.5
 """What relaxes at a corner is at one end of its range or at the other, and not between them: the
@@ -2170,6 +2177,7 @@ def _measure(
     reach: tuple[int, int],
     turn: Turn,
     ways: tuple[int, int],
+    alone: bool,
 ) -> Floats:
     """What only the samples tell, one row a quantity of `MEASURED`, one column a cycle."""
     first, last = basis.first, basis.last
@@ -2194,6 +2202,7 @@ def _measure(
                 moved=ways[moved is stretch] * moved,
                 answers=(series is force) != (moved is force),
                 sticks=moved is force,
+                alone=alone,
             )
         )
     )
@@ -2381,6 +2390,7 @@ def close_loops(
                 time[low:high], force[low:high], stretch[low:high], basis, middles[:, block] - low,
                 (cycles.branch_first[block] - low, cycles.branch_last[block] - low),
                 waveform, control, (on_rise, on_fall), turns[index], ways[index],
+                is_alone(cycles, time.size),
             )  # fmt: skip
 
     samples = (time, tension, strain, measured)

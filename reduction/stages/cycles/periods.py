@@ -139,6 +139,12 @@ def time_of_sample(duration: Floats, cycles: Cycles) -> Floats:
     return np.asarray(duration / (cycles.last - cycles.first) / np.sqrt(12))
 
 
+def is_alone(cycles: Cycles, n_samples: int) -> bool:
+    """Whether a log is one cycle that a machine stored, without a reading before or after."""
+    is_whole = cycles.first[0] == 0 and cycles.last[-1] == n_samples - 1
+    return bool(cycles.n_cycles == 1 and is_whole and cycles.counted_by == "machine counter")
+
+
 def periods_alone(
     time: Floats, driven: Floats, cycles: Cycles, *, is_sine: bool, noise: float
 ) -> tuple[Integers, Floats, Floats]:
@@ -171,9 +177,9 @@ def periods_alone(
 
     Notes
     -----
-    The last reading of a stored cycle is up to a sample before it ends.  Ramps go on at their own
-    speed until they are where they began, and the valley is between there and the end of that
-    sample.
+    The last reading of a stored cycle is up to a sample before it ends, and the first up to one
+    behind its begin.  The levels of ramps say by how much one is farther off than the other: both
+    together are between that and as much less than two samples.
 
     Examples
     --------
@@ -196,7 +202,8 @@ def periods_alone(
         cycles.last - cycles.first
     )
     is_cut = take_samples(time, after) - take_samples(time, cycles.last) > _GAP * steps
-    is_cut |= (after == cycles.last) & is_cut.any()
+    # so is the last one of them, and one that is a whole log
+    is_cut |= (after == cycles.last) & (is_cut.any() | is_alone(cycles, time.size))
     place = np.flatnonzero(~touch & ~np.append(touch[1:], False) & is_cut)
     period, spread = np.empty((2, place.size))
     for row, one in enumerate(place.tolist()):
@@ -208,14 +215,14 @@ def periods_alone(
             period[row], spread[row] = _fitted_period(at[known], level[known], duration)
             if abs(period[row] - duration - step / 2) < _OF_STEPS * step:
                 continue
-        rise, fall = driven[peak] - level[0], driven[peak] - level[-1]
-        back = rise - fall  # what is left of the fall, or of the next rise
-        way, stop = (fall, end) if back > 0 else (rise, begin)
+        back = level[-1] - level[0]  # what is left of the fall, or of the next rise
+        # the reading at the peak may be half a sample from it
+        (near, stop) = (peak + 1, end) if back > 0 else (peak - 1, begin)
         with np.errstate(divide="ignore", invalid="ignore"):
-            speed = way / abs(time[stop] - time[peak])
+            speed = (driven[near] - driven[stop]) / abs(time[stop] - time[near])
             extra = min(abs(back) / speed, step) if speed > 0 else 0.0
-        period[row] = duration + (extra + step) / 2
-        spread[row] = np.hypot((step - extra) / np.sqrt(12), noise / speed if speed > 0 else step)
+        period[row] = duration + step
+        spread[row] = np.hypot((step - extra) / np.sqrt(3), noise / speed if speed > 0 else step)
     return place, period, spread
 
 
