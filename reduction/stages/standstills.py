@@ -50,6 +50,10 @@ _NORMAL_MEDIAN = 0.67449  # median of |z| of a normal variable
 
 _NOISE_WIDTHS = 12.0  # range that 10**7 normal samples hardly leave, in standard deviations
 
+_MOST_NOISE = 0.05  # of the range of a channel, that noise may span unquestioned
+
+_STRAIGHT_SHARE, _NORMAL_FIFTH = 0.2, 0.25335  # of second differences; |z| below which a fifth is
+
 _QUANTA = 3.0  # range of a level between two steps, with noise below one step
 
 _FLICKER_SHARE = 0.2  # steps undone by the next step; 0.1 at 10 samples a triangle's branch
@@ -179,6 +183,10 @@ def noise_range(values: ArrayLike) -> float:
     Ten million normal samples span eleven deviations; a level between two codes with noise
     below one of them flickers over two or three, cf. the 12-bit position of [1]_.
 
+    Of a wave of ramps and rests with a dozen readings a cycle most differences have a corner, and
+    `estimate_noise` takes the wave for noise.  Where that is large, and a fifth of the second
+    differences say less than half of it, they are those of straight parts.
+
     Examples
     --------
     >>> print(round(noise_range(np.random.default_rng(0).normal(0, 0.5, 5000)), 1))
@@ -186,7 +194,13 @@ def noise_range(values: ArrayLike) -> float:
     """
     values = np.asarray(values, dtype=np.float64)
     noise, quantum = estimate_noise(values)
-    floor = max(1e-9 * float(np.nanmax(np.abs(_stretches(values)))), _TINY)
+    rows = _stretches(values)
+    if _NOISE_WIDTHS * noise > _MOST_NOISE * float(np.ptp(rows)):
+        bends = np.abs(np.diff(rows, n=2, axis=1))
+        least = float(np.quantile(bends, _STRAIGHT_SHARE)) / (_NORMAL_FIFTH * sqrt(comb(4, 2)))
+        if least < noise / 2:
+            noise = min(noise, max(least, quantum / 2))
+    floor = max(1e-9 * float(np.nanmax(np.abs(rows))), _TINY)
     return max(_NOISE_WIDTHS * noise, _QUANTA * quantum, floor)
 
 

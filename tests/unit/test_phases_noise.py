@@ -86,3 +86,14 @@ def test_rare_flicker_of_a_hold_is_found_in_a_record_that_mostly_moves():
     level = 250 + (np.arange(400) % 40 == 7)
     readings = np.round(step * np.concatenate([ramps, level]), 5)  # five decimals, as printed
     assert noise_range(readings) == pytest.approx(3 * step, rel=2e-3)
+
+
+@pytest.mark.parametrize(("per_cycle", "dwell"), [(11, 0.25), (12, 0.2), (12.3, 0.2), (13, 0.25)])
+def test_ramps_and_rests_of_a_dozen_readings_a_cycle_are_no_noise(per_cycle, dwell):
+    # most differences have a corner: their median is a tenth of the stroke
+    turn = (np.arange(200) + 0.3) / per_cycle
+    wave = np.interp(turn % 1, [0, 0.5 - dwell, 0.5, 1 - dwell, 1], [0, 1, 1, 0, 0])
+    noise = np.random.default_rng(1).normal(0, 1e-3, turn.size)
+    assert 8e-3 < noise_range(2 * wave + noise) < 0.06
+    # what is all noise keeps its twelve deviations
+    assert noise_range(noise) == pytest.approx(12e-3, rel=0.2)
