@@ -306,7 +306,10 @@ def own_periods(
     period, spread = np.array(duration), time_of_sample(duration, cycles)
     alone, *of_alone = periods_alone(time, driven, cycles, is_sine=False, noise=noise)
     period[alone], spread[alone] = of_alone
-    touch = np.flatnonzero(_follow(time, cycles, duration))
+    follows = _follow(time, cycles, duration)
+    if follows.any() and not follows[1:].all():
+        follows[1:] |= _last_as_long(time, driven, cycles)
+    touch = np.flatnonzero(follows)
     if not touch.size:
         return period, spread
     flanks = partial(_flank_to_flank, time, driven, noise)
@@ -340,6 +343,20 @@ def own_periods(
 _OF_LAST = np.sqrt(5)  # a sum that ends with its fall alone, to one that ends with both flanks
 
 _ALIKE = 0.02  # of a cycle with its rest, by which rests may differ and be a part of the wave
+
+
+def _last_as_long(time: Floats, driven: Floats, cycles: Cycles) -> Bools:
+    """Which cycles last, from rise to rise, as long as those that touch the next one.
+
+    A dwell of about the shortest standstill is a rest behind some cycles, and a part of others.
+    """
+    begin, end = cycles.branch_first[:, 0], cycles.branch_last[:, 0]
+    step = np.diff(take_samples(time, _half_way(driven, begin, end)))
+    touch = touching(cycles)[1:]
+    if not touch.any():
+        return touch
+    usual = float(np.median(step[touch]))
+    return np.asarray(np.abs(step - usual) <= _ALIKE * usual)
 
 
 def _follow(time: Floats, cycles: Cycles, duration: Floats) -> Bools:
