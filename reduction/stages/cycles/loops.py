@@ -2480,7 +2480,8 @@ def close_loops(
             lead = np.angle((force_cos - 1j * force_sin) * (strain_cos + 1j * strain_sin))
             turned = _turn_over_cycle(-lead if control == "load" else lead, touching(cycles))
             fitted = of_both[answering][:3]
-            measured[index, fitted] = _without_turning(*measured[index, fitted], turned)
+            cosine, sine, mean = measured[index, fitted]
+            measured[index, fitted] = _without_turning(cosine, sine, mean, turned)
             shapes = (
                 _shape_of_wave(
                     time, force, cycles, period, measured[index, _OF_FORCE], ends,
