@@ -949,6 +949,14 @@ def loop_contributions(
                 "peak_tension": -of_approach * felt,
                 "valley_tension": of_approach * felt,
             }
+        # strain is led half the way to the corner of a driven load: from a reading before it, which
+        # is late as well, or from one behind it, which takes that back
+        if waveform == "triangular" and control == "load" and has_corners:
+            of_approach = 2 * 2**0.5 * frequency * errors.lag * ramps
+            of_lag |= {
+                "apparent_spring_constant": -of_approach * apparent_spring_constant,
+                "strain_amplitude": of_approach * strain_amplitude,
+            }
         if errors.smoothed_over:
             # anything from nothing, of a clock that is late, to all that such a filter takes
             share = _smoothed_away(waveform, ramps * frequency * errors.smoothed_over) / np.sqrt(3)

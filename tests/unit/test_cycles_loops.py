@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.signal import lfilter
 
+from reduction.record.contributions import InstrumentErrors
 from reduction.record.errors import DataError
 from reduction.record.settings import CycleSettings, PhaseSettings
 from reduction.stages.cycles.cycle_product import Cycles
@@ -25,6 +26,8 @@ from reduction.stages.cycles.loops import (
 from reduction.stages.cycles.turns import noise_in_extreme
 from reduction.stages.moduli.secant_modulus import summarise_amplitude
 from reduction.stages.standstills import find_standstills, find_tension_stands
+from reduction.stages.strain.strain_model import StrainModel
+from reduction.uncertainty.propagation import loop_contributions
 
 STORAGE, LOSS, AMPLITUDE = 900.0, 100.0, 0.2
 
@@ -1862,3 +1865,35 @@ def test_cycles_that_are_stored_one_by_one_are_no_waves_that_do_not_repeat():
     )
     assert cycles.n_cycles == 6
     assert unlike_neighbours(time, wave, cycles, stands) == 0
+
+
+def test_a_lag_moves_the_strain_that_is_led_to_the_corner_of_a_driven_load_as_its_error_says():
+    per_cycle, frequency, lag = 40, 0.1, 0.01
+
+    def found(lag, place):
+        turn = np.arange(25 * per_cycle + 1) / per_cycle + place / per_cycle
+        load, late = (
+            2e4 + 6e3 * (1 - 4 * np.abs((turn + on) % 1 - 0.5)) for on in (0.0, lag * frequency)
+        )
+        return summary_of_log(turn / frequency, load, late / 1e6, "load", waveform="triangular")
+
+    line = StrainModel("r", "gauge-length", {"reference_position": 0.0, "gauge_length": 1.0})
+    places = (0.2, 0.4, 0.6, 0.8)
+    exact, late = ([found(one, place) for place in places] for one in (0.0, lag))  # of tension
+    names = (
+        "frequency", "mean_tension", "tension_amplitude", "mean_strain", "strain_amplitude",
+        "apparent_spring_constant", "hysteresis_energy", "storage_spring_constant",
+        "loss_spring_constant", "closed_loop_energy",
+    )  # fmt: skip
+    moved = loop_contributions(
+        InstrumentErrors("r", lag=lag), line, **{one: getattr(exact[0], one) for one in names},
+        waveform="triangular", control="load",
+    ).values  # fmt: skip
+    # by where the readings lie beside the corners it is all or nothing
+    for name in ("strain_amplitude", "apparent_spring_constant"):
+        change = [
+            getattr(b, name)[0] - getattr(a, name)[0] for a, b in zip(exact, late, strict=True)
+        ]
+        stated = abs(moved[name][0, 0])
+        assert np.sqrt(np.mean(np.square(change))) == pytest.approx(stated, rel=0.1)
+        assert np.abs(change).max() < 1.5 * stated
