@@ -361,6 +361,12 @@ _EDGES = 1 << 10  # of runs, looked at together: a quantised channel has one for
 
 _SATURATED_SAMPLES = 5
 
+_FEWEST_SATURATED = 3  # of a channel whose noise is more than its steps
+
+_FEWEST_PAIRS = 3
+
+_FINE = 4.0  # steps
+
 _SATURATED_STEPS = 16.0
 
 _MOVING_NOISE = 10.0
@@ -494,6 +500,9 @@ def _find_saturated(tension: Floats, position: Floats) -> Bools:
     starts: list[Integers] = [np.empty(0, dtype=np.intp)]
     stops = list(starts)
     low, high = finite_extremes(tension)
+    noise, step = _noise_of(tension)
+    # a peak that rounding flattens to three readings has no more noise, or bend, than its steps
+    is_fine = noise > _FINE * step
     for level in (low, high):
         if level == low and (low == high or abs(low) <= _SLACK_SHARE * (high - low)):
             continue  # a slack specimen reads zero, a dead channel is stuck
@@ -508,13 +517,22 @@ def _find_saturated(tension: Floats, position: Floats) -> Bools:
         is_first = np.concatenate([[True], np.diff(place) > 1])
         is_last = np.concatenate([is_first[1:], [True]])
         runs = _Runs(place[is_first], place[is_last] + 1)
-        length = runs.stop - runs.start
-        runs = runs.where(length >= _SATURATED_SAMPLES)
+        length, every = runs.stop - runs.start, runs
+        fewest = _SATURATED_SAMPLES
+        if is_fine:
+            # pairs, where noise parts all readings but those at the end of the channel
+            beside = take_samples(tension, np.maximum(runs.start[length > 1] - 1, 0))
+            is_noisy = beside.size > _FEWEST_PAIRS and np.nanstd(beside) > _FINE * step
+            fewest = 2 if is_noisy else _FEWEST_SATURATED
+        runs = runs.where(length >= fewest)
         if not runs.start.size:
             continue
-        runs = runs.where(_comes_from_afar(tension, runs))
+        if not is_fine:
+            runs = runs.where(_comes_from_afar(tension, runs))
         runs = runs.where(_moves(position, runs))
         runs = runs.where(_outlasts_one_code(tension, position, runs))
+        if is_fine and runs.start.size:
+            runs = every  # the channel ends there, however short it stays
         starts.append(runs.start)
         stops.append(runs.stop)
     return _Runs(np.sort(np.concatenate(starts)), np.sort(np.concatenate(stops))).mask(tension)

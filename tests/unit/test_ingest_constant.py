@@ -104,6 +104,24 @@ def test_a_clipped_channel_is_saturated_at_each_peak():
     assert found.sum() > 500
 
 
+@pytest.mark.parametrize("clip", [104.0, 110.0, 113.0])
+def test_a_slow_log_of_a_fine_channel_is_saturated_at_short_peaks(clip):
+    # 24 readings a cycle from 50 to 120 N, with noise of 0.3 N written to 0.01 N
+    time = np.arange(600) * 10 / 12.03
+    load = 85 + 70 * (0.5 - np.abs((time / 20) % 1 - 0.5)) * 2 - 35
+    load = np.round(load + np.random.default_rng(4).normal(0, 0.3, time.size), 2)
+    place = 2 + (load - 50) / 100
+    assert not _find_saturated(load, place).any()
+    found = _find_saturated(np.minimum(load, clip), place)
+    assert np.array_equal(found, load >= clip)
+
+
+def test_two_readings_beside_the_peak_of_a_wave_in_step_are_not_saturated():
+    phase = 2 * np.pi * (np.arange(600) + 0.5) / 24
+    load = np.round(85 + 35 * np.cos(phase), 2)
+    assert not _find_saturated(load, 2 + 0.3 * np.cos(phase - 0.1)).any()
+
+
 def test_a_channel_clipped_in_compression_is_saturated():
     load = np.maximum(triangle(-120, 120), -100.0)
     whole = slice(50, -50)  # at the ends a trough is cut in half
