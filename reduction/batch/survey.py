@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Container, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -657,23 +657,54 @@ def _survey(
     surveys = survey_log(campaign, log)
     for survey in surveys if is_followed or len(surveys) > 1 else ():
         if survey.located is not None:
-            survey.slips = _splice_slips(survey.located, survey.plan)
+            survey.slips = _splice_slips(survey.located, survey.plan, campaign.marks)
     is_sent = sum(survey.n_rows for survey in surveys) <= SENT_SAMPLES
     return (
         surveys if is_sent or not is_elsewhere else [replace(one, located=None) for one in surveys]
     )
 
 
-def _splice_slips(located: Located, plan: TestPlan) -> dict[str, list[SpliceSlip]]:
-    """Slips of the splices by specimen, of a test with the cycles to find them in."""
+def _splice_slips(
+    located: Located, plan: TestPlan, spliced: Container[str] = ()
+) -> dict[str, list[SpliceSlip]]:
+    """Slips of the splices by specimen, of a test with the cycles to find them in.
+
+    Of few cycles, a fall of the mean tension between two of them that position does not follow, of
+    specimens that have splices.
+    """
     found, cycles = slips_of(located, plan.settings), located.cycles
-    if found is None or cycles is None:
+    if cycles is None:
         return {}
+    if found is None:
+        return _falls_between_cycles(located, plan, spliced)
     times = located.record.time[cycles.first[found.slip_cycle - 1]]
     slips: dict[str, list[SpliceSlip]] = {}
     for name, time, length in zip(found.specimen, times, found.slip_length, strict=True):
         if not length < 0:  # a splice lets out, and what steps up is none
             slips.setdefault(name, []).append(SpliceSlip(float(time), float(length)))
+    return slips
+
+
+def _falls_between_cycles(
+    located: Located, plan: TestPlan, spliced: Container[str]
+) -> dict[str, list[SpliceSlip]]:
+    """Slips by the fall of the mean tension, at the stiffness of the cycles."""
+    slips: dict[str, list[SpliceSlip]] = {}
+    cycles = located.cycles
+    if (
+        cycles is None
+        or plan.control == "load"
+        or not any(one in spliced for one in plan.specimens)
+    ):
+        return slips
+    within = slice(int(cycles.first[0]), int(cycles.last[-1]) + 1)
+    stroke = np.ptp(finite_extremes(located.position[within]))
+    for time, told in _slips_of_step(located, plan):
+        name, fall = told.subject, -told.numbers["size"]
+        if told.numbers["what"] == "tension" and fall > 0 and name in spliced:
+            load = located.tension[plan.specimens.index(name)]
+            length = fall * stroke / np.ptp(finite_extremes(load[within]))
+            slips.setdefault(name, []).append(SpliceSlip(time, float(length)))
     return slips
 
 

@@ -306,6 +306,7 @@ def fit_strain_models(
     cells = {name: _load_cells(campaign, surveys, name) for name in campaign.specimens}
     failed = _failed_logs(surveys)
     contradicted = _contradicted(surveys)
+    across = {name: _across_slip(marks, surveys) for name, marks in campaign.marks.items()}
     models: dict[tuple[str, str], StrainModel] = {}
     errors: dict[str, ReductionError] = {}
     for survey in surveys:
@@ -332,13 +333,37 @@ def fit_strain_models(
                 of_strain = judge_strain(survey.extremes, model, test_id=survey.plan.id)
                 if campaign.specimens[name].can_push:  # strain below zero is compression
                     of_strain = ()
+                is_pooled = model.method in ("mixed", "tension-driven") and not model.splice_slip
+                of_slip = across.get(name, ()) if is_pooled else ()
                 models[survey.plan.id, name] = replace(
-                    model, mark_load_cell=read_by, notes=(*of_strain, *model.notes)
+                    model, mark_load_cell=read_by, notes=(*of_strain, *of_slip, *model.notes)
                 )
             except Exception as error:
                 # one test's failure, even where it is a defect here
                 errors.setdefault(survey.plan.id, as_reduction_error(error))
     return models, errors
+
+
+def _across_slip(marks: SpliceMarks, surveys: Sequence[Survey]) -> tuple[Note, ...]:
+    """Say where splices slipped between marks that are used together.
+
+    Marks of a test are read before its cycles.
+    """
+    order = {one.plan.log: one.plan.order for one in surveys if one.plan.order is not None}
+    loaded = [
+        order[test]
+        for test, is_slack in zip(marks.test, marks.is_slack, strict=True)
+        if test in order and not is_slack
+    ]
+    for survey in surveys:
+        place = order.get(survey.plan.log)
+        if (
+            place is not None
+            and survey.slips.get(marks.specimen)
+            and min(loaded, default=place + 1) <= place < max(loaded, default=place)
+        ):
+            return (note("marks-across-slip", marks.specimen, test=survey.plan.id),)
+    return ()
 
 
 def _contradicted(surveys: Sequence[Survey]) -> dict[str, DataError]:

@@ -509,6 +509,13 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             " test gets the offset of its own marks"
         ),
     ),
+    "marks-across-slip": (
+        "warning",
+        "in test {test} the tension fell between two cycles, as by a slip of the splices, and marks"
+        " that were read before and after it are used together: strain and moduli may be off by"
+        " more than their intervals. Give the tests behind it a campaign of their own, with the"
+        " marks read there",
+    ),
     "gauge-length-exact": (
         "note",
         "the gauge length is treated as exact: its standard uncertainty is not stated, so the"

@@ -7,12 +7,17 @@ import numpy as np
 import pytest
 
 from reduction.batch.survey import SpliceSlip, Survey, _splice_slips
-from reduction.batch.test_history import earlier_tests_of, history_of, history_remarks
+from reduction.batch.test_history import (
+    _across_slip,
+    earlier_tests_of,
+    history_of,
+    history_remarks,
+)
 from reduction.campaign.plan import TestPlan
 from reduction.pipeline.located_test import locate
 from reduction.pipeline.reduce_test import reduce_test
 from reduction.record.errors import DataError
-from reduction.record.measurement import Record, Specimen
+from reduction.record.measurement import Record, Specimen, SpliceMarks
 from reduction.record.settings import CycleSettings, ReductionSettings
 from reduction.stages.cycles.cycle_product import Cycles
 from reduction.stages.reduced_test import TestDescription
@@ -241,3 +246,38 @@ def test_a_later_test_is_told_the_slip_that_the_test_itself_found():
     ).slips  # fmt: skip
     assert [one.length for one in told] == own.slip_length.tolist()
     assert own.slip_length == pytest.approx([0.1], rel=0.1)
+
+
+@pytest.mark.parametrize(("let_go", "spliced"), [(0.3, True), (0.0, True), (0.3, False)])
+def test_a_slip_within_a_few_cycles_is_the_fall_of_their_mean_tension(let_go, spliced):
+    cycle = np.arange(12 * 40 + 10) / 40.3
+    position = 6 + 3 * (1 - np.abs(1 - 2 * (cycle % 1)))
+    stretch = position - let_go * (cycle > 6.4) - 5
+    tension = 600 * stretch + 50 * stretch**2 + np.random.default_rng(2).normal(0, 2, cycle.size)
+    record = Record(
+        "T-1", ("hose",), 10 * cycle, position, tension[None],
+        np.zeros((1, cycle.size), np.uint16), np.zeros(cycle.size, np.uint16),
+    )  # fmt: skip
+    plan = survey("T-1", 1).plan
+    located = locate(record, kind="cyclic", settings=plan.settings)
+    told = _splice_slips(located, plan, ("hose",) if spliced else ())
+    lengths = [slip.length for slip in told.get("hose", ())]
+    # of a curve that stiffens, the slope of the whole stroke is not that of its middle
+    assert lengths == (pytest.approx([let_go], rel=0.3) if let_go and spliced else [])
+
+
+def test_marks_before_and_after_a_slip_that_are_used_together_are_told():
+    surveys = [survey(name, place) for place, name in enumerate("ABC", 1)]
+    surveys[1].slips = {"hose": [SpliceSlip(60.0, 0.05)]}
+
+    def told(*tests):
+        near, free = np.full(1 + len(tests), 0.6), np.linspace(2.5, 4.0, 1 + len(tests))
+        marks = SpliceMarks(
+            "hose", ("A", *tests), ("slack", *("min",) * len(tests)), near, near + free,
+            near + free + 0.6,
+        )  # fmt: skip
+        return [(one.code, one.numbers["test"]) for one in _across_slip(marks, surveys)]
+
+    assert told("A", "C") == [("marks-across-slip", "B")]
+    # those of a test are read before its cycles
+    assert told("A", "B") == told("C") == []
