@@ -1314,15 +1314,17 @@ def _on_constant_fraction(model: StrainModel, is_stretched: Bools) -> tuple[Note
 
 
 def _on_scatter(model: StrainModel, is_stretched: Bools, expected: float) -> tuple[Note, ...]:
-    """Scatter beyond tape reading, and single marks far off; not for the legacy method."""
-    if model.method == "constant-fraction":
+    """Scatter beyond tape reading, and single marks far off; not for the legacy method.
+
+    Nor for an average over laws: these are judged one by one, with slip and with the tensions of
+    the marks, and single marks with them; what their mean is off by is in the interval.
+    """
+    if model.method in ("constant-fraction", "mixed"):
         return ()
     residual = model.mark_strain_residual[is_stretched]
     rms = _rms(residual)
     notes = []
-    # the laws of an average are judged one by one, with slip and with the tensions of the marks,
-    # and what the average of laws that pass is off by is in the interval
-    if model.method != "mixed" and expected > 0 and rms > _SCATTER_NOTICE * expected:
+    if expected > 0 and rms > _SCATTER_NOTICE * expected:
         notes.append(
             note("marks-differ", model.specimen, method=model.method, rms=rms, expected=expected)
         )
@@ -1441,9 +1443,7 @@ def _remarks_on(
     new: strain by marks differs from the marks by 2.00 percentage points rms; tape reading explains
     only 0.68. ...
     """
-    # the laws are judged by the error that a tape usually has, where none is stated
-    reading = _tape_error(marks) if model.method == "mixed" else marks.reading_uncertainty
-    expected = sqrt(3) * reading / model.coefficients["relaxed_free_length"]
+    expected = sqrt(3) * marks.reading_uncertainty / model.coefficients["relaxed_free_length"]
     return (
         *_on_left_out(model, marks, int(is_stretched.sum()), failed_tests),
         *_on_constant_fraction(model, is_stretched),
