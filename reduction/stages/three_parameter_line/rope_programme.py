@@ -477,7 +477,7 @@ _LAST_STEPS = 9
 
 _MAY_BE_GREATEST = 4.0  # noises below the greatest reading: one more than that may be the greatest
 
-_LEAST_TOP = 8  # readings that show whether a load still rises
+_LEAST_TOP = 4  # readings that show whether a load still rises
 
 
 @dataclass(frozen=True)
@@ -491,8 +491,8 @@ class TensilePull:
         Greatest reading; what noise and codes make of it, and what the line gains from one reading
         to the next, as it may have parted or turned just before that. [N]
     strain_at_peak, strain_at_peak_standard_uncertainty : ndarray
-        Of the last reading of a load that rises to its end, else of the middle of the readings
-        that may be the greatest; and half the range of these. [1]
+        Of the last reading of a load that rises to its end, else of the greatest reading; and
+        half the range of the readings that may be the greatest. [1]
     is_break : ndarray of bool
         True where the line broke.
     peak_tension_over_strength, peak_tension_over_strength_standard_uncertainty : ndarray
@@ -671,8 +671,8 @@ def _at_the_top(load: Floats, stretch: Floats, end: int) -> tuple[float, float, 
     """Greatest tension, its standard uncertainty, and the same of the strain there.
 
     Noise makes an early reading the greatest: where the load rises until it ends, the strain is
-    the greatest of the readings that may be it, and else that of their middle.  Line and turn lie
-    up to a reading beyond the last one.
+    the greatest of the readings that may be it.  Line and turn lie up to a reading beyond the last
+    one.
     """
     peak = int(np.nanargmax(load))
     rise = stretch[: peak + 1]
@@ -695,7 +695,9 @@ def _at_the_top(load: Floats, stretch: Floats, end: int) -> tuple[float, float, 
     if rises and np.ptp(stretch[before]) > 0:
         gain = np.polyfit(stretch[before], load[before], 1)[0] * np.ptp(stretch[before])
         rises = bool(gain > hidden / 2)
-    strain = float(reached.max()) - (0.0 if rises else width / 2)
+    by_peak = top[top <= peak]
+    # as a laboratory has it, where its load is greatest
+    strain = float(reached.max() if rises else stretch[by_peak[-1] if by_peak.size else top[0]])
     beyond = missed if rises else missed + width / 2
     strain_spread = np.sqrt(
         reading_noise(rise) ** 2 + (step_of_codes(rise) ** 2 / 4 + beyond**2) / 3
