@@ -58,7 +58,13 @@ from reduction.record.contributions import (
 )
 from reduction.record.errors import SettingsError
 from reduction.record.measurement import Specimen
-from reduction.record.settings import ReductionSettings, StoredSamples, StrainMethod
+from reduction.record.settings import (
+    Control,
+    ReductionSettings,
+    StoredSamples,
+    StrainMethod,
+    Waveform,
+)
 
 # of pint's many plain numbers, a turn and a percent among them, those that count bytes
 _BYTES = re.compile(r"[\d.+\-eE\s]*([kMGT]i?B|B|bytes?)\s*")
@@ -638,8 +644,8 @@ class _Kept(_SpecSection):
 
     layout: Identifier | None = None
     specimens: tuple[Identifier, ...] = ()
-    control: Literal["position", "load"] = "position"
-    waveform: Literal["triangular", "sinusoidal", "other"] = "triangular"
+    control: Control = "position"
+    waveform: Waveform = "triangular"
     rate: Text = ""
     """``1 ft/s``, ``3 cycles per minute``; held against the log, as the two below it."""
     frequency: Text = ""

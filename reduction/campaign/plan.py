@@ -17,7 +17,7 @@ from reduction.record.contributions import StatedErrors
 from reduction.record.errors import LogError
 from reduction.record.measurement import Source, Specimen, SpliceMarks
 from reduction.record.plain_text import is_address
-from reduction.record.settings import CycleSettings, Limits, ReductionSettings
+from reduction.record.settings import CycleSettings, Limits, ReductionSettings, Waveform
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ class TestPlan:
     specimens: tuple[str, ...]
     order: int | None
     control: str
-    waveform: Literal["triangular", "sinusoidal", "other"]
+    waveform: Waveform
     target_strain: tuple[float, ...]
     attributes: dict[str, str]
     settings: ReductionSettings

@@ -19,9 +19,8 @@ from numpy.typing import ArrayLike
 from reduction.lines.line_curve import evaluate_curve
 from reduction.lines.lookup_product import DesignValues, LineCurve
 from reduction.record.measurement import Floats
+from reduction.record.settings import Control, Waveform
 from reduction.stages.three_parameter_line.loop_midline import (
-    Control,
-    Waveform,
     is_bent,
     spring_of_cycle,
     spring_of_wave,

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -59,7 +59,7 @@ from reduction.record.samples import (
     take_samples,
     thinned,
 )
-from reduction.record.settings import CycleSettings, ReductionSettings
+from reduction.record.settings import Control, CycleSettings, ReductionSettings, Waveform
 from reduction.stages.channel_lag import delay_of_extensometer
 from reduction.stages.cycles.cycle_product import Cycles, Loops
 from reduction.stages.cycles.cycle_search import control_channel, label_phases
@@ -121,11 +121,11 @@ def _plausibility_notes(
     *,
     specimens: tuple[Specimen, ...],
     slack_tensions: Sequence[float],
-    waveform: Literal["triangular", "sinusoidal", "other"],
+    waveform: Waveform,
     cycles: Cycles | None,
     loops: Loops | None,
     curves: ModulusCurves | None,
-    control: Literal["position", "load"] = "position",
+    control: Control = "position",
     is_snap: bool = False,
     is_bedding: bool = False,
 ) -> tuple[Note, ...]:

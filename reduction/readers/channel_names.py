@@ -290,7 +290,7 @@ def _date_order(column: SeenColumn) -> tuple[str, list[str]]:
         return "", []
     if len(orders) == 1:
         return f', date_order = "{orders[0]}"', [
-            f"sure: dates are {orders[0]}, the other number being above 12"
+            f"sure: dates are {orders[0]}: in the other order some do not exist"
         ]
     return f', date_order = "{UNKNOWN}"', [
         'unknown: whether dates are "month first" or "day first" (date_order)'

@@ -56,7 +56,7 @@ def plain_date(text: str, order: DateOrder | None) -> str:
         day, _, month, year = found.groups()
         if order == "month first":
             day, month = month, day
-        if len(year) < len("2005"):
+        if len(year) == 2:
             year = f"{19 if int(year) >= _CENTURY else 20}{year}"
     else:
         return text

@@ -23,6 +23,12 @@ StrainMethod = Literal[
 
 StoredSamples = Literal["selected", "all"]
 
+Waveform = Literal["triangular", "sinusoidal", "other"]
+"""Of the channel that the machine drives, as it was programmed."""
+
+Control = Literal["position", "load"]
+"""Channel that the machine drives."""
+
 
 @dataclass(frozen=True)
 class QualitySettings:
@@ -64,9 +70,9 @@ class StrainSettings:
 class CycleSettings:
     """What a cycle is, and which part of a branch has a constant rate."""
 
-    control: Literal["position", "load"] = "position"
+    control: Control = "position"
     """Channel on which reversals are found."""
-    waveform: Literal["triangular", "sinusoidal", "other"] = "triangular"
+    waveform: Waveform = "triangular"
     band: float | None = None
     """Smallest range that makes a reversal; None: from the record. [m] or [N]"""
     trim_threshold: float = 0.97

@@ -148,6 +148,7 @@ from reduction.record.contributions import (
     effective_degrees_of_freedom,
 )
 from reduction.record.measurement import Floats
+from reduction.record.settings import Control, Waveform
 from reduction.stages.holds.relaxation_and_creep import HoldResult
 from reduction.stages.moduli.elastomer_laws import PARAMETERS, Law, even_grid, hyperelastic_stress
 from reduction.stages.moduli.modulus_product import Ratio
@@ -172,8 +173,6 @@ from reduction.uncertainty.error_field import (
     error_field,
     splice_friction_error,
 )
-
-Waveform = Literal["triangular", "sinusoidal", "other"]
 
 
 def strain_rate_of_wave(
@@ -815,8 +814,8 @@ def loop_contributions(
     storage_spring_constant: Floats,
     loss_spring_constant: Floats,
     closed_loop_energy: Floats,
-    waveform: Literal["triangular", "sinusoidal", "other"],
-    control: Literal["position", "load"] = "position",
+    waveform: Waveform,
+    control: Control = "position",
     speed_ratio: Floats | float = 1.0,
     has_corners: bool = True,
     inertia: Inertia | None = None,
@@ -1002,9 +1001,7 @@ def loop_contributions(
     return Contributions(component, values)
 
 
-def _smoothed_away(
-    waveform: Literal["triangular", "sinusoidal", "other"], constant: Floats
-) -> Floats:
+def _smoothed_away(waveform: Waveform, constant: Floats) -> Floats:
     r"""Share of its amplitude that a wave loses in a filter of a time constant in its periods.
 
     Of a sine, :math:`1 - (1 + (2\pi f\tau)^2)^{-1/2}`.  Behind a corner between ramps of

@@ -72,7 +72,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import pairwise
-from typing import Literal
 
 import numpy as np
 import scipy
@@ -89,6 +88,7 @@ from reduction.record.samples import (
     step_that_fills,
     take_samples,
 )
+from reduction.record.settings import Control, Waveform
 from reduction.stages.cycles.cycle_product import (
     PLACE_OF_DRIFT,
     WITHIN_STEP,
@@ -181,7 +181,7 @@ def _loop_energy(
     first: Integers,
     last: Integers,
     *,
-    waveform: Literal["triangular", "sinusoidal", "other"] = "triangular",
+    waveform: Waveform = "triangular",
 ) -> tuple[Floats, Floats]:
     """Energy lost in each cycle and unit length, and its sensitivity to noise.
 
@@ -827,10 +827,6 @@ def _at_equal_phase(
     with np.errstate(divide="ignore", invalid="ignore"):
         return work, mean / (time[branch_last[:, 1]] - time[branch_first[:, 0]]), used
 
-
-Waveform = Literal["triangular", "sinusoidal", "other"]
-
-Control = Literal["position", "load"]
 
 MEASURED = (
     "peak", "valley", "high", "low", "energy", "strain_step_norm", "force_cosine", "force_sine",

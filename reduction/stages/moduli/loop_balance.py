@@ -18,7 +18,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -28,6 +27,7 @@ from reduction.record.errors import DataError
 from reduction.record.measurement import Bools, Floats, Integers
 from reduction.record.notes import note
 from reduction.record.samples import BLOCK, count_samples, sample_blocks, take_samples, thinned
+from reduction.record.settings import Control
 from reduction.stages.cycles.cycle_product import Cycles
 from reduction.stages.moduli.local_regression import sums_by_cell
 from reduction.stages.moduli.modulus_product import CycleIdentity
@@ -253,7 +253,7 @@ def check_identity(
     names: tuple[str, ...] | None = None,
     time: ArrayLike | None = None,
     lag: Sequence[float] = (),
-    control: Literal["position", "load"] = "position",
+    control: Control = "position",
 ) -> CycleIdentity:
     r"""Difference of the stroke-mean moduli beside the tension lost, on every cycle.
 

@@ -26,15 +26,12 @@ References
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from reduction.record.measurement import Floats, Integers
-
-Waveform = Literal["triangular", "sinusoidal", "other"]
-Control = Literal["position", "load"]
+from reduction.record.settings import Control, Waveform
 
 _LEAST_SAMPLES = 12  # of a cycle, for five numbers
 

@@ -470,8 +470,7 @@ _FALLEN = 0.5
 
 _FEWEST_SAMPLES = 3
 
-# readings within this many standard deviations of the greatest may be the peak
-_PEAK_FACTOR = 2.0
+_HIDES = 2.0  # noises of a reading, within which a strain may stand still
 
 _LAST_STEPS = 9
 
@@ -681,8 +680,7 @@ def _at_the_top(load: Floats, stretch: Floats, end: int) -> tuple[float, float, 
     top = np.flatnonzero(load[:end] >= load[peak] - hidden)
     # of many readings that noise may make the greatest, one is by more than the noise of one
     excess = np.sqrt(1 + np.log1p(top.size / _MAY_BE_GREATEST**2))
-    missed = _gain(load[: peak + 1])
-    spread = np.sqrt((excess * noise) ** 2 + (step**2 + missed**2) / 3)
+    spread = np.sqrt((excess * noise) ** 2 + (step**2 + _gain(load[: peak + 1]) ** 2) / 3)
     top = top[np.isfinite(stretch[top])]
     if not top.size or _stands_still(load[: peak + 1], rise, float(stretch[top[-1]])):
         return float(load[peak]), float(spread), np.nan, np.nan
@@ -711,7 +709,7 @@ _STOOD_STILL = 0.02  # of the greatest load, gained without strain
 def _stands_still(load: Floats, rise: Floats, reached: float) -> bool:
     """Whether the load rose on to its peak while the strain did not: an extensometer taken off."""
     # what noise and the steps of a converter hide of the last part of a rise
-    hidden = _PEAK_FACTOR * reading_noise(rise) + step_of_codes(rise)
+    hidden = _HIDES * reading_noise(rise) + step_of_codes(rise)
     known = np.flatnonzero(np.isfinite(rise) & np.isfinite(load))
     below = np.flatnonzero(rise[known] < reached - hidden)
     if not below.size or not reached > 0:
