@@ -32,7 +32,8 @@ from figures import Figure, hand_on
 
 from reduction.record.settings import CycleSettings, ModulusSettings, PhaseSettings
 from reduction.stages.cycles.cycle_search import _first_pass, find_cycles
-from reduction.stages.cycles.loops import _loop_energy, close_loops
+from reduction.stages.cycles.loop_energy import loop_energy
+from reduction.stages.cycles.loops import close_loops
 from reduction.stages.moduli.secant_modulus import chord_modulus, end_moduli
 from reduction.stages.moduli.tangent_modulus import tangent_curves
 from reduction.stages.standstills import find_standstills
@@ -74,7 +75,7 @@ def three_steps(strain: np.ndarray, tension: np.ndarray) -> Answer:
     first, last = reversals[:-1], reversals[1:]
     chord_modulus(strain[first], strain[last], tension[first], tension[last], area=1.0)
     valleys = reversals[0 if strain[reversals[0]] < strain[reversals[1]] else 1 :: 2]
-    return Answer(first.size, _loop_energy(tension, strain, valleys[:-1], valleys[1:])[0])
+    return Answer(first.size, loop_energy(tension, strain, valleys[:-1], valleys[1:])[0])
 
 
 def as_in_a_run(

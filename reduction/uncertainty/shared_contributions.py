@@ -64,7 +64,7 @@ from reduction.stages.channel_lag import (
 )
 from reduction.stages.cycles.cycle_product import Cycles, Loops
 from reduction.stages.cycles.cycle_search import control_channel
-from reduction.stages.cycles.loops import reading_noise
+from reduction.stages.cycles.reading_noise import reading_noise
 from reduction.stages.cycles.turns import kind_of_turns
 from reduction.stages.holds.relaxation_and_creep import HoldResult, hold_numbers
 from reduction.stages.moduli.elastomer_laws import LAWS

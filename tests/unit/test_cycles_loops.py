@@ -11,18 +11,16 @@ from reduction.record.errors import DataError
 from reduction.record.settings import CycleSettings, PhaseSettings
 from reduction.stages.cycles.cycle_product import Cycles
 from reduction.stages.cycles.cycle_search import find_cycles
-from reduction.stages.cycles.loop_sense import unlike_neighbours
-from reduction.stages.cycles.loops import (
-    _cycle_basis,
-    _energy_by_chance,
-    _fundamental,
-    _loop_energy,
-    _mean_drift,
-    _part_means,
-    _sums_over_cycles,
-    close_loops,
-    reading_noise,
+from reduction.stages.cycles.fundamental import (
+    cycle_basis,
+    fundamental,
+    part_means,
+    sums_over_cycles,
 )
+from reduction.stages.cycles.loop_energy import energy_by_chance, loop_energy
+from reduction.stages.cycles.loop_sense import unlike_neighbours
+from reduction.stages.cycles.loops import _mean_drift, close_loops
+from reduction.stages.cycles.reading_noise import reading_noise
 from reduction.stages.cycles.turns import noise_in_extreme
 from reduction.stages.moduli.secant_modulus import summarise_amplitude
 from reduction.stages.standstills import find_standstills, find_tension_stands
@@ -54,7 +52,7 @@ def ellipse(per_cycle, n_cycles, phase=0.0):
 def test_energy_of_an_ellipse_is_within_a_hundredth_of_a_percent(per_cycle, n_cycles, phase):
     _, tension, strain = ellipse(per_cycle, n_cycles, phase)
     first = np.arange(n_cycles) * per_cycle
-    energy, _ = _loop_energy(tension, strain, first, first + per_cycle, waveform="sinusoidal")
+    energy, _ = loop_energy(tension, strain, first, first + per_cycle, waveform="sinusoidal")
     assert energy == pytest.approx(np.pi * LOSS * AMPLITUDE**2, rel=1e-4)
 
 
@@ -62,7 +60,7 @@ def test_energy_of_an_ellipse_is_within_a_hundredth_of_a_percent(per_cycle, n_cy
 def test_polygon_of_an_ellipse_is_short_by_the_known_bias(per_cycle):
     _, tension, strain = ellipse(per_cycle, 1)
     first = np.array([0])
-    energy, _ = _loop_energy(tension, strain, first, first + per_cycle)
+    energy, _ = loop_energy(tension, strain, first, first + per_cycle)
     angle = 2 * np.pi / per_cycle
     assert energy[0] == pytest.approx(np.pi * LOSS * AMPLITUDE**2 * np.sin(angle) / angle)
 
@@ -76,7 +74,7 @@ def test_noise_leaves_the_energy_unbiased_and_the_scatter_as_stated(per_cycle):
     tension = tension + rng.normal(0, noise, tension.size)
     strain = strain + rng.normal(0, 0.002 * 2 * AMPLITUDE, strain.size)
     first = np.arange(n_cycles) * per_cycle
-    energy, norm = _loop_energy(tension, strain, first, first + per_cycle, waveform="sinusoidal")
+    energy, norm = loop_energy(tension, strain, first, first + per_cycle, waveform="sinusoidal")
     true = np.pi * LOSS * AMPLITUDE**2
     error = energy.std(ddof=1)
     assert abs(energy.mean() - true) < 4 * error / np.sqrt(n_cycles)
@@ -89,7 +87,7 @@ def test_noise_leaves_the_energy_unbiased_and_the_scatter_as_stated(per_cycle):
 def test_energy_of_a_parallelogram_is_exact_by_the_polygon():
     strain = np.concatenate([np.linspace(0, 1, 26), np.linspace(1, 0, 26)[1:]])
     tension = 100 * strain + np.where(np.arange(51) <= 25, 5.0, -5.0)
-    energy, _ = _loop_energy(tension, strain, np.array([0]), np.array([50]))
+    energy, _ = loop_energy(tension, strain, np.array([0]), np.array([50]))
     # 10 N over the whole stroke, less the one step of the turn at the top, whose tension
     # falls along a straight line (half of 10 N over a step of 0.04)
     assert energy[0] == pytest.approx(10 * 1 - 0.5 * 10 * 0.04)
@@ -98,7 +96,7 @@ def test_energy_of_a_parallelogram_is_exact_by_the_polygon():
 def test_a_loop_that_stays_open_is_closed_by_a_straight_line():
     strain = np.array([0.0, 1.0, 1.0, 0.5])
     tension = np.array([0.0, 0.0, 2.0, 2.0])
-    energy, _ = _loop_energy(tension, strain, np.array([0]), np.array([3]))
+    energy, _ = loop_energy(tension, strain, np.array([0]), np.array([3]))
     # quadrilateral (0,0) (1,0) (1,2) (.5,2), walked so that it gives energy: -area by shoelace
     assert energy[0] == pytest.approx(-1.5)
 
@@ -120,7 +118,7 @@ def test_a_drift_from_cycle_to_cycle_leaves_the_energy_of_the_steady_loop(which,
     loops = close_loops(turns, tension[None], strain[None], cycles, waveform=waveform)
     expected = np.pi * LOSS * AMPLITUDE**2
     assert loops.hysteresis_energy == pytest.approx(expected, rel=5e-4)
-    closed, _ = _loop_energy(tension, strain, cycles.first, cycles.last)
+    closed, _ = loop_energy(tension, strain, cycles.first, cycles.last)
     assert abs(closed[0] / expected - 1) > 0.05
 
 
@@ -225,34 +223,34 @@ def test_ramps_that_a_machine_rounds_over_some_readings_in_step_with_the_log(ove
 
 def test_a_short_series_is_refused():
     with pytest.raises(DataError, match="a loop is too short; found 2 samples"):
-        _loop_energy([1.0, 2.0], [0.0, 1.0], np.array([0]), np.array([1]))
+        loop_energy([1.0, 2.0], [0.0, 1.0], np.array([0]), np.array([1]))
     with pytest.raises(DataError, match="do not pair up"):
-        _loop_energy([1.0, 2.0, 3.0], [0.0, 1.0], np.array([0]), np.array([1]))
+        loop_energy([1.0, 2.0, 3.0], [0.0, 1.0], np.array([0]), np.array([1]))
 
 
 def test_no_cycles_give_no_energy():
     none = np.array([], dtype=int)
-    assert _loop_energy([1.0, 2.0, 3.0], [0.0, 1.0, 2.0], none, none)[0].size == 0
-    assert _sums_over_cycles(np.ones(3), none, none).size == 0
+    assert loop_energy([1.0, 2.0, 3.0], [0.0, 1.0, 2.0], none, none)[0].size == 0
+    assert sums_over_cycles(np.ones(3), none, none).size == 0
 
 
 def test_cycles_apart_do_not_take_samples_from_the_gap():
     values = np.array([1.0, 1, 1, 100, 100, 2, 2, 2])
-    assert _sums_over_cycles(values, np.array([0, 5]), np.array([3, 8])).tolist() == [3.0, 6.0]
+    assert sums_over_cycles(values, np.array([0, 5]), np.array([3, 8])).tolist() == [3.0, 6.0]
 
 
 def test_fundamental_on_uneven_times():
     rng = np.random.default_rng(0)
     t = np.sort(np.concatenate([[0, 10], rng.uniform(0, 10, 4000)]))
-    basis = _cycle_basis(t, np.array([0]), np.array([t.size - 1]))
-    cosine, sine, _ = _fundamental(3 * np.cos(0.2 * np.pi * t) - np.sin(0.2 * np.pi * t), basis)
+    basis = cycle_basis(t, np.array([0]), np.array([t.size - 1]))
+    cosine, sine, _ = fundamental(3 * np.cos(0.2 * np.pi * t) - np.sin(0.2 * np.pi * t), basis)
     assert cosine[0] == pytest.approx(3, abs=2e-3) and sine[0] == pytest.approx(-1, abs=2e-3)
 
 
 def drift_of(values, first, last):
     time = np.arange(values.size, dtype=float)
     middles = np.stack([(3 * first + last) // 4, (first + 3 * last) // 4])
-    means = _part_means(values, _cycle_basis(time, first, last), middles)
+    means = part_means(values, cycle_basis(time, first, last), middles)
     return _mean_drift(means, time[np.stack([first, *middles, last])])
 
 
@@ -260,7 +258,7 @@ def test_a_drift_linear_in_time_is_taken_off_by_the_means_of_the_cycles():
     t = np.arange(601.0)
     wave = 5 * np.cos(2 * np.pi * t / 200) + 2 * np.sin(2 * np.pi * t / 200)
     first = np.array([0, 200, 400])
-    cosine, sine, _ = _fundamental(wave + 0.01 * t, _cycle_basis(t, first, first + 200))
+    cosine, sine, _ = fundamental(wave + 0.01 * t, cycle_basis(t, first, first + 200))
     drift = drift_of(wave + 0.01 * t, first, first + 200)
     assert drift == pytest.approx(2)
     assert sine == pytest.approx(2 - 2 / np.pi, abs=1e-3)
@@ -1031,13 +1029,13 @@ def test_a_sine_stored_one_by_one_has_its_period_and_its_whole_range():
 
 def test_a_cycle_without_time_is_refused():
     with pytest.raises(DataError, match="cycle 1 takes no time"):
-        _cycle_basis(np.zeros(5), np.array([0]), np.array([4]))
+        cycle_basis(np.zeros(5), np.array([0]), np.array([4]))
 
 
 @pytest.mark.parametrize("time", [[0.0, 1.0, 2.0], [0.0, 1e-12, 2e-12, 3e-12, 1.0]])
 def test_a_cycle_whose_samples_have_too_few_phases_is_refused(time):
     with pytest.raises(DataError, match="samples of cycle 1 stand too close in time"):
-        _cycle_basis(np.array(time), np.array([0]), np.array([len(time) - 1]))
+        cycle_basis(np.array(time), np.array([0]), np.array([len(time) - 1]))
 
 
 def test_a_cycle_beside_a_jump_of_tension_has_no_slope_of_another_sign(triangle):
@@ -1131,8 +1129,8 @@ def test_scale_and_shift_of_tension(scale, shift, loss):
 
 def test_time_reversed_turns_the_sign_of_the_energy():
     _, tension, strain = ellipse(50, 1)
-    ahead, _ = _loop_energy(tension, strain, np.array([0]), np.array([50]))
-    back, _ = _loop_energy(tension[::-1], strain[::-1], np.array([0]), np.array([50]))
+    ahead, _ = loop_energy(tension, strain, np.array([0]), np.array([50]))
+    back, _ = loop_energy(tension[::-1], strain[::-1], np.array([0]), np.array([50]))
     assert back == pytest.approx(-ahead)
 
 
@@ -1781,9 +1779,9 @@ def test_the_energy_of_slips_in_step_with_the_log_is_held_whatever_their_place(p
         rising = np.minimum(strain + 1 - slip, slip)
         falling = np.maximum(strain - 1 + slip, -slip)
         force = (stiffness * np.where(turn % 1 < 0.5, rising, falling)).sum(axis=0)
-        energy, _ = _loop_energy(force, strain, first, first + per_cycle, waveform="sinusoidal")
+        energy, _ = loop_energy(force, strain, first, first + per_cycle, waveform="sinusoidal")
         true = 4 * np.sum(stiffness * slip * (1 - slip))
-        off.append((energy[0] - true) / _energy_by_chance(force, strain, first, first + per_cycle))
+        off.append((energy[0] - true) / energy_by_chance(force, strain, first, first + per_cycle))
     assert np.mean(np.abs(off) > 2) < 0.09
 
 

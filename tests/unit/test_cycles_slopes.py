@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from reduction.record.errors import DataError
-from reduction.stages.cycles.loops import slope_readings
+from reduction.stages.moduli.secant_modulus import slope_readings
 
 
 @pytest.mark.parametrize("degrees", [5.0, 8.0, 13.0])

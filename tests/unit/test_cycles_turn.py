@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from reduction.stages.cycles.loops import _cosine_and_sine
+from reduction.stages.cycles.fundamental import _cosine_and_sine
 from reduction.stages.cycles.turns import kind_of_turns, missed_by_extreme
 
 

@@ -12,6 +12,8 @@ from reduction.record.measurement import Bools, Floats, Integers, read_only_arra
 from reduction.record.notes import Note
 from reduction.record.samples import release_pages, trim_heap_after
 
+_SAMPLES_OF_BLOCK = 1 << 17  # near the cache, yet long enough for threads to pay
+
 
 @dataclass(frozen=True)
 @read_only_arrays
@@ -87,7 +89,7 @@ class Cycles:
         """Samples of the longest cycle."""
         return int((self.last - self.first).max(initial=0)) + 1
 
-    def blocks(self, n_samples: int) -> list[slice]:
+    def blocks(self, n_samples: int = _SAMPLES_OF_BLOCK) -> list[slice]:
         """Runs of whole cycles of about so many samples together, one cycle at least."""
         number = (self.first - self.first[:1]) // n_samples
         starts = np.flatnonzero(np.diff(number, prepend=-1))

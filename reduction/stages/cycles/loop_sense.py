@@ -27,8 +27,8 @@ from reduction.record.measurement import Bools, Floats, Integers
 from reduction.record.notes import Note, note
 from reduction.record.samples import take_samples
 from reduction.stages.cycles.cycle_product import PLACE_OF_DRIFT, Cycles, Loops
-from reduction.stages.cycles.loops import reading_noise
 from reduction.stages.cycles.periods import touching
+from reduction.stages.cycles.reading_noise import reading_noise
 from reduction.stages.standstills import Standstills
 
 _OF_A_SPECIMEN = (

@@ -51,7 +51,7 @@ from reduction.record.samples import (
 )
 from reduction.record.settings import HoldSettings
 from reduction.stages.approach import find_approach, last_motion
-from reduction.stages.cycles.loops import reading_noise
+from reduction.stages.cycles.reading_noise import reading_noise
 from reduction.stages.holds.prony_series import (
     LARGEST_SHARE,
     PronyFit,

@@ -53,7 +53,6 @@ _LEAST_ROOM = 0.1  # of what places and their squares would have that say nothin
 
 _TIE = 1e-9  # of a piece: rounding decides no side
 
-_BLOCK_SAMPLES = 1 << 17  # near the cache, yet long enough for threads to pay
 
 _PART = 1 << 18  # samples of a longer block of which sums are taken together
 
@@ -112,7 +111,7 @@ def _tension_change(
         return total
 
     series = (strain, tension, cycles.cycle_number, cycles.branch)
-    run_blocks(fit_block, cycles.blocks(_BLOCK_SAMPLES), samples=series)
+    run_blocks(fit_block, cycles.blocks(), samples=series)
     return change, stroke
 
 

@@ -36,7 +36,7 @@ from reduction.record.measurement import Bools, Floats, Integers, read_only_arra
 from reduction.record.notes import Note, note
 from reduction.record.samples import step_of_codes
 from reduction.stages.cycles.cycle_product import Loops
-from reduction.stages.cycles.loops import reading_noise
+from reduction.stages.cycles.reading_noise import reading_noise
 from reduction.stages.moduli.least_squares import lag_one_inflation
 from reduction.stages.three_parameter_line.hold_pairs import CreepOfHold, HeldPair
 from reduction.stages.three_parameter_line.line_product import mean_of_rows, one_a_specimen

@@ -60,7 +60,7 @@ from reduction.record.measurement import Bools, Floats, Integers
 from reduction.record.notes import Note, note
 from reduction.record.settings import Control, Waveform
 from reduction.stages.cycles.cycle_product import Loops
-from reduction.stages.cycles.loops import reading_noise
+from reduction.stages.cycles.reading_noise import reading_noise
 from reduction.stages.moduli.least_squares import lag_one_inflation
 from reduction.stages.moduli.local_regression import sums_by_cell
 from reduction.stages.three_parameter_line.line_product import SlowPull

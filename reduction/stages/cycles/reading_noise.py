@@ -1,0 +1,257 @@
+"""Noise of the readings of a channel, and what the steps of its converter leave of it.
+
+Third differences of a smooth series show its noise; those of a coarse converter show its steps
+instead, and noise is then read from the codes, and from the cycles, which repeat.
+
+References
+----------
+.. [1] P. Hall, J. W. Kay and D. M. Titterington, "Asymptotically optimal difference-based
+   estimation of variance in nonparametric regression," Biometrika 77(3), 1990.
+.. [2] P. J. Rousseeuw and C. Croux, "Alternatives to the median absolute deviation," J. Am. Stat.
+   Assoc. 88(424), 1993 (1.4826).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy
+
+from reduction.record.measurement import Floats
+from reduction.record.samples import step_of_codes, take_samples
+from reduction.stages.cycles.cycle_product import Cycles
+
+_NOISE_SAMPLES = 65_536
+
+_FEWEST = 5  # turns, or readings of a branch, that show a scatter
+
+_MOST_CYCLES, _MOST_READINGS = 100, 1 << 17  # that are looked at for it
+
+_CLEAR = 3.0  # standard errors, between the codes that noise fills and those that it leaves empty
+
+
+def reading_noise(values: Floats) -> float:
+    r"""Standard deviation of one reading, from third differences.
+
+    .. math:: \sigma = 1.4826 \, \mathrm{median} |\Delta^3 y| / \sqrt{20}
+
+    Parameters
+    ----------
+    values : ndarray, shape (n_samples,)
+        A series that is smooth but for noise; at most its first 65,536 samples
+        are used, so that reading in pieces changes nothing. [any]
+
+    Returns
+    -------
+    noise : float
+        In the unit of the series; 0 where fewer than four readings are finite. [any]
+
+    Raises
+    ------
+    TypeError
+        If the series is not numeric.
+
+    Notes
+    -----
+    A third difference of white noise has 1 + 9 + 9 + 1 = 20 times its variance ([1]_).  The
+    median ([2]_) makes the turns of a triangular test count for nothing.
+
+    Examples
+    --------
+    >>> noise = np.random.default_rng(1).normal(0, 0.25, 10_000)
+    >>> print(round(reading_noise(noise + np.arange(10_000) ** 2), 2))
+    0.25
+    """
+    third = np.diff(values[:_NOISE_SAMPLES], n=3)
+    third = third[np.isfinite(third)]
+    if third.size == 0:
+        return 0.0
+    return float(1.4826 * np.median(np.abs(third)) / np.sqrt(20))
+
+
+def within_scatter(noise: float, top: Floats) -> float:
+    """Noise of a reading, no more than the scatter of the extremes from cycle to cycle allows.
+
+    Third differences take the corners of a wave of some fifteen readings a cycle for noise.
+
+    Examples
+    --------
+    >>> print(within_scatter(2.0, np.full(9, 5.0)), within_scatter(2.0, np.arange(4.0)))
+    0.0 2.0
+    """
+    change = np.diff(top[np.isfinite(top)])
+    if change.size < _FEWEST:
+        return noise
+    return min(noise, float(np.sqrt(np.mean(change**2) / 2)) / _LEAST_OF_GREATEST)
+
+
+_LEAST_OF_GREATEST = 0.2  # of the noise: half the scatter of the greatest of hundreds of readings
+
+
+def noise_and_step(values: Floats, noise: float) -> tuple[float, float]:
+    r"""Noise of readings before they were rounded, and the step that they were rounded to.
+
+    .. math:: \sigma^2 = s^2 - q^2 / 12
+
+    The median of third differences is itself a number of steps where these are coarse: there it is
+    their mean square that says what the noise is, unless the steps back contradict it: a slow ramp
+    in coarse steps has third differences without any noise.  The step is zero where noise of more
+    than a step leaves nothing of it.
+
+    Examples
+    --------
+    >>> level = np.random.default_rng(1).normal(0, 1, 4000) + np.sin(np.arange(4000) / 300) * 100
+    >>> rounded = 3 * np.round(level / 3)
+    >>> print([round(one, 1) for one in noise_and_step(rounded, reading_noise(rounded))])
+    [1.0, 3.0]
+    """
+    step = step_of_codes(values)
+    if not step or noise > _COARSE * step:
+        return noise, 0.0
+    codes = values[:_NOISE_SAMPLES] / step
+    third = np.abs(np.diff(codes, n=3))
+    third = third[np.isfinite(third) & (third < _FAR)]
+    # the corners of a wave are no noise: without the greatest fifth, as of a normal distribution
+    inner = np.sort(third)[: int(0.8 * third.size)]
+    square = float(np.mean(inner**2)) / (20 * _OF_INNER) if inner.size else 0.0
+    by_differences = float(np.sqrt(max(square - 1 / 12, 0.0)))
+    return step * _noise_of_codes(codes, by_differences), step
+
+
+def _noise_of_codes(codes: Floats, most: float) -> float:
+    r"""Noise of a wave in codes of a converter, where its steps back contradict a greater one. [1].
+
+    .. math:: b = \langle s\,\varphi(r / s) - r\,\Phi(-r / s) \rangle, \qquad s = \sqrt 2 \sigma
+
+    with b the mean number of steps against the way of the wave from one reading to the next, and r
+    what the wave goes in that time.  A distance holds as many edges of codes in the mean as it is
+    steps long, so b is the mean of the way back; a ramp without noise goes back nowhere.  ``most``
+    is the noise where as many are seen as it makes, within three standard deviations.
+
+    Examples
+    --------
+    >>> ramp, noise = 0.12 * np.abs(np.arange(4000) % 400 - 200), np.random.default_rng(1)
+    >>> print([round(_noise_of_codes(np.round(ramp + noise.normal(0, one, 4000)), 0.5), 1)
+    ...     for one in (0.0, 0.2, 0.5)])
+    [0.0, 0.2, 0.5]
+    """
+    steps, reach = np.diff(codes), 1
+    # what the wave goes, by readings so far apart that their noise is little of it
+    while True:
+        rate = (codes[2 * reach :] - codes[: -2 * reach]) / (2 * reach)
+        fastest = float(np.nanquantile(np.abs(rate), _FAST)) if np.isfinite(rate).any() else 0.0
+        if 2 * reach * fastest >= _STEPS_APART or 8 * reach > codes.size:
+            break
+        reach *= 2
+    own = steps[reach - 1 : reach - 1 + rate.size]
+    used = (np.abs(rate) > fastest / 4) & (np.abs(own) < _FAR)
+    way = np.abs(rate[used])
+    back = float(np.maximum(-own[used] * np.sign(rate[used]), 0).sum())
+
+    def expected(noise: float) -> float:
+        above = way / (noise * 2**0.5)
+        density = np.exp(-(above**2) / 2) / np.sqrt(2 * np.pi)
+        return noise * 2**0.5 * float((density - above * scipy.special.ndtr(-above)).sum())
+
+    least = 1e-3
+    if most <= least or expected(most) - back <= _CLEAR * expected(most) ** 0.5:
+        return most
+    if expected(least) >= back:
+        return 0.0
+    return float(scipy.optimize.brentq(lambda noise: expected(noise) - back, least, most))
+
+
+_FAST, _STEPS_APART = 0.9, 4.0  # share of readings at less than that rate; steps between two
+
+
+def _codes_of_branches(values: Floats, cycles: Cycles, step: float) -> list[Floats]:
+    """Readings of the rise and of the fall of some cycles, one row each, in steps of a converter.
+
+    Noise puts a turn a reading early or late: each row begins where it is most like the others.
+    """
+    found = []
+    for begin, end in zip(cycles.branch_first.T, cycles.branch_last.T, strict=True):
+        n = int(np.median(end - begin)) + 1
+        begin = begin[(begin > 0) & (begin + n < values.size)]
+        begin = begin[: max(min(_MOST_CYCLES, _MOST_READINGS // n), 2)]
+        if n < _FEWEST or not begin.size:
+            continue
+        places = begin[:, None, None] + np.array([-1, 0, 1])[:, None] + np.arange(n)
+        codes = take_samples(values, places.ravel()).reshape(places.shape) / step
+        codes = codes[np.isfinite(codes).all(axis=(1, 2))]
+        if not codes.size:
+            continue
+        apart = np.abs(codes - np.median(codes[:, 1], axis=0)).sum(axis=2)
+        found.append(codes[np.arange(len(codes)), apart.argmin(axis=1)])
+    return found
+
+
+def scatter_over_cycles(values: Floats, cycles: Cycles, step: float) -> float:
+    r"""Scatter of one place of the wave over the cycles, before it was rounded. [any].
+
+    .. math:: \langle v \rangle \approx q \sigma / \sqrt{\pi}
+              \quad (\sigma \ll q), \qquad \langle v \rangle \approx \sigma^2 + q^2 / 12
+
+    of the variance v of its codes, over all levels that a reading may have between two codes.
+    Noise makes it, or a log that is out of step with its wave, and either frees the mean of the
+    steps; a log in step has none of it, though third differences take its steps for noise.
+
+    Examples
+    --------
+    >>> first = np.arange(0, 1200, 40)
+    >>> ends = np.column_stack([first, first + 20])
+    >>> cycles = Cycles(first, first + 40, ends, ends + 20, np.ones((30, 2)),
+    ...     np.zeros(1201), np.zeros(1201), np.zeros(1201), 0.1)
+    >>> wave = 107.4 - 5.37 * np.abs(np.arange(1201) % 40 - 20)
+    >>> noise = np.random.default_rng(1).normal(0, 1, 1201)
+    >>> print([round(scatter_over_cycles(np.round(wave + size * noise), cycles, 1.0), 1)
+    ...     for size in (0.0, 0.2, 0.6)])
+    [0.0, 0.2, 0.6]
+    """
+    codes = _codes_of_branches(values, cycles, step)
+    if not codes:
+        return np.inf
+    square = float(np.mean(np.concatenate([np.var(one, axis=0) for one in codes])))
+    linear = square * np.sqrt(np.pi)
+    return step * float(linear if linear < _FEW_FLIP else np.sqrt(square - 1 / 12))
+
+
+_FEW_FLIP = 0.3  # steps of scatter, where both lines meet
+
+
+def rounding_of_branches(values: Floats, cycles: Cycles, step: float) -> float:
+    r"""Root mean square of the mean error that rounding leaves over a branch. [any].
+
+    .. math:: u = q \sqrt{\langle (\tfrac1n \sum_k \{o + x_k\})^2 \rangle}
+
+    with the distance {} of a number from the nearest whole one, readings x of the branch without
+    rounding, by a cubic through their codes, and any level o.  Where a branch goes by a whole
+    number of steps from one reading to the next, all its readings err alike.
+
+    Examples
+    --------
+    Ramps of 20 readings, of 5 steps a reading and of 5.37, from a level that any cycle has:
+
+    >>> first = np.arange(0, 200, 40)
+    >>> ends = np.column_stack([first, first + 20])
+    >>> cycles = Cycles(first, first + 40, ends, ends + 20, np.ones((5, 2)),
+    ...     np.zeros(201), np.zeros(201), np.zeros(201), 0.1)
+    >>> wave = 20.0 - np.abs(np.arange(201) % 40 - 20)
+    >>> print(round(rounding_of_branches(5 * wave, cycles, 1.0), 2),
+    ...     round(rounding_of_branches(np.round(5.37 * wave), cycles, 1.0), 2))
+    0.29 0.01
+    """
+    errors = []
+    for codes in _codes_of_branches(values, cycles, step):
+        along = np.linspace(-1, 1, codes.shape[1])
+        branch = np.polynomial.Polynomial.fit(along, codes.mean(axis=0), 3)(along)
+        errors += [
+            np.mean(np.round(level + branch) - level - branch)
+            for level in np.linspace(0, 1, 16, endpoint=False)
+        ]
+    return step * float(np.sqrt(np.mean(np.square(errors)))) if errors else 0.0
+
+
+_COARSE, _FAR = 1.5, 12.0  # steps of a converter
+
+
+_OF_INNER = 0.4377  # of the mean square of normal values, that of the least four fifths of them
