@@ -1,7 +1,5 @@
 r"""Several specimens in one surface: fixed blocks, or draws from a population (REML).
 
-Several specimens in one surface: as fixed blocks, or as draws from a population (REML).
-
 .. math::
 
     y = X\beta + Zu + e, \qquad u \sim N(0, \sigma_u^2 I), \quad e \sim N(0, \sigma^2 I), \qquad
@@ -9,8 +7,6 @@ Several specimens in one surface: as fixed blocks, or as draws from a population
 
 Fixed blocks say what these specimens do; random ones what the next specimen of the line will,
 with the scatter between specimens in the uncertainty of the mean.
-
-Coefficients in printed order, and what they are judged by: residuals, or blocks.
 
 References
 ----------

@@ -1,12 +1,10 @@
 r"""Designs, their terms, coded units and levels.
 
-Designs as published: Box-Behnken for 3 to 7 factors, Plackett-Burman of 12, 20 and 24 runs.
+**Designs as published: Box-Behnken for 3 to 7 factors, Plackett-Burman of 12, 20 and 24 runs.** A
+row is a run, a column a factor, coded -1, 0, +1.
 
-A row is a run, a column a factor, coded -1, 0, +1.
-
-Terms of the quadratic surface in the printed order, and the matrices that stand on them.
-
-For the factors :math:`X_1 .. X_k` in coded units,
+**Terms of the quadratic surface in the printed order, and the matrices that stand on them.** For
+the factors :math:`X_1 .. X_k` in coded units,
 
 .. math::
 
@@ -18,14 +16,12 @@ the squares, the linear terms, then f Tm, f dT and Tm dT.  The squares stand bef
 terms; other programs print them last.  As printed, eq. 5a sets the physical factors beside the
 coefficients of the coded ones; as computed, a coefficient belongs to the units it was found in.
 
-Coded and engineering units, and what a change between them does to a surface.
+**Coded and engineering units, and what a change between them does to a surface**:
 
 .. math:: X = \frac{x - (x_{high} + x_{low}) / 2}{(x_{high} - x_{low}) / 2}
 
-Levels of the factors of an experiment, and what each run is to be set to.
-
-A level is in SI, a fraction of the rated break strength, or (an amplitude) a fraction
-of the run's mean tension.
+**Levels of the factors of an experiment, and what each run is to be set to.** A level is in SI, a
+fraction of the rated break strength, or (an amplitude) a fraction of the run's mean tension.
 
 References
 ----------

@@ -1,11 +1,4 @@
-"""Checks the runs of an experiment, and fits its response surfaces.
-
-What the runs of an experiment say before any fit: refusals, levels off the plan, cautions.
-
-What runs say of the line beside their surfaces: K_1 and tau, one time, stiffness forms.
-
-From the runs of an experiment to its surfaces, effects and stiffness forms.
-"""
+"""Checks the runs of an experiment, and fits its response surfaces."""
 
 from __future__ import annotations
 

@@ -1,19 +1,9 @@
 """What a fit of response surfaces returns.
 
-Parts of what fitting of response surfaces hands on; axes as in `reduction.experiments.fit_results`.
-
-Least squares of many responses on one matrix, as `reduction.experiments.least_squares_fit` hands
-it on.
-
-Responses that miss the same runs share a *pattern*: leverage and covariance factor belong to
-it, and ``pattern`` says which one a response has.
-
-What fitting of response surfaces hands on.
-
-Axes: ``n_responses`` surfaces over the same ``n_runs`` runs, ``n_terms`` terms in the printed
-order, ``n_factors`` factors.  Responses that miss the same runs share a *pattern*: leverage and
-covariance factor belong to it, and ``pattern`` says which one a response has.  The unit of a
-coefficient in coded units is that of its response.
+**What fitting of response surfaces hands on.** Axes: ``n_responses`` surfaces over the same
+``n_runs`` runs, ``n_terms`` terms in the printed order, ``n_factors`` factors.  Responses that miss
+the same runs share a *pattern*: leverage and covariance factor belong to it, and ``pattern`` says
+which one a response has.  The unit of a coefficient in coded units is that of its response.
 """
 
 from __future__ import annotations

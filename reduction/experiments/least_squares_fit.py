@@ -1,6 +1,6 @@
 r"""Least squares of many responses at once, F of a printed r2, and lack of fit.
 
-Least squares of one response or ten thousand on one matrix, by one orthogonal factorisation.
+**Least squares of one response or ten thousand on one matrix, by one orthogonal factorisation**:
 
 .. math::
 
@@ -10,12 +10,11 @@ Least squares of one response or ten thousand on one matrix, by one orthogonal f
 Responses that miss the same runs are solved together; there is a loop over the patterns of
 missing runs and none over responses.
 
-F statistic of a whole surface from its r2: the right one, and the one the report prints.
-
-As printed, [2]_ computes :math:`F = (r^2 / 10) / ((1 - r^2) / 4)` for fifteen runs and ten
-terms, which counts the mean twice, and holds it against 3.48, which is the 5 % point for 4 and
-10 degrees of freedom, transposed.  As computed, r2 is about the mean: 9 and 5.  The two errors
-nearly cancel (3.48 against 3.44 on the printed scale).
+**F statistic of a whole surface from its r2: the right one, and the one the report prints.** As
+printed, [2]_ computes :math:`F = (r^2 / 10) / ((1 - r^2) / 4)` for fifteen runs and ten terms,
+which counts the mean twice, and holds it against 3.48, which is the 5 % point for 4 and 10 degrees
+of freedom, transposed.  As computed, r2 is about the mean: 9 and 5.  The two errors nearly cancel
+(3.48 against 3.44 on the printed scale).
 
 References
 ----------

@@ -1,8 +1,6 @@
 r"""Cycles to failure: life, fatigue and abrasion, with run-outs as lower bounds.
 
-Intervals from the profile of a likelihood.
-
-Maximum likelihood of a straight law with scatter, where some values are lower bounds.
+**Maximum likelihood of a straight law with scatter, where some values are lower bounds**:
 
 .. math:: y = X b + \sigma\,\varepsilon
 
@@ -11,15 +9,9 @@ In :math:`\theta = 1/\sigma` and :math:`\gamma = b/\sigma` the log likelihood is
 Newton steps reach its one maximum from any start, and a quantile that is held fixed is a linear
 condition, so that its profile is a problem of the same form.
 
-Lives of specimens that were tested alike; run-outs and suspended tests as lower bounds.
-
-Life against peak load; run-outs and suspended tests as lower bounds.
-
-Cycles to wear through: how much longer a jacket, a material or a construction lasts.
-
-Mean, deviation and relative variability of a group are those of `strength.group_statistics`,
-ratios of two groups those of `compare.ratio_of_means` (means) and `life.ratio_of_lives`
-(medians, where every life is known).
+**Cycles to wear through: how much longer a jacket, a material or a construction lasts.** Mean,
+deviation and relative variability of a group, and ratios of the means of two, are those of
+`reduction.experiments.strength_statistics`.
 
 References
 ----------

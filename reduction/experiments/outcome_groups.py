@@ -1,17 +1,5 @@
 """Groups of outcomes, their series over exposure and load, and the rows of their tables.
 
-Which rows of a table of outcomes belong together, and against which they are held.
-
-Strength against exposure by line, and life against peak load by group, each with its fit.
-
-Columns of the tables of strength, of exposure, of fatigue and of life against load.
-
-A row of a table of outcomes: every column, and the labels of its group.
-
-Rows of the tables of strength and of strength against exposure, in SI.
-
-Rows of the tables of fatigue and of life against load, in SI.
-
 References
 ----------
 .. [1] CG-D-39-80, Tables 10 and 20: a group is a line (material, construction, diameter) in one

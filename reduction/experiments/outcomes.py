@@ -1,9 +1,5 @@
 """Outcomes without a log: breaks, abrasion, cycles to failure.
 
-What stands in a table of outcomes, and what statistics make of it.
-
-What statistics make of cycles to failure.
-
 References
 ----------
 .. [1] CG-D-39-80, Tables 10, 20, 21, A-3, A-4, Figures 15 and 19.

@@ -1,9 +1,4 @@
-"""Many responses at once: products of rows, searches.
-
-Rows of a table of responses: their products with small matrices, their missing runs.
-
-The highest place of many curves at once, by a grid and golden sections.
-"""
+"""Many responses at once: products of rows, searches."""
 
 from __future__ import annotations
 

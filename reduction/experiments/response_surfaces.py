@@ -1,11 +1,5 @@
 """Fits response surfaces of many responses over one set of runs.
 
-What has to be right with the runs of an experiment before a surface is fitted to them.
-
-What a reader of response surfaces has to know: runs that miss, repeat, stray or stand alone.
-
-Response surfaces of many responses over one set of runs, in one call.
-
 References
 ----------
 .. [1] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D

@@ -1,6 +1,6 @@
 r"""Responses on another scale: logarithm, Box-Cox power.
 
-Responses that cannot be negative, fitted on another scale and brought back.
+**Responses that cannot be negative, fitted on another scale and brought back**:
 
 .. math::
 
@@ -13,8 +13,6 @@ is nearly constant.
 
 The printed quadratic surfaces of H, K_1 and tau of [1]_ fall below zero inside their own
 ranges; a surface of ln y cannot.
-
-The power by which a response becomes nearest to a quadratic with even scatter.
 
 References
 ----------

@@ -1,20 +1,14 @@
 r"""Run sheets: order, peak loads, warnings and expected precision.
 
-Run sheet: what to run, in which order, and how far each run loads the line.
-
-What is wrong with a run sheet before a line is broken on it.
-
-Whether runs went where the plan sent them.
-
-How small an effect a screening will see, before a line is broken.
+**How small an effect a screening will see, before a line is broken**:
 
 .. math:: E_{min} = t_{1 - \alpha/2;\, m}\, \frac{2 \sigma}{\sqrt{n}}
 
-What the runs of a design tell of its terms, before any response.
+**What the runs of a design tell of its terms, before any response**:
 
 .. math:: C = (X^T X)^{-1}, \qquad h(x) = x^T C x
 
-How well an experiment will know its surface, before a line is broken.
+**How well an experiment will know its surface, before a line is broken**:
 
 .. math:: v_t = \left[(X^T X)^{-1}\right]_{tt}, \qquad v(x) = f^T (X^T X)^{-1} f, \qquad
    w = t_{\nu}\, \sigma \sqrt{v}

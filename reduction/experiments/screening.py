@@ -1,8 +1,6 @@
 r"""Plackett-Burman screening: which of many factors move a response.
 
-What two-level effects are mixed of, and where they stand on a half-normal plot.
-
-Screening: which of many factors move a response at all.
+**Screening: which of many factors move a response at all**:
 
 .. math:: E_j = \bar y_{j+} - \bar y_{j-}, \qquad
    S_{FE} = \sqrt{\frac{1}{m} \sum_{dummies} E_d^2}, \qquad

@@ -1,6 +1,6 @@
 r"""Stationary point, principal curvatures and ridge path of quadratic surfaces.
 
-How stationary points and principal curvatures follow the coefficients of a surface.
+**How stationary points and principal curvatures follow the coefficients of a surface**:
 
 .. math::
 

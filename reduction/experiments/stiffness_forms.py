@@ -1,10 +1,6 @@
 r"""Dynamic stiffness in the forms that mooring codes take.
 
-What the forms of dynamic stiffness hand on, and how well each fits.
-
-Runs as the forms of dynamic stiffness take them: levels checked, loads over break strength.
-
-Dynamic stiffness of a rope in the forms that mooring codes take, from the same runs.
+**Dynamic stiffness of a rope in the forms that mooring codes take, from the same runs**:
 
 .. math::
 
@@ -13,8 +9,6 @@ Dynamic stiffness of a rope in the forms that mooring codes take, from the same 
 
 with the mean load :math:`L_m` and the load amplitude :math:`L_a` in per cent of the rated
 break strength MBL, the period :math:`T` in seconds and the mean tension :math:`T_m` in newtons.
-
-Forms of the dynamic stiffness of a rope beside the quadratic surface of the same runs.
 
 References
 ----------

@@ -1,13 +1,5 @@
 """Strength of groups of breaks, against exposure, and after snap loading.
 
-Change of a mean against a reference mean, and one-way F.
-
-Strength against years in the field as a straight line.
-
-Mean strength of groups of breaks; breaks in the termination apart, or as lower bounds.
-
-Cyclic loading that leaves the line slack in each cycle: which peak load it survives.
-
 References
 ----------
 .. [1] CG-D-39-80, Tables 10 and 21 (changes after exposure), Tables A-3 and A-4 (one-way F).

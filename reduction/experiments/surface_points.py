@@ -1,10 +1,6 @@
 r"""Values of response surfaces at points, with intervals.
 
-What of a plan counts as tested: its levels, and how much its runs say at a point.
-
-Points of the plan at which a surface is worth a number: centre, runs and corners.
-
-Values of response surfaces at points, with intervals and with what the runs say there.
+**Values of response surfaces at points, with intervals and with what the runs say there**:
 
 .. math::
 

@@ -1,10 +1,8 @@
 r"""Warnings about fitted surfaces: impossible values, drift over the run order, stray runs.
 
-Whether a response drifts over the order of the runs, beyond what the surface says.
+**Whether a response drifts over the order of the runs, beyond what the surface says**:
 
 .. math:: y = x^T \beta + \delta\,(k - \bar k) + e
-
-What a reader has to doubt of surfaces that were fitted: values that cannot be, drift.
 
 References
 ----------

@@ -1,11 +1,6 @@
 r"""Deployed assemblies: tension against length, stiffness, load of each tether.
 
-What a deployed assembly is made of: tethers with their splices, and parts in line with them.
-
-Splices of a tether that is to be deployed: as they were tested, or as they are stated.
-
-Tethers side by side, other parts in line: tension of a deployed assembly against its length.
-
+**Tethers side by side, other parts in line: tension of a deployed assembly against its length.**
 All tethers have one length between the bridles; each has the tension of its own curve there, and
 the length of every part in line follows from the tension:
 
@@ -16,8 +11,6 @@ Length is explicit in tension part by part, so that the curve is a table and not
 
 A deployed assembly at work: length and load of each tether on the curve, EA and stroke by the tests
 that cover the cycle, and whether a tether goes slack.
-
-A deployed assembly from its tethers to its curve, its stiffness and its work.
 
 References
 ----------

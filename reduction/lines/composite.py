@@ -1,16 +1,6 @@
 r"""Pieces of a tension-strain curve from many tests, and one rising curve from them.
 
-Pieces of a tension-strain curve: cyclic windows, first pulls, static tests.
-
-Pieces of a tension-strain curve, from cyclic windows and first pulls.
-
-How pieces of a tension-strain curve become one: which kind goes first, and how they fade.
-
-Pieces of a tension-strain curve from tests that hardly move: weights both ways, a slow pull.
-
-One rising curve of tension against strain from the pieces of many tests.
-
-What pieces of a tension-strain curve differ by, and how much of it their own errors explain.
+**What pieces of a tension-strain curve differ by, and how much of it their own errors explain**:
 
 .. math:: d = \frac{T_1 - T_2}{\bar T}, \qquad
           u^2(d) = \frac{u_1^2 + u_2^2}{\bar T^2}
@@ -19,13 +9,8 @@ What pieces of a tension-strain curve differ by, and how much of it their own er
 with the mean of both tensions, the random part u of each and the contribution c_k of each error
 that they share.  A gain of one load cell is in both and in no ratio: it explains no difference.
 
-Pieces on one grid of strain: their weights, their mean, and the nearest curve that rises.
-
-What is said of a composite curve: its rule, its gaps, what its pieces differ by, and doubts.
-
-One monotone curve of tension against strain, from zero, out of many tests.
-
-The curve y is the one that rises and is nearest to all pieces T_i:
+**One monotone curve of tension against strain, from zero, out of many tests.** The curve y is the
+one that rises and is nearest to all pieces T_i:
 
 .. math:: \min_y \int \sum_i w_i(\varepsilon)\,(y - T_i)^2\,d\varepsilon, \quad
    y' \ge b\,\min_i T_i', \qquad w_i = \frac{h_i\,g_i}{u_i^2 + (s\,\bar T)^2}
@@ -33,8 +18,6 @@ The curve y is the one that rises and is nearest to all pieces T_i:
 u_i is the uncertainty of a piece but for what all of them share, s the relative deviation between
 pieces of its kind where they overlap, h_i falls to zero towards the ends of a piece, and g_i hands
 over to pieces of a kind that goes before.  Without the constraint the answer is the weighted mean.
-
-What the pieces of one line or tether are from: its tests, its splices, what is stated of it.
 
 References
 ----------

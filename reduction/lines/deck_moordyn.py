@@ -1,9 +1,6 @@
 """Decks in the grammar of MoorDyn: MoorDyn-C, MoorPy, OpenFAST.
 
-A deck in the grammar of MoorDyn: one line type, and one line of it to try it with.
-
-MoorDyn: look-up table, static and dynamic stiffness, stiffness that grows with load, Syrope.
-
+**MoorDyn: look-up table, static and dynamic stiffness, stiffness that grows with load, Syrope.**
 What MoorDyn 2.7 does with a file that is not to its liking, and what is done here about it:
 
 * a line end after the last row, or more than 30 rows, and it does not start: neither is written;
@@ -24,9 +21,8 @@ What MoorDyn 2.7 does with a file that is not to its liking, and what is done he
 * without damping of the fast spring the second-order integration grows without bounds: a little is
   written, and said to be numerical.
 
-MoorPy: its deck with a table, and its library of line properties.
-
-What MoorPy 1.3 does with a file that is not to its liking, and what is done here about it:
+**MoorPy: its deck with a table, and its library of line properties.** What MoorPy 1.3 does with a
+file that is not to its liking, and what is done here about it:
 
 * a file of the EA column is opened without its first and last sign, and only where the name holds
   ``.txt``; anything else becomes 1,000 MN without a word: ``|name.txt|`` is written;
@@ -37,10 +33,9 @@ What MoorPy 1.3 does with a file that is not to its liking, and what is done her
   names: both are written;
 * a least or greatest diameter in the library ends in an error: none is written.
 
-OpenFAST's MoorDyn module (MoorDyn-F): the grammar of MoorDyn, with other options.
-
-What the `moordyn_driver` of OpenFAST 5.0 does with a file that is not to its liking, and what is
-done here about it:
+**OpenFAST's MoorDyn module (MoorDyn-F): the grammar of MoorDyn, with other options.** What the
+`moordyn_driver` of OpenFAST 5.0 does with a file that is not to its liking, and what is done here
+about it:
 
 * a table beside a damping below zero, which MoorDyn-C takes for a share of critical, ends it: the
   damping is written as a number;

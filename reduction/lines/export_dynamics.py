@@ -1,10 +1,6 @@
 r"""K_0, K_1 and tau of an exported line, consistent with its K_ap and H.
 
-Stiffness that depends on how fast a line is pulled, and on how far it once was.
-
-What is said of the dynamics of an exported line: how they were found, what is doubtful.
-
-How well K_1 and tau of an exported line are known, from K_ap, H and K_0 of one set of runs.
+**How well K_1 and tau of an exported line are known, from K_ap, H and K_0 of one set of runs**:
 
 .. math:: w^2(y) = \sum_i (s_i w_i)^2 + 1.96^2 \sum_k \Bigl(\sum_i s_i c_{ik}\Bigr)^2
 
@@ -12,12 +8,11 @@ over the inputs i with the half width w_i of each alone, the contribution c_ik o
 they share, and the sensitivity s_i of the parameter.  A load cell is in all three: its gain is in
 K_1 as it is, and leaves tau alone.
 
-K_0, K_1 and tau of a line for export, such that it gives back its own K_ap and H.
-
-K_1 and tau have surfaces of their own in [4]_, fitted to what was identified run by run.  Beside
-the surfaces of K_ap and H they are a second fit of the same runs, and the two do not agree: over
-the tested levels of the printed lines the first give K_ap from 0.7 to 2.3 times the second.  K_ap
-and H are what was measured, so K_1 and tau are identified from them at the point that is asked for.
+**K_0, K_1 and tau of a line for export, such that it gives back its own K_ap and H.** K_1 and tau
+have surfaces of their own in [4]_, fitted to what was identified run by run.  Beside the surfaces
+of K_ap and H they are a second fit of the same runs, and the two do not agree: over the tested
+levels of the printed lines the first give K_ap from 0.7 to 2.3 times the second.  K_ap and H are
+what was measured, so K_1 and tau are identified from them at the point that is asked for.
 
 References
 ----------

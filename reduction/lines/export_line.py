@@ -1,15 +1,5 @@
 """The line to be exported: curve, range, uncertainty, properties.
 
-Uncertainty of the tension of an exported curve: its own part, and what it shares with others.
-
-What a mooring code is told of a line: one curve, its range, its dynamics, its properties.
-
-The straight start of a curve against what other tests of the same tether measured there.
-
-One monotone curve, begun at zero and thinned to few points with a stated error.
-
-What a user of an exported line is told on the screen too: its range, and what does not fit.
-
 References
 ----------
 .. [1] M. Bigon and G. Regazzoni, "The Morrow Guide to Knots," Quill, New York, 1982, p. 14,

@@ -1,13 +1,5 @@
 """Lines for export from archives, assemblies, composites and look-ups.
 
-A line for export from an archive: the curve of a reduced test, or of a predicted hose.
-
-A deployed assembly for export: every node of it as a table, and as one line of its own.
-
-A line for export from a composite curve: its rule, its pieces, its joins and gaps.
-
-A line for export from what is known of it for look-up: its curve, its dynamics at a mean.
-
 References
 ----------
 .. [2] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber

@@ -1,17 +1,14 @@
 r"""Curves of a line over one variable, with intervals.
 
-A quantity over one variable: polynomials as published, points as measured.
-
-Intervals for the lines of a kind, from those of the lines that were tested and their scatter.
-
-A surface is of the lines that were tested.  Their mean differs from that of all lines of the kind
-by the scatter between lines over the root of their number, and another line from that mean by the
+**Intervals for the lines of a kind, from those of the lines that were tested and their scatter.** A
+surface is of the lines that were tested.  Their mean differs from that of all lines of the kind by
+the scatter between lines over the root of their number, and another line from that mean by the
 whole of it.  A scatter is a share of a positive value, so that it is taken on the logarithm:
 
 .. math:: u^2 = t_\nu^2 \ln(1 + c^2)\left(a + \frac{1}{n}\right) +
           \left(\frac{y_{high} - y}{y}\right)^2, \qquad y e^{\pm u}
 
-Intervals of design values taken apart: what is of a value alone, and what it shares.
+**Intervals of design values taken apart: what is of a value alone, and what it shares**:
 
 .. math:: w = t_{\nu_{eff}} \sqrt{r^2 + \textstyle\sum_k c_k^2}, \qquad w_r = t_\nu\, r
 

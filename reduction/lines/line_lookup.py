@@ -1,15 +1,5 @@
 r"""Looks up design values of a line from its surfaces and curves.
 
-Peak and minimum tension of a cycle, and the rule of the source for how high or low it may go.
-
-Numbers of a look-up with what has to be told of them.
-
-Design values of a curve at points: value, interval, what was tested, loads.
-
-Design values of a surface at points: value, intervals, what was tested, loads.
-
-Look-up of design values of a line: surfaces over frequency and loads, curves over one variable.
-
 References
 ----------
 .. [1] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D

@@ -1,9 +1,6 @@
 r"""Search of lines by material, construction, diameter; two lines at the same points.
 
-Search of lines by what they are made of, how, how thick, and in which condition.
-
-Two lines at the same points: difference, ratio, and whether it is more than their intervals.
-
+**Two lines at the same points: difference, ratio, and whether it is more than their intervals.**
 The limits of a difference follow from those of the two values, each side on its own, less what
 errors that are known by name add to each; of those the difference alone counts, so that one load
 cell under both moves them together:

@@ -1,8 +1,7 @@
 """Published lines and tethers as sources of design values.
 
-Cubics of CG-D-39-80 as curves of a line, over the range in which they can be trusted.
-
-A cubic is given up to the end of its range on the page.  Two things show where it is wrong there:
+**Cubics of CG-D-39-80 as curves of a line, over the range in which they can be trusted.** A cubic
+is given up to the end of its range on the page.  Two things show where it is wrong there:
 
 - A line does not shorten under more load.  Where the cubic of strain turns, its range ends; its
   slope is wrong by as much as it is below zero, and K_0, the inverse of it, is trusted where that

@@ -1,21 +1,16 @@
 r"""Helical armour: design, forces by each theory, layers together.
 
-What an armour prediction takes and gives.
+**What an armour prediction takes and gives.** Angles are from the axis of the cable.  Of a wire,
+the tangent, the inward normal and the binormal are its axes; curvature is about the binormal,
+torsion about the tangent.
 
-Angles are from the axis of the cable.  Of a wire, the tangent, the inward normal and the binormal
-are its axes; curvature is about the binormal, torsion about the tangent.
+**The theories of small, intermediate and large winding angles.** All three are of the first order
+in the strain.  That of intermediate angles is the first term of the rod
+below; that of small angles is the same but for the change of angle, which
+it takes from a cosine; that of large angles is a close-coiled spring that has no core.
 
-Whether the wires of a layer find room beside each other.
-
-The theories of small, intermediate and large winding angles.
-
-All three are of the first order in the strain.  That of intermediate angles is the first term of
-the rod of `reduction.prediction.armour`; that of small angles is the same but for the change of
-angle, which it takes from a cosine; that of large angles is a close-coiled spring that has no core.
-
-A wire on a rigid core without approximation of its geometry: two laws of its moments.
-
-Neither core nor cable turns, so that the helix of the wire centre follows
+**A wire on a rigid core without approximation of its geometry: two laws of its moments.** Neither
+core nor cable turns, so that the helix of the wire centre follows
 
 .. math:: (1+\zeta)\cos\bar\alpha = (1+\varepsilon)\cos\alpha,\qquad
    (1+\zeta)\sin\bar\alpha = \sin\alpha
@@ -48,32 +43,18 @@ Its torsion moment is :math:`GJ\varepsilon\sin^3\alpha\cos\alpha/r` to the first
 vanish at 45 deg and does not change sign.  The bending moment is that of ``exact``; it is known to
 nu/2 of itself, since thinning of the wire moves its fibres by as much as bending does.
 
-Forces in one wire of an armour layer that is stretched with its cable.
-
-How far the theories of armour are from the rod that they simplify, and where they hold.
-
-Tension and torque of an armour layer for a small strain and twist of the cable.
-
-From the energy of `reduction.prediction.armour`, with the core twisted by :math:`\theta` per
-length: :math:`(1+\zeta)\sin\bar\alpha = \sin\alpha + r\theta\cos\alpha`.
+**Tension and torque of an armour layer for a small strain and twist of the cable.** From the same
+energy, with the core twisted by :math:`\theta` per length:
+:math:`(1+\zeta)\sin\bar\alpha = \sin\alpha + r\theta\cos\alpha`.
 
 .. math:: K = \frac{n}{\cos\alpha} V^T \operatorname{diag}(EA, EI, GJ)\, V,\quad
    V = \begin{pmatrix} \cos^2\alpha & r\sin\alpha\cos\alpha \\
    -2\sin^2\alpha\cos^2\alpha/r & 2\sin\alpha\cos^3\alpha \\
    \sin^3\alpha\cos\alpha/r & \cos^4\alpha \end{pmatrix}
 
-At which strain of the cable the wires of a layer begin to yield, and what they carry there.
-
-Several armour layers on each other: what the cable carries.
-
-Each layer lies on a core of its own that does not give and does not turn, so that all have the
-strain of the cable and squeeze what is inside them.  The torque that they leave unbalanced is
-what the terminations have to hold; `reduction.prediction.armour` tells what a cable loses
-that may turn.
-
-Which armour layer of a cable yields first, and what the cable carries there.
-
-An armour by every theory, its layers together, and where each theory holds.
+**Several armour layers on each other: what the cable carries.** Each layer lies on a core of its
+own that does not give and does not turn, so that all have the strain of the cable and squeeze what
+is inside them.  The torque that they leave unbalanced is what the terminations have to hold.
 
 References
 ----------

@@ -1,23 +1,10 @@
 r"""Measured minus predicted: over strain, at events, in energy, with a verdict.
 
-What a comparison of a measured hose curve with its prediction takes and gives.
+**What a comparison of a measured hose curve with its prediction takes and gives.** A *comparison
+error* is predicted less measured, E = S - D in the words of [1]_: positive where the hose is softer
+than predicted.
 
-A *comparison error* is predicted less measured, E = S - D in the words of [1]_: positive where
-the hose is softer than predicted.
-
-How many independent points the residuals of a curve are worth.
-
-Comparison error of curves: over strain, at events, in energy, cycle by cycle.
-
-Where a measured curve bends upward: the cords take up load.
-
-Comparison error at what happens to the cords: where they pick up, at working load, at break.
-
-What the two hoses of the report reached, beside the stretch at the working load.
-
-A verdict in words, in the unit of who reads it.
-
-Comparison error against the uncertainty of measurement and prediction together.
+**Comparison error against the uncertainty of measurement and prediction together**:
 
 .. math:: u_{val}^2 = u_{input}^2 + u_{num}^2 + u_D^2
 

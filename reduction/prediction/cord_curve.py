@@ -1,16 +1,11 @@
 """Load of one cord against its strain.
 
-Load on one cord against its strain, through the measured points.
-
-A cord curve as polynomials between its points, evaluated without large powers.
-
-Load on a cord between the measured points: monotone cubics, and their inverse.
-
-Between two points the load is a cubic of strain whose slopes at the points are those of Fritsch
-and Carlson as scipy has them (PCHIP), so that it rises wherever the points do and goes through
-each of them.  A cord carries nothing below zero strain, and beyond its last point it is broken:
-NaN.  The curve is that of one slow pull: creep, hysteresis and the stiffening of nylon under fast
-cycles are not in it.
+**Load on a cord between the measured points: monotone cubics, and their inverse.** Between two
+points the load is a cubic of strain whose slopes at the points are those of Fritsch and Carlson as
+scipy has them (PCHIP), so that it rises wherever the points do and goes through each of them.  A
+cord carries nothing below zero strain, and beyond its last point it is broken: NaN.  The curve is
+that of one slow pull: creep, hysteresis and the stiffening of nylon under fast cycles are not in
+it.
 
 References
 ----------

@@ -1,23 +1,9 @@
 """A measured hose against its prediction, and stated parameters fitted to the curve.
 
-Whether one curve can tell several numbers of a hose apart.
-
-A formal interval answers for the noise alone.  A fit of angle, cord scale and dead length to
-one smooth curve gives three narrow intervals, and an error of the model by 1 % of the tension
-moves all three by more than any workshop would be off: the question is what the curve
-*shows* of a plausible error, not what the noise hides.
-
-Tension of a hose at other values of its numbers, without a gap where cords would break.
-
-What the tension of a predicted hose may be off by: its uncertain numbers, and its cord curve.
-
-Measured points and the numbers of a hose that are fitted to them.
-
-Named numbers of a hose fitted to a measured curve.
-
-A measured hose beside its prediction: every number of the comparison.
-
-A reduced test of a hose against its prediction.
+**Whether one curve can tell several numbers of a hose apart.** A formal interval answers for the
+noise alone.  A fit of angle, cord scale and dead length to one smooth curve gives three narrow
+intervals, and an error of the model by 1 % of the tension moves all three by more than any workshop
+would be off: the question is what the curve *shows* of a plausible error, not what the noise hides.
 
 References
 ----------

@@ -1,10 +1,8 @@
 r"""Hoses for a wanted stretch and load.
 
-From a wanted stretch and a wanted working load to a hose, in closed form.
-
-The stretch fixes the wrap angle alone: at the working load the cords bear a known share of their
-break load, so their stretch ratio :math:`\lambda_c` is known, and with the wanted
-:math:`\lambda_h`
+**From a wanted stretch and a wanted working load to a hose, in closed form.** The stretch fixes the
+wrap angle alone: at the working load the cords bear a known share of their break load, so their
+stretch ratio :math:`\lambda_c` is known, and with the wanted :math:`\lambda_h`
 
 .. math:: \cos^2\alpha_0 = \frac{\lambda_c^2 - 1/\lambda_h}{\lambda_h^2 - 1/\lambda_h}
 
@@ -23,8 +21,6 @@ A working share of a third is of the *cords*.  The rubber of a hose that stretch
 of the working load but a quarter of the load at the break, so the hose breaks at less than three
 times its working load: 2.2 to 2.7 times with wrap angles of 64 to 68 degrees in a thick wall, above
 three below the neutral angle.  `reduction.prediction.hose_tension.find_events` gives both loads.
-
-Hoses that give a wanted stretch, and a wanted load, where the cords bear their share.
 
 References
 ----------

@@ -1,10 +1,10 @@
 r"""Geometry of a hose: helix angle, cord length, fabric, helical layers.
 
-Helix on a cylinder at rest: its angle, and how the cylinder's radius follows its stretch.
+**Helix on a cylinder at rest: its angle, and how the cylinder's radius follows its stretch**:
 
 .. math:: \lambda_r^2 = 1/\lambda_h \text{ (isochoric)}, \qquad \lambda_r = 1 \text{ (rigid)}
 
-Length of a helix on a cylinder that stretches: cords of a hose, wires of an armour layer.
+**Length of a helix on a cylinder that stretches: cords of a hose, wires of an armour layer**:
 
 .. math:: \lambda_c^2 = \lambda_h^2 \cos^2 a_0 + \lambda_r^2 \sin^2 a_0
 
@@ -16,31 +16,25 @@ water-filled hose), or stays (``rigid``: wires on a core that does not give).
 The isochoric form needs both wall and filling incompressible, none of the filling lost, no twist,
 and the ends far away.  A hose that leaks, holds air or turns under load is not of this kind.
 
-Angle of a helix on a cylinder that stretches, and the angle at rest that gives two stretches.
+**Angle of a helix on a cylinder that stretches, and the angle at rest that gives two stretches**:
 
 .. math:: \tan a = \tan a_0 \, \lambda_r / \lambda_h
 
-Symbols, and when this holds: `reduction.prediction.hose_geometry`.
-
-From cord fabric to cord layers: ribbon width, number of cords, spacing, dead ends.
-
-A layer is one ribbon of cord fabric, cords along it, butt wrapped: the turns touch.  Rolled
-out, a turn is a parallelogram whose side across the hose is :math:`\pi d_w`, so that
+**From cord fabric to cord layers: ribbon width, number of cords, spacing, dead ends.** A layer is
+one ribbon of cord fabric, cords along it, butt wrapped: the turns touch.  Rolled out, a turn is a
+parallelogram whose side across the hose is :math:`\pi d_w`, so that
 
 .. math:: w_c = \pi d_w \cos\alpha_0, \qquad N = 2 w_c n_c
 
 The width of the ribbon is what makes the angle: it is cut, and the angle follows from it and
 from the diameter it is wrapped on.
 
-Chart to choose a wrap angle by: cord strain over hose strain.
-
-Layers of a hose that are to carry no load: fish-bite protection, conductors.
-
-They follow the hose as its cords do, :math:`\lambda^2 = \lambda_h^2\cos^2\alpha_0 +
-\sin^2\alpha_0/\lambda_h`, at any diameter: the wall is incompressible and so is its filling,
-and every radius shrinks by the same factor.  The square is convex in the hose stretch, so over
-a range from rest the *greatest* strain stands at an end and the *least* at
-:math:`\lambda_h^3 = \tan^2\alpha_0 / 2`, where the current angle is 54.7356 degrees.
+**Layers of a hose that are to carry no load: fish-bite protection, conductors.** They follow the
+hose as its cords do, :math:`\lambda^2 = \lambda_h^2\cos^2\alpha_0 + \sin^2\alpha_0/\lambda_h`, at
+any diameter: the wall is incompressible and so is its filling, and every radius shrinks by the same
+factor.  The square is convex in the hose stretch, so over a range from rest the *greatest* strain
+stands at an end and the *least* at :math:`\lambda_h^3 = \tan^2\alpha_0 / 2`, where the current
+angle is 54.7356 degrees.
 
 A layer that is steep enough not to be stretched is therefore compressed on the way, the more
 the steeper it is: `least_layer_angle` and `greatest_layer_angle` are the two sides of a window

@@ -1,11 +1,6 @@
 """A hose from its plan to its response and events.
 
-A hose prediction as it was asked for and as it came out.
-
-`reduction.prediction.hose_prediction` makes it, `reduction.archive` stores it; neither knows the
-other.
-
-A hose from its plan to its response, its events, and what is to be said of it.
+The archive stores it, and neither knows the other.
 """
 
 from __future__ import annotations

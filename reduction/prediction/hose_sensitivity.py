@@ -1,13 +1,11 @@
 r"""Derivatives of a hose prediction by the numbers of its design.
 
-How the stretch of a water-filled hose goes with the stretch and the angle of its cords.
-
+**How the stretch of a water-filled hose goes with the stretch and the angle of its cords.**
 Derivatives of the kinematics of `reduction.prediction.hose_geometry`.
 
-Where a hose is, at a strain or at an event, and how its numbers move it from there.
-
-With :math:`P` the tension of a cord, :math:`d_w` the mean diameter of the layers and :math:`n`
-the cords per length, the net tension and the fill pressure are
+**Where a hose is, at a strain or at an event, and how its numbers move it from there.** With
+:math:`P` the tension of a cord, :math:`d_w` the mean diameter of the layers and :math:`n` the cords
+per length, the net tension and the fill pressure are
 
 .. math::
 

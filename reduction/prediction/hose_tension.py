@@ -1,15 +1,12 @@
 r"""Tension and fill pressure of a water-filled hose: the Snubber calculation.
 
-Loads of a hose from the tension of its cords, wherever on its curve that is.
+**Loads of a hose from the tension of its cords, wherever on its curve that is.** Virtual work of
+the cord layers, by layer diameter :math:`d_i`.
 
-Virtual work of the cord layers, by layer diameter :math:`d_i`; see
-`reduction.prediction.hose_tension`.
-
-Tension and fill pressure of a water-filled hose from its cords: the "Snubber" calculation.
-
-A hose of relaxed length one holds the energy of its cords and of its rubber.  With the layers
-:math:`i = 1, 2` of mean diameter :math:`d_i`, :math:`n` cords a width of fabric, :math:`P` the
-load on one cord, and :math:`\lambda_c(\lambda_h)` from `reduction.prediction.hose_geometry`,
+**Tension and fill pressure of a water-filled hose from its cords: the "Snubber" calculation.** A
+hose of relaxed length one holds the energy of its cords and of its rubber.  With the layers
+:math:`i = 1, 2` of mean diameter :math:`d_i`, :math:`n` cords a width of fabric, :math:`P` the load
+on one cord, and :math:`\lambda_c(\lambda_h)` from `reduction.prediction.hose_geometry`,
 
 .. math:: W = \sum_i \pi d_i n \int P \, d\lambda_c + W_r, \qquad T = dW/d\lambda_h =
    \pi (d_1 + d_2) n \frac{P}{\lambda_c}
@@ -25,11 +22,10 @@ The hose is long, straight and does not turn; both layers have one angle, but fo
 are elastic.  Where cords are slack the rubber alone carries and there is no pressure.  In
 compression a hose buckles, and there is no prediction.
 
-What happens to the cords of a hose, and at which stretch: closed forms.
-
-The strains belong to a long, straight hose that keeps its volume, and to a slow pull of its cords
-(see `reduction.prediction.hose_tension`).  Where the cords break is where a single cord of the
-curve would: a hose has weaker places, at its ends above all.
+**What happens to the cords of a hose, and at which stretch: closed forms.** The strains belong to a
+long, straight hose that keeps its volume, and to a slow pull of its cords.
+Where the cords break is where a single cord of the curve
+would: a hose has weaker places, at its ends above all.
 
 References
 ----------

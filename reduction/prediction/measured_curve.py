@@ -1,17 +1,5 @@
 """The measured curve of a test on an axis of strain, with its uncertainty.
 
-The curve of a test, as a comparison takes it: mean tension on bins of strain, by branch.
-
-Samples of a test that belong to a branch of a cycle.
-
-Bins of strain of every branch, and the tension at their centres.
-
-Type A uncertainty of a curve over cycles: what varies from strain to strain, and what not.
-
-What is wrong alike with every sample of a test, along its branches.
-
-A measured curve on an axis of strain, from the samples of a test.
-
 References
 ----------
 .. [4] V. A. Marchenko and L. A. Pastur, "Distribution of eigenvalues for some sets of random

@@ -1,8 +1,6 @@
 r"""Wave, current and wind on a floating hose, by Morison's equation, classic and improved.
 
-Wave load on a floating hose by Morison's equation, classic and improved.
-
-How deep a hose floats, from its weight.
+**How deep a hose floats, from its weight**:
 
 .. math::
    S_1 = \frac{\rho_2 (S_0 - S_b) + \rho_3 S_b}{\rho_1}, \qquad
@@ -11,14 +9,13 @@ How deep a hose floats, from its weight.
 with the bore S_b, and beta the angle at the centre over the part under water (2 pi - 2 theta
 in [1]_).
 
-Coefficients of drag and inertia with their sources, and where a case stands among them.
-
-With the greatest velocity u and the diameter D,
+**Coefficients of drag and inertia with their sources, and where a case stands among them.** With
+the greatest velocity u and the diameter D,
 
 .. math:: KC = \frac{u T}{D}, \qquad Re = \frac{u D}{\nu}, \qquad
           \frac{F_D}{F_I} = \frac{C_D}{\pi^2 C_M} KC
 
-Wave load on a floating hose per length, by Morison's equation and by its improved form.
+**Wave load on a floating hose per length, by Morison's equation and by its improved form**:
 
 .. math::
    f = \tfrac12 C_D \rho\, b\, (u + U) |u + U| + C_M \rho\, S\, \dot u
@@ -26,28 +23,20 @@ Wave load on a floating hose per length, by Morison's equation and by its improv
 The classic form takes the whole section, b = D and S = pi D^2/4; the improved form what is
 under water, S = S_1 and b = h for the horizontal load.
 
-Greatest and least wave load over a period, between any samples.
-
-A Morison load is a|u|u + b du/dt with sums of harmonics u and du/dt of the phase.  Where u keeps
-its sign the derivative
+**Greatest and least wave load over a period, between any samples.** A Morison load is a|u|u + b
+du/dt with sums of harmonics u and du/dt of the phase.  Where u keeps its sign the derivative
 
 .. math:: \pm 2 a\, u\, u' + b\, (\dot u)'
 
 is a sum of harmonics too, of twice the order, whose zeros are roots of a polynomial.  Where u
 changes its sign the derivative goes on without a jump, so that no extreme hides there.
 
-How much less the improved wave load is than the classic one.
-
-Wave, current and wind on a moored floating hose.
-
-Wind, current and wave together on a moored floating hose: the anchor force.
+**Wind, current and wave together on a moored floating hose: the anchor force**:
 
 .. math:: F_P = F_{wind} + F_{wave} + F_{current}
 
 Drag goes with the square of the velocity, so that wave and current do not add: their
 velocities do.
-
-A wave load from a hose, a sea and its exposure to loads, extremes and what to doubt.
 
 References
 ----------

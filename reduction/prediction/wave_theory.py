@@ -1,34 +1,27 @@
 r"""Regular waves: dispersion, breaking, Airy and Stokes theory, which one applies.
 
-Length of a wave from its period, and back, over still water or a current.
-
-A current U along the wave shifts the period that a fixed point sees,
+**Length of a wave from its period, and back, over still water or a current.** A current U along the
+wave shifts the period that a fixed point sees,
 
 .. math:: (\omega - k U)^2 = g k \tanh k d
 
 An opposing current faster than the group of waves stops them: no length answers then.
 
-Whether a wave length and a period that are given together belong to one wave.
-
-How high a wave can be before it breaks.
+**How high a wave can be before it breaks**:
 
 .. math:: H_b = \min(0.142\, L \tanh k d,\; 0.78\, d)
 
-A regular wave at one depth below the surface, as amplitudes of harmonics of its phase.
-
-Sums of harmonics of a phase, and the phases at which such a sum vanishes.
-
-A real sum of harmonics up to order M is written with complex coefficients,
+**Sums of harmonics of a phase, and the phases at which such a sum vanishes.** A real sum of
+harmonics up to order M is written with complex coefficients,
 
 .. math:: f(\theta) = \sum_{m=-M}^{M} c_m e^{i m \theta}, \qquad c_{-m} = \overline{c_m}
 
 so that z^M f is a polynomial in :math:`z = e^{i \theta}`, and the zeros of f are those of its
 roots that lie on the unit circle.
 
-Motion of the water under a regular wave: Airy's theory and Stokes' of second order.
-
-With the phase :math:`\theta = k x - \omega t`, z upwards from the mean level, and
-:math:`\sigma = \omega - k U`,
+**Motion of the water under a regular wave: Airy's theory and Stokes' of second order.** With the
+phase :math:`\theta = k x - \omega t`, z upwards from the mean level, and :math:`\sigma = \omega - k
+U`,
 
 .. math::
    \eta = \tfrac{H}{2} \cos\theta
@@ -58,15 +51,10 @@ For m = 1 it is the solitary wave, H sech^2 over still water with c^2 = g (d + H
 
 The steady wave of `reduction.prediction.stream_function`, for waves that do not break.
 
-Table of wave theories by relative depth, as it is meant and to the letter.
-
-Which wave theory applies, and how far a wave is from the limits of each.
-
-With the Ursell number Ur = H L^2 / d^3 and the amplitudes a_1, a_2 of the first and second
-harmonic of Stokes' surface, a_2 / a_1 goes to 3 Ur / (32 pi^2) over shallow water; where it
-passes 1/4, at Ur = 8 pi^2 / 3 = 26.3, the trough has a crest of its own.
-
-Motion of the water at one place over time, from the harmonics of a wave.
+**Which wave theory applies, and how far a wave is from the limits of each.** With the Ursell number
+Ur = H L^2 / d^3 and the amplitudes a_1, a_2 of the first and second harmonic of Stokes' surface,
+a_2 / a_1 goes to 3 Ur / (32 pi^2) over shallow water; where it passes 1/4, at Ur = 8 pi^2 / 3 =
+26.3, the trough has a crest of its own.
 
 References
 ----------

@@ -1,7 +1,6 @@
 """Zhang (2015) again: what goes into its tables, and what its text says.
 
-Settings follow from the tables that were made with them; Tables 5 to 8 are in
-`reduction.published.zhang_2015`, equations in `reduction.published.zhang_2015`.
+Settings follow from the tables that were made with them.
 """
 
 from __future__ import annotations

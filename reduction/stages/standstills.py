@@ -1,15 +1,5 @@
 """Where a test stands still: holds, rests, constant tension.
 
-Noise and quantum of a channel, from its own samples, whether it moves or stands.
-
-Blocks of samples, and the runs of blocks in which the crosshead stands still.
-
-Intervals in which a channel stands still, whatever the channel.
-
-Where the crosshead stands still: holds under tension and rests at slack.
-
-Where a test is held at constant tension: the crosshead creeps, the machine keeps the load.
-
 References
 ----------
 .. [1] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber

@@ -1,9 +1,5 @@
 """The uncertainty budget of one number, and conformity with a limit.
 
-The uncertainty budget of one number: what each source adds, largest first.
-
-Whether a number conforms to a limit, by a rule that is stated.
-
 References
 ----------
 .. [2] JCGM 106:2012, "Evaluation of measurement data - The role of measurement uncertainty in

@@ -1,30 +1,23 @@
 r"""Errors of tension and strain at a point of the loop, by source.
 
-One error at points of the plane: what it does to tension and strain, and the slopes of that.
-
-What the zero and the gain of load cells do at points of the plane: in tension, and by splices.
-
+**What the zero and the gain of load cells do at points of the plane: in tension, and by splices.**
 A splice law gives strain by the tension that is logged, and was itself fitted to tensions that a
 load cell read at the marks.  The same cell or another: each cell moves the tension of the samples
 that it logged and the law by the marks that it read.
 
-What strain by position alone misses of splices that stretch by the tension they carry.
-
-A line through the marks gives one strain to one position.  On a loop the same position is passed
-at two tensions, and the splices are longer at the greater one.  How much that is the same marks
-say, by a law of tension fitted to them:
+**What strain by position alone misses of splices that stretch by the tension they carry.** A line
+through the marks gives one strain to one position.  On a loop the same position is passed at two
+tensions, and the splices are longer at the greater one.  How much that is the same marks say, by a
+law of tension fitted to them:
 
 .. math:: D(\varepsilon, T) = \varepsilon
           - \left(\frac{p(\varepsilon) - \ell_s (1 + c T^n)}{\ell_0} - 1\right)
 
-What the crosshead's scale and the readings of the tape do to strain at points of the plane.
-
-Errors of tension and strain at a point of the loop, and how they change from point to point.
-
+**Errors of tension and strain at a point of the loop, and how they change from point to point.**
 Whatever is wrong with a test moves each point of its tension-strain plane by a small vector
 :math:`(\delta\varepsilon, \delta T)` that depends on where the point is.  From that field and its
-slopes follow the errors of everything that is read off the plane: of a modulus, a spring
-constant, an area.
+slopes follow the errors of everything that is read off the plane: of a modulus, a spring constant,
+an area.
 
 References
 ----------

@@ -1,15 +1,11 @@
 r"""Monte Carlo of the three-parameter line.
 
-The three parameters of a line by Monte Carlo, where linear propagation bends.
-
 .. math:: A = E' - K_0, \qquad K_1 = A + E''^2 / A, \qquad \tau = A / (2 \pi f E'')
 
 K_1 has its least value 2 E'' at A = E'' and no bound as A goes to zero; normal errors of any size
 reach A = 0, so that K_1 has no variance in the strict sense.  Draws with A below zero are no line
 at all.  Both are counted here and not hidden: the share of the draws without a solution stands
 beside an interval of those that have one.
-
-Uncertainty of the line of a test: linear where Monte Carlo agrees, else Monte Carlo.
 
 References
 ----------

@@ -1,15 +1,13 @@
 r"""What shared errors do to curves, segments, holds, loops, lines, weights and ratios.
 
-What shared errors do to a curve of tension against strain, and to its slope.
-
-A point of the branch moves by :math:`(\delta\varepsilon, \delta T)`; what is read at one strain
-moves by
+**What shared errors do to a curve of tension against strain, and to its slope.** A point of the
+branch moves by :math:`(\delta\varepsilon, \delta T)`; what is read at one strain moves by
 
 .. math:: \delta T|_\varepsilon = \delta T - T' \delta\varepsilon, \qquad
           \delta E = \frac{1}{A}\frac{d}{d\varepsilon}\left(\delta T|_\varepsilon\right)
                      - 2 E \frac{\delta d}{d}
 
-What shared errors do to numbers that are read at one point of the plane, or between two.
+**What shared errors do to numbers that are read at one point of the plane, or between two**:
 
 .. math::
 
@@ -19,9 +17,7 @@ What shared errors do to numbers that are read at one point of the plane, or bet
         - \frac{\delta\varepsilon_2 - \delta\varepsilon_1}{\varepsilon_2 - \varepsilon_1}
         - 2\frac{\delta d}{d}
 
-What shared errors do to the straight segments of a branch.
-
-What shared errors do to the parameters of a hyperelastic law fitted to a first loading.
+**What shared errors do to the parameters of a hyperelastic law fitted to a first loading**:
 
 .. math:: \delta p = \left(J^T J - \sum_i r_i \frac{\partial^2 \sigma_i}{\partial p^2}\right)^{-1}
           J^T \left(\delta\sigma|_\varepsilon\right), \qquad
@@ -33,7 +29,7 @@ parameters.
 A gain scales every modulus by itself, a diameter by twice itself, and neither touches an
 exponent.
 
-What shared errors do to what is read in a hold: tensions, drop, rates, terms of a series.
+**What shared errors do to what is read in a hold: tensions, drop, rates, terms of a series**:
 
 .. math::
 
@@ -42,7 +38,7 @@ What shared errors do to what is read in a hold: tensions, drop, rates, terms of
 A gain is in both tensions and cancels; a zero does not.  What a relaxing tension loses is a
 difference: it scales with the gain and knows no zero.
 
-What shared errors do to a slow pull, and to the three parameters of a line.
+**What shared errors do to a slow pull, and to the three parameters of a line**:
 
 .. math:: S = d\varepsilon / dT = 1 / K_0, \qquad
           \delta S = S \frac{\partial\,\delta\varepsilon}{\partial\varepsilon}
@@ -52,10 +48,8 @@ What shared errors do to a slow pull, and to the three parameters of a line.
 The load cell of the pull is that of the loops: its gain enters E' and K_0 alike, and their
 difference by no more than its own share.
 
-What shared errors do to the quantities of a loop.
-
-Amplitudes and means follow from the two ends of the loop, its area from how fast a small area of
-the plane grows:
+**What shared errors do to the quantities of a loop.** Amplitudes and means follow from the two ends
+of the loop, its area from how fast a small area of the plane grows:
 
 .. math::
 
@@ -66,7 +60,7 @@ the plane grows:
 
 (the theorem of Gauss for the field of errors, at the centre of the loop).
 
-What the fit of a slow pull leaves open of K_0, with how it goes together along the curve.
+**What the fit of a slow pull leaves open of K_0, with how it goes together along the curve**:
 
 .. math:: S(T) = (b_1 + 2 b_2 u + 3 b_3 u^2) / h, \qquad
           \delta K_0 = -K_0^2 \, \sum_j \frac{\partial S}{\partial b_j} \delta b_j
@@ -74,11 +68,11 @@ What the fit of a slow pull leaves open of K_0, with how it goes together along 
 with u = (T - centre)/h.  The coefficients of a cubic go together: K_0 too high at one end of the
 pull may be too low at the other, and runs at two mean tensions share that.
 
-What the rated break strength adds to numbers that are divided by it.
+**What the rated break strength adds to numbers that are divided by it**:
 
 .. math:: y = q / S^p: \qquad \delta y = -p \, y \, \delta S / S
 
-What shared errors do to a stepwise test: weights, a gauge length, strain, warmth, a diameter.
+**What shared errors do to a stepwise test: weights, a gauge length, strain, warmth, a diameter**:
 
 .. math::
 
@@ -88,7 +82,7 @@ What shared errors do to a stepwise test: weights, a gauge length, strain, warmt
     \frac{\delta E_{int}}{E_{int}} &= g_T + \frac{\delta g}{g} - g_\varepsilon + s
         - 2 \frac{\delta d}{d}
 
-What shared errors do to the ratio of two moduli, and the interval that it then has.
+**What shared errors do to the ratio of two moduli, and the interval that it then has**:
 
 .. math:: \delta r = r \left(c_1 / E_1 - c_2 / E_2\right)
 

@@ -1,36 +1,12 @@
 """Errors that a test shares with others, carried to all of its results.
 
-Shared errors in loops, curves, segments, first loading and ratios of a test.
+**What shared errors add to what is made from the table of cycles: trends, slips, rope steps.** A
+mean over cycles, or a slope against their number, is linear in the cycles: the errors of the cycles
+go through the same mean or slope.
 
-Blocks of cycles: what shared errors do to each cycle is worked out for some at a time.
-
-What shared errors add to the loops of a specimen, to its dynamic modulus and to its line.
-
-What shared errors add to the curves and the segments of a specimen.
-
-What shared errors add to a first loading's stresses and laws, to slack lengths, sections.
-
-What shared errors add to the ratios of moduli of a test.
-
-Errors that a test shares with others, carried to its cycles, holds, pulls and steps.
-
-What shared errors add to what is made from the table of cycles: trends, slips, rope steps.
-
-A mean over cycles, or a slope against their number, is linear in the cycles: the errors of the
-cycles go through the same mean or slope.
-
-What shared errors add to holds, and to the pairs of holds of a quasi-static programme.
-
-What shared errors add to a slow pull itself: its curve on the grid of tension.
-
-What shared errors add to a stepwise test.
-
-What the turns of a test's wave say of the clocks of its channels; nothing is corrected by it.
-
-Errors that a test shares with others, carried to what it gave.
-
-Names of the contributions are those of the variables of the archive; the axis of the specimens
-stands behind that of the components.
+**Errors that a test shares with others, carried to what it gave.** Names of the contributions are
+those of the variables of the archive; the axis of the specimens stands behind that of the
+components.
 """
 
 from __future__ import annotations

@@ -1,13 +1,13 @@
 r"""Errors that runs share, in the coefficients and values of surfaces.
 
-What shared errors of the runs do to a response surface.
+**What shared errors of the runs do to a response surface**:
 
 .. math:: \delta b = (X^T X)^{-1} X^T
           \left(\delta y - \sum_j \frac{\partial \hat y}{\partial x_j} \delta x_j\right)
 
 An error of a load cell is in the response and in the levels at which it is said to hold.
 
-Surfaces at points with what their runs share: uncertainty, and intervals by one rule.
+**Surfaces at points with what their runs share: uncertainty, and intervals by one rule**:
 
 .. math::
 
@@ -16,8 +16,6 @@ Surfaces at points with what their runs share: uncertainty, and intervals by one
 
 with what a quadratic may miss at the point, delta, the contribution c_k of each shared error to the
 coefficients, and the degrees of freedom of Welch and Satterthwaite.
-
-Errors that the runs of an experiment share, in the coefficients of its surfaces.
 
 References
 ----------

@@ -1,15 +1,5 @@
 """Half cycles between reversals, and which of them make whole cycles.
 
-Standstills that are parts of cycles: dwells at their peaks and valleys.
-
-Runs of extremes that follow each other, between standstills, gaps and moves to other levels.
-
-Ends of a run of half cycles: cut where they ran on, left out where they are no half cycle.
-
-Half cycles: which of the movements between reversals belong to cycling, and from where to where.
-
-Whole cycles from half cycles: which ascending and descending ones belong together.
-
 References
 ----------
 .. [1] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber

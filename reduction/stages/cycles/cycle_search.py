@@ -1,21 +1,5 @@
 """Reversals of a signal, and the cycles between them.
 
-Reversals of a signal by a hysteresis band.
-
-Reversals of a signal by a hysteresis band, without a loop over samples.
-
-Jumps of a channel: drop-outs that last a few samples and make a false reversal at each end.
-
-Cycles as the machine itself counted them.
-
-Finds the cycles of a record, trims their ends and labels the phases.
-
-The part of a branch with a constant rate: the ends, where the machine turns, trimmed.
-
-Phase of the test at each sample: rest, approach, hold or cycling.
-
-Cycles of a record: found, counted, cut at the ends, checked and labelled.
-
 References
 ----------
 .. [1] ASTM E1049-85(2017), "Standard Practices for Cycle Counting in Fatigue Analysis," ASTM

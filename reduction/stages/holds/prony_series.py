@@ -1,8 +1,6 @@
 r"""Prony series of a relaxation: how many terms the record supports, and what they are.
 
-Prony series: the tension it gives, and what a finite ramp leaves of each term.
-
-.. math:: T(t) = T_\infty + \sum_i T_i e^{-t/\tau_i}
+**Prony series: the tension it gives, and what a finite ramp leaves of each term**:
 
 .. math:: T(t) = T_\infty + \sum_i T_i e^{-t/\tau_i}
 

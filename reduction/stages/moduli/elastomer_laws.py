@@ -1,9 +1,8 @@
 r"""Hyperelastic laws fitted to a first loading: neo-Hookean, Mooney-Rivlin, Yeoh, Ogden.
 
-Nominal stress of incompressible hyperelastic laws in three homogeneous deformations.
-
-Every law here is linear in its moduli; only the exponents of Ogden's are not.  With the
-stretch ratio :math:`\lambda` along the pull, the principal stretches are
+**Nominal stress of incompressible hyperelastic laws in three homogeneous deformations.** Every law
+here is linear in its moduli; only the exponents of Ogden's are not.  With the stretch ratio
+:math:`\lambda` along the pull, the principal stretches are
 
 - uniaxial: :math:`\lambda, \lambda^{-1/2}, \lambda^{-1/2}`;
 - equibiaxial: :math:`\lambda, \lambda, \lambda^{-2}`;

@@ -1,14 +1,11 @@
 """Tangent modulus and stress at stated strains on the first loading.
 
-Tangent modulus on the first rise of a record to its greatest strain.
+**Tangent modulus on the first rise of a record to its greatest strain.** Rubber is stiffer the
+first time it is stretched, and again after a hold; neither belongs in a mean over cycles.
 
-Rubber is stiffer the first time it is stretched, and again after a hold; neither
-belongs in a mean over cycles.
-
-Nominal stress at a stated elongation on a first loading: M100 and the like.
-
-The rubber trade calls this stress "modulus" (M100, M300).  It is a stress, never mixed
-with a modulus here: on a curve through the origin it is the secant modulus times the strain.
+**Nominal stress at a stated elongation on a first loading: M100 and the like.** The rubber trade
+calls this stress "modulus" (M100, M300).  It is a stress, never mixed with a modulus here: on a
+curve through the origin it is the secant modulus times the strain.
 
 References
 ----------

@@ -1,18 +1,8 @@
 """Sums of strain and tension by strain bin, and the local regression of the tangent modulus.
 
-Which cycles make one curve, in what blocks they are read, and whose curves are kept.
-
-Sums of samples by the cell they fall in, taken by several threads at a time.
-
-Mean, scatter and envelope over curves that come in blocks.
-
-Sums of strain and tension by curve and strain bin, and the local regression they give.
-
-All that a moving regression needs of the samples is nine sums in each bin. They
-are taken once over the samples; any window is a sum of neighbouring bins, and
-sums of two pieces of a record add up.
-
-A curve on bins, read between them.
+**Sums of strain and tension by curve and strain bin, and the local regression they give.** All that
+a moving regression needs of the samples is nine sums in each bin. They are taken once over the
+samples; any window is a sum of neighbouring bins, and sums of two pieces of a record add up.
 
 References
 ----------

@@ -1,11 +1,8 @@
 """Closed-cycle identity and tension level of each cycle.
 
-Closed-cycle identity: the two branches of a cycle account for the tension it loses.
-
-Tension level of each cycle: the whole loop against the mean loop, as one number.
-
-The peak of a sampled cycle is a poor witness: at 20 samples a cycle the sample nearest the turn
-may miss it.  Every sample of a cycle is compared with the mean branch at its own position.
+**Tension level of each cycle: the whole loop against the mean loop, as one number.** The peak of a
+sampled cycle is a poor witness: at 20 samples a cycle the sample nearest the turn may miss it.
+Every sample of a cycle is compared with the mean branch at its own position.
 
 References
 ----------

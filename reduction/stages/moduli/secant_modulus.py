@@ -1,22 +1,13 @@
 r"""Secant, chord and dynamic moduli, ratios of curves, trends over cycles.
 
-Secant and chord modulus: slopes between two points, not of the curve.
-
-Moduli from the ends of the branches: secant at the peak and chord of each branch, by cycle.
-
-Dynamic modulus, loss factor and energy of a test as one number each, with its amplitude.
-
-Three readings of the slope of a loop, and how far apart they lie.  A loop of loss angle
-:math:`\delta` has, by "the line drawn between the ends of the loop",
+**Dynamic modulus, loss factor and energy of a test as one number each, with its amplitude.** Three
+readings of the slope of a loop, and how far apart they lie.  A loop of loss angle :math:`\delta`
+has, by "the line drawn between the ends of the loop",
 
 .. math::
 
     |K| \cos\delta \;\text{(strain extremes)}, \qquad |K| \;\text{(amplitudes)}, \qquad
     |K| / \cos\delta \;\text{(tension extremes)}
-
-Ratio of two modulus curves on one strain axis, with the interval it lies in.
-
-Peak tension and dynamic modulus against the logarithm of cycle number.
 
 References
 ----------

@@ -1,7 +1,5 @@
 """Piecewise-linear moduli of a branch, the form of Tables 5 and 6.
 
-Continuous piecewise-linear regression with the best breakpoints there are.
-
 References
 ----------
 .. [1] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber

@@ -1,25 +1,15 @@
 """Steps in a series over the cycles: slips of the splices.
 
-Noise of a sampled, digitized series, read from the series itself.
+**Steps in an evenly sampled series, told apart from smooth drift, at a stated false-alarm rate.**
+The series is the sum of a smooth background (constant, drift, logarithmic creep, a softening
+transient at the start), noise, and possibly steps, each of which may take many samples to develop.
+A step is looked for with matched kernels that do not see a local parabola, so that drift and its
+curvature cannot pass for a step; its onset and extent are then found by least squares, exactly, on
+the samples around it.
 
-Where a series most looks as if it steps: matched kernels that are blind to a parabola.
-
-The parts of `reduction.stages.moduli.splice_slip` that work on arrays alone.
-
-A step of an evenly sampled series, and the size of known steps in another series.
-
-Steps in an evenly sampled series, told apart from smooth drift, at a stated false-alarm rate.
-
-The series is the sum of a smooth background (constant, drift, logarithmic creep, a
-softening transient at the start), noise, and possibly steps, each of which may take
-many samples to develop.  A step is looked for with matched kernels that do not see a
-local parabola, so that drift and its curvature cannot pass for a step; its onset and
-extent are then found by least squares, exactly, on the samples around it.
-
-Slip of a splice: steps of tension from cycle to cycle that steady creep does not explain.
-
-A splice that slips lets out length, and the tension at every crosshead position falls; what is
-looked at is the level of each cycle, from `reduction.stages.moduli.loop_balance`.
+**Slip of a splice: steps of tension from cycle to cycle that steady creep does not explain.** A
+splice that slips lets out length, and the tension at every crosshead position falls; what is looked
+at is the level of each cycle, from `reduction.stages.moduli.loop_balance`.
 
 References
 ----------

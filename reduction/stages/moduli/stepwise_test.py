@@ -1,7 +1,5 @@
 """Stepwise tests: dead weights hung one after another, lengths read with a tape.
 
-What readings under hung weights say: gauge length, odd rows, branches, slopes.
-
 References
 ----------
 .. [1] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber

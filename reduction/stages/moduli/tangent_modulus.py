@@ -1,8 +1,7 @@
 """Tangent modulus against strain, of every cycle and over the cycles, branches apart.
 
-Curves of each specimen from the blocks of a record, and how blocks add up.
-
-A block is a run of whole cycles that fits into memory; blocks are reduced side by side.
+**Curves of each specimen from the blocks of a record, and how blocks add up.** A block is a run of
+whole cycles that fits into memory; blocks are reduced side by side.
 
 References
 ----------

@@ -1,7 +1,5 @@
 """The strain grid of a test, and the window of the tangent modulus that moves along it.
 
-The strain grid of a test and the window that moves along it: the stated first pass.
-
 Both are found from the ends of the branches alone, so that a record read in
 pieces gives the grid of the whole.
 

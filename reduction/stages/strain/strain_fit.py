@@ -1,28 +1,10 @@
 """Tape readings at the splice toes, and the strain model that they give.
 
-Tape readings at the splice toes, and the coefficients that they give.
-
-Whether tape readings scatter more than the tape explains, and the variance of a row of them.
-
-Free and splice length of the slack specimen, from the tape.
-
-What the tape readings at the splice toes say, and the tension while they were read.
-
-Coefficients of the strain methods from tape readings, each with its covariance.
-
-A row of marks is three tape readings (near toe, far toe, far thimble) of one
-standard uncertainty.  The relaxed lengths come from the slack rows alone
-(`reduction.stages.strain.strain_fit`), so that strain is zero at slack by construction; the
-stretched rows give the rest.  Where the rows scatter more than the tape explains,
-the covariance is widened (`reduction.stages.strain.strain_fit`).
-
-Power law of splice strain on tension, fitted to tape readings.
-
-Choice of a strain method and its fit to the marks of a specimen.
-
-Marks of one specimen pooled over a campaign, and each strain method fitted to them.
-
-What a reader of the strain has to know about the marks behind it, one sentence each.
+**Coefficients of the strain methods from tape readings, each with its covariance.** A row of marks
+is three tape readings (near toe, far toe, far thimble) of one standard uncertainty.  The relaxed
+lengths come from the slack rows alone, so that strain is
+zero at slack by construction; the stretched rows give the rest.  Where the rows scatter more than
+the tape explains, the covariance is widened.
 
 References
 ----------

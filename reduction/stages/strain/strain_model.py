@@ -1,26 +1,13 @@
 """Strain of the splice-free length by each method, and its inverse.
 
-What a strain method found for one specimen: coefficients, residuals, range.
+**Strain by one constant splice-free share of the length: the method of WHOI-2005-10 itself.** A
+tether ends in a splice at each thimble, and the splices strain less than the rubber between them.
+Thimble-to-thimble length therefore understates the strain of the rubber.  The report takes the mean
+share of the marked positions for the share at every position.  Kept so that its Table 3 can be
+reproduced; the share grows with stretch, so the slope of this strain on position is too small.
 
-Strain by one constant splice-free share of the length: the method of WHOI-2005-10 itself.
-
-A tether ends in a splice at each thimble, and the splices strain less than the
-rubber between them.  Thimble-to-thimble length therefore understates the strain
-of the rubber.  The report takes the mean share of the marked positions for the
-share at every position.  Kept so that its Table 3 can be reproduced; the share
-grows with stretch, so the slope of this strain on position is too small.
-
-Strain of the splice-free length where the splices strain by the tension they carry.
-
-Strain of the splice-free length by position alone, one function a method.
-
-`constant-fraction` is in `reduction.stages.strain.strain_model`, strain by the tension that the
-splices carry in `reduction.stages.strain.strain_model`; how their coefficients are found
-from tape readings is in `reduction.stages.strain.strain_fit`.
-
-Strain at every sample from a fitted model, and where it is an extrapolation.
-
-Length from strain: the strain correction the other way round.
+How the coefficients of each method are found from tape readings is in
+`reduction.stages.strain.strain_fit`.
 
 References
 ----------

@@ -1,16 +1,12 @@
 r"""The six change-in-length properties of rope practice.
 
-What the six change-in-length properties are made from, and what they are.
+**What the six change-in-length properties are made from, and what they are.** A step is as an
+archive keeps it: one specimen, numbers without samples.
 
-A step is as an archive keeps it: one specimen, numbers without samples.
-
-Construction strain of a rope: what its bedding-in left, at equal tension.
-
-The six change-in-length properties of rope practice, from the steps of a programme.
-
-[1]_ names original, static and dynamic stiffness, and construction, polymer and working strain,
-from one programme of many steps.  It was read in its abstract alone, which gives no formula: the
-definitions are this package's reading of the names.
+**The six change-in-length properties of rope practice, from the steps of a programme.** [1]_ names
+original, static and dynamic stiffness, and construction, polymer and working strain, from one
+programme of many steps.  It was read in its abstract alone, which gives no formula: the definitions
+are this package's reading of the names.
 
 ================== =====================================================================
 original stiffness chord of the first rise of a new rope, end to end

@@ -1,14 +1,12 @@
 r"""Pairs of holds of a quasi-static programme.
 
-Stiffness between two held tensions against the logarithm of time, and creep of a hold.
+**Stiffness between two held tensions against the logarithm of time, and creep of a hold**:
 
 .. math:: K_s(t) = \frac{T_h(t) - T_l}{\varepsilon_h(t) - \varepsilon_l}
           = K_{ref} + b \log_{10}(t / t_{ref})
 
 A rope that is held creeps, so the secant between two levels falls with the time for which
 the upper one has been held; a straight line in the logarithm of time is the usual summary.
-
-Pairs of holds of a quasi-static programme: from a lower tension to a higher one.
 
 References
 ----------

@@ -1,7 +1,5 @@
 r"""The three-parameter line: forward model, parameters in closed form, sensitivities.
 
-Forward model of the three-parameter line: one spring beside a spring and a dashpot in series.
-
 With :math:`x = \omega\tau = 2\pi f \tau` and :math:`\tau = N / K_1`,
 
 .. math::
@@ -20,9 +18,8 @@ which holds pi and neither 1, 2, 4 nor 2 pi; omega = 2 pi f gives K_ap within 0.
 of the print, omega = f gives 0.55 to 0.80.  K_0 against its square moves H by 5 % at most
 there, so it is the unit that decides.
 
-Logarithmic sensitivities of the line's parameters to what was measured.
-
-With :math:`A = E' - K_0` and :math:`x = A / E''`, small relative changes obey
+**Logarithmic sensitivities of the line's parameters to what was measured.** With :math:`A = E' -
+K_0` and :math:`x = A / E''`, small relative changes obey
 
 .. math::
 
@@ -42,14 +39,14 @@ so that d ln x / d ln H = -1 - E''^2/(E'A), d ln x / d ln K_ap = (K_ap^2 - 2 E''
 d ln x / d ln Delta T = 2 + 2 E''^2/(E'A) and d ln x / d ln K_0 = -K_0/A: tau carries all the
 error of H, twice that of the amplitude, and K_0/A times that of K_0.
 
-Parameters of a line from the storage and loss spring constants of its loop and from K_0.
+**Parameters of a line from the storage and loss spring constants of its loop and from K_0**:
 
 .. math::
 
     A = E' - K_0, \quad x = \frac{A}{E''}, \quad K_1 = A + \frac{E''^2}{A}, \quad
     \tau = \frac{x}{2 \pi f}
 
-K_1 and tau of a line from its loop and its quasi-static spring constant, in closed form.
+**K_1 and tau of a line from its loop and its quasi-static spring constant, in closed form**:
 
 .. math::
 
@@ -63,11 +60,9 @@ As printed, and as computed.  [5]_ solves its eqs. 1 and 4 at once; eq. 4 is tak
 and the square on K_0 (see the forward model).  Eq. 4 alone has two roots, x and
 [K_0/(K_0 + K_1)]^2/x; eq. 1 decides between them, and the printed values are the higher.
 
-Whether one relaxation time holds over frequency.
-
-At equal loads a line of three parameters has one tau whatever the frequency; a material
-with a loss angle that does not change with frequency gives a tau that falls as 1/f.  With
-one intercept a load,
+**Whether one relaxation time holds over frequency.** At equal loads a line of three parameters has
+one tau whatever the frequency; a material with a loss angle that does not change with frequency
+gives a tau that falls as 1/f.  With one intercept a load,
 
 .. math:: \ln \tau = a_g - n \ln f, \qquad n = 0: \text{one } \tau, \qquad n = 1: \tau \propto 1/f
 

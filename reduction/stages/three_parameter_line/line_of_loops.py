@@ -1,9 +1,5 @@
 """Parameters of the line from loops, cycle by cycle and per run.
 
-What the cycles of a run say of the means that a line is found from: scatter and correlation.
-
-The line of a table of loops: cycle by cycle, and one line a run.
-
 References
 ----------
 .. [1] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty

@@ -1,9 +1,5 @@
 """What the line stage returns.
 
-What the line stage hands on: parameters of loops, and a slow pull.
-
-What the programmes share: one break strength a specimen, and means that pass over gaps.
-
 References
 ----------
 .. [1] CG-D-39-80, Table 2 (rated break strengths).

@@ -1,15 +1,8 @@
 """Steps of a rope laboratory's programme: bedding-in, stiffness, failure, tensile tests.
 
-Programmes of a rope laboratory, from loops: bedding-in and dynamic stiffness.
-
-Each number also stands divided by the rated break strength.  What a programme asks for
-(levels, numbers of cycles) is the laboratory's; nothing here is taken from a standard.
-
-Cycles to failure of a rope, from its loops.
-
-Tensile strength and strain at failure from the log of a pull to the end.
-
-What one step of a rope laboratory's programme gave, whichever step it was.
+**Programmes of a rope laboratory, from loops: bedding-in and dynamic stiffness.** Each number also
+stands divided by the rated break strength.  What a programme asks for (levels, numbers of cycles)
+is the laboratory's; nothing here is taken from a standard.
 
 References
 ----------

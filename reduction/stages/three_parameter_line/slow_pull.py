@@ -1,20 +1,8 @@
 r"""Slow pulls: load-strain curve, its cubic, and quasi-static spring constant.
 
-Where a slow pull loads the line: from the rise out of slack to the peak.
-
-Tensions and shares of the break strength at which slow pulls are laid out.
-
-Means of a slow pull over equal steps of tension, and what a polynomial of them is worth.
-
-Curve through these means, by which K_0 is read: a cubic spline, with what it misses of the slope.
-
-Cubic of strain against tension: its slope, where it rises, and the cubic of K_0.
+**Cubic of strain against tension: its slope, where it rises, and the cubic of K_0**:
 
 .. math:: \varepsilon = A + B T + C T^2 + D T^3, \qquad K_0 = 1 / (B + 2 C T + 3 D T^2)
-
-Slow pull of a line: load-strain cubic, and the quasi-static spring constant as a local slope.
-
-.. math:: \varepsilon = A + B T + C T^2 + D T^3, \qquad K_0(T) = \frac{d T}{d\varepsilon}
 
 As printed, and as computed.  [5]_ prints two forms that do not quite agree: cubics of strain
 (Tables 8 and 9) and cubics of K_0 (Tables 6 and 7).  Here both forms are given beside K_0, which
@@ -24,8 +12,6 @@ A + B T^2 + C T^3 + D T^4, times 1e-4; the form that gives its numbers is Table 
 A + B T + C T^2 + D T^3, times 1e4.  Signs and powers are lost in Tables 6, 7 and 9 (nylon double
 braid D 3.26 for 32.6, nylon plaited C, polyester C), and polyester plaited line has no K_0 row at
 all.
-
-What a slow pull gives: K_0 at a mean tension, strain at a tension, one pull against another.
 
 References
 ----------
