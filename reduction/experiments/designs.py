@@ -11,7 +11,7 @@ the factors :math:`X_1 .. X_k` in coded units,
     y = B_1 + \sum_j B_{1+j} X_j^2 + \sum_j B_{1+k+j} X_j
         + \sum_{i<j} B_{..} X_i X_j
 
-With frequency, mean tension and tension amplitude that is B1..B10 of [4]_, eq. 5: the mean,
+With frequency, mean tension and tension amplitude that is B1..B10 of [3]_, eq. 5: the mean,
 the squares, the linear terms, then f Tm, f dT and Tm dT.  The squares stand before the linear
 terms; other programs print them last.  As printed, eq. 5a sets the physical factors beside the
 coefficients of the coded ones; as computed, a coefficient belongs to the units it was found in.
@@ -25,16 +25,15 @@ fraction of the rated break strength, or (an amplitude) a fraction of the run's 
 
 References
 ----------
-.. [1] G. E. P. Box and D. W. Behnken, "Some new three level designs for the study of
-   quantitative variables," Technometrics 2(4), 1960, Table 1.
-.. [3] CG-D-39-80 (three factors, sec. 4.3; screening in twelve runs, Appendix A).
-.. [4] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
-   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, eq. 5, Tables 3-5 and 11-19.
-.. [6] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
-   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, App. C, eqs. 5 and 5a.
-.. [7] R. H. Myers and D. C. Montgomery, Response Surface Methodology, 2nd ed. New York: Wiley,
+.. [1] G. E. P. Box and D. W. Behnken, "Some new three level designs for the study of quantitative
+   variables," Technometrics 2(4), 1960, Table 1.
+.. [2] CG-D-39-80 (three factors, sec. 4.3; screening in twelve runs, Appendix A).
+.. [3] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
+   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, eq. 5, Tables 3-5 and 11-19; App. C, eqs. 5 and
+   5a.
+.. [4] R. H. Myers and D. C. Montgomery, Response Surface Methodology, 2nd ed. New York: Wiley,
    2002, example 7.5, p. 347.
-.. [8] CG-D-39-80, Tables 1, 2 and A-1 (levels in per cent of break strength), App. C (coding).
+.. [5] CG-D-39-80, Tables 1, 2 and A-1 (levels in per cent of break strength), App. C (coding).
 """
 
 from __future__ import annotations
@@ -132,7 +131,7 @@ def box_behnken(n_factors: int, *, n_centre: int | None = None) -> Design:
 
     Examples
     --------
-    The fifteen runs of [3]_.
+    The fifteen runs of [2]_.
 
     >>> box_behnken(3).n_runs
     15
@@ -193,7 +192,7 @@ def plackett_burman(n_factors: int, *, n_runs: int | None = None) -> Design:
 
     Examples
     --------
-    Five factors in twelve runs leave six dummies, as in Appendix A of [3]_.
+    Five factors in twelve runs leave six dummies, as in Appendix A of [2]_.
 
     >>> design = plackett_burman(5)
     >>> design.coded.shape, design.dummy.shape
@@ -411,7 +410,7 @@ def coded_from_engineering(levels: ArrayLike, *, low: ArrayLike, high: ArrayLike
 
     Notes
     -----
-    Source: [6]_, App. C.
+    Source: [3]_, App. C.
 
     Examples
     --------
@@ -449,7 +448,7 @@ def engineering_from_coded(coded: ArrayLike, *, low: ArrayLike, high: ArrayLike)
 
     Notes
     -----
-    Source: [6]_, App. C.
+    Source: [3]_, App. C.
 
     Examples
     --------
@@ -494,7 +493,7 @@ def engineering_matrix(exponents: Integers, *, low: ArrayLike, high: ArrayLike) 
 
     Examples
     --------
-    Example 7.5 of [7]_, temperature 175 +- 25: 62 + X - 7.375 X^2 is, in degrees,
+    Example 7.5 of [4]_, temperature 175 +- 25: 62 + X - 7.375 X^2 is, in degrees,
 
     >>> matrix = engineering_matrix(np.array([[0], [2], [1]]), low=[150.0], high=[200.0])
     >>> print((matrix @ [62.0, -7.375, 1.0]).round(4))
@@ -640,13 +639,13 @@ def engineering_levels(
 
     Notes
     -----
-    Source: [8]_, Appendix C, solved for the level.  With the amplitude as a fraction of
+    Source: [5]_, Appendix C, solved for the level.  With the amplitude as a fraction of
     the mean tension no run reaches zero tension, but the amplitude in newtons is then a
     product of two factors: a surface is to be fitted in the fraction.
 
     Examples
     --------
-    Nylon double braid 1/2 in of [8]_, break strength 6400 lb: 768 to 1920 lb, mean 1344.
+    Nylon double braid 1/2 in of [5]_, break strength 6400 lb: 768 to 1920 lb, mean 1344.
 
     >>> mean = FactorLevels("mean_tension", 0.12, 0.30, "rated_break_strength")
     >>> print(engineering_levels([[-1.0], [0.0], [1.0]], (mean,), rated_break_strength=6400)[:, 0])

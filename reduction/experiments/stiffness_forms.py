@@ -12,15 +12,13 @@ break strength MBL, the period :math:`T` in seconds and the mean tension :math:`
 
 References
 ----------
-.. [1] C. M. Hurvich and C.-L. Tsai, "Regression and time series model selection in small
-   samples," Biometrika 76(2), 1989.
+.. [1] C. M. Hurvich and C.-L. Tsai, "Regression and time series model selection in small samples,"
+   Biometrika 76(2), 1989 (AICc).
 .. [2] C. J. M. Del Vecchio, "Light Weight Materials for Deep Water Moorings," PhD thesis,
    University of Reading, 1992.
 .. [3] MoorPy, "Variable rope stiffness behavior" (line library keys EAd_MBL and EAd_MBL_Lm);
    MoorDyn, line type with ``EA|alphaMBL|vbeta``.
 .. [4] CG-D-39-80, eq. 5: the quadratic surface of the same runs.
-.. [5] C. M. Hurvich and C.-L. Tsai, "Regression and time series model selection in small
-   samples," Biometrika 76(2), 1989 (AICc).
 """
 
 from __future__ import annotations
@@ -422,7 +420,7 @@ def compare_stiffness_forms(
     Notes
     -----
     A run without one of its levels is left out of all three.  What the amplitude is makes
-    no difference here: it scales the coefficient c alone.  AICc [5]_ counts the scatter as
+    no difference here: it scales the coefficient c alone.  AICc [1]_ counts the scatter as
     a parameter: on fifteen runs ten terms pay 110 for their number, four pay 17 and two
     8, so that a form may win by it though its r2 is less.
 

@@ -15,14 +15,8 @@ that cover the cycle, and whether a tether goes slack.
 References
 ----------
 .. [1] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
-   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
-   MA, Tech. Rep. WHOI-2005-10, Dec. 2005, sec. 2.3.2.
-.. [2] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
-   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
-   MA, Tech. Rep. WHOI-2005-10, Dec. 2005, sec. 2.3, Table 3.
-.. [3] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
-   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
-   MA, Tech. Rep. WHOI-2005-10, Dec. 2005, sec. 2.3.2, 2.3.3.
+   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole, MA,
+   Tech. Rep. WHOI-2005-10, Dec. 2005, sec. 2.3.2; sec. 2.3, Table 3; sec. 2.3.2, 2.3.3.
 """
 
 from __future__ import annotations
@@ -110,7 +104,7 @@ def _equal_tethers(tether: _Tether, n_tethers: int) -> tuple[_Tether, ...]:
 
     Notes
     -----
-    Assemblies of [1]_ have one, four and six (sec. 2.3.2).
+    Assemblies of [1]_, sec. 2.3.2 have one, four and six (sec. 2.3.2).
 
     Examples
     --------
@@ -190,7 +184,7 @@ def stated_model(splices: StatedSplices, free_length: float, *, name: str) -> St
     Notes
     -----
     The two laws are those of the strain correction: a splice that strains by a share of what the
-    rubber does, or by its tension ([2]_ has the first one from Table 3).
+    rubber does, or by its tension ([1]_, sec. 2.3, Table 3 has the first one from Table 3).
 
     Examples
     --------
@@ -219,7 +213,7 @@ def _deployed_model(model: StrainModel, free_length: float | None) -> StrainMode
     -----
     By gauge-length a position may be a displacement from anywhere: of a tether without splices
     the free length is the length.  See `reduction.stages.strain.strain_model.with_free_length` for
-    the rest; a third of a tether of [2]_, Table 3, is splices.
+    the rest; a third of a tether of [1]_, Table 3, is splices.
 
     Examples
     --------
@@ -316,7 +310,7 @@ def _assemble(tethers: Sequence[_Tether], parts: Sequence[SeriesPart] = ()) -> _
     Notes
     -----
     Bridles stay parallel; weight, buoyancy, bending and the twist of the assembly are not in it
-    ([2]_, sec. 2.3.2: a swivel has to turn, or the tethers do not share).  A part is straight at
+    ([1]_, sec. 2.3.2: a swivel has to turn, or the tethers do not share).  A part is straight at
     zero tension.  The splices stretch by the tension they carry, as in the test: the length is
     the inverse of the strain correction.  The uncertainty is that of the curve, which equal
     tethers share in full; curves that differ share what their tests do, by its sign, and are
@@ -487,7 +481,7 @@ def _working_point(
 
     Notes
     -----
-    [3]_, sec. 2.3.2: a tether must not be allowed to go slack, since it may then tangle and be
+    [1]_, sec. 2.3.2: a tether must not be allowed to go slack, since it may then tangle and be
     cut.  The longest does so first, while the assembly is still taut.
 
     Examples
@@ -573,8 +567,8 @@ def _worst_sharing(
     Notes
     -----
     The load of a tether falls with its own length and rises with that of every other one, so the
-    worst case is at a corner: one short and all others long, or the other way round.  [3]_ has
-    no tolerance; it says that an assembly that twists does not share (sec. 2.3.2).
+    worst case is at a corner: one short and all others long, or the other way round.  [1]_, sec.
+    2.3.2, 2.3.3 has no tolerance; it says that an assembly that twists does not share (sec. 2.3.2).
 
     Examples
     --------

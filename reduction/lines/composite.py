@@ -22,28 +22,15 @@ over to pieces of a kind that goes before.  Without the constraint the answer is
 References
 ----------
 .. [1] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
-   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
-   MA, Tech. Rep. WHOI-2005-10, Dec. 2005, sec. 4, Figures 21, 31, 35.
-.. [2] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
-   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
-   MA, Tech. Rep. WHOI-2005-10, Dec. 2005, sec. 4.8, Table 4.
-.. [3] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
+   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole, MA,
+   Tech. Rep. WHOI-2005-10, Dec. 2005, sec. 4, Figures 21, 31, 35; sec. 4.8, Table 4; Figure 35;
+   sec. 4.8, Figures 31, 35.
+.. [2] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
    Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.4.2.
-.. [4] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
-   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
-   MA, Tech. Rep. WHOI-2005-10, Dec. 2005, Figure 35.
-.. [5] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
-   in measurement," 5.2, F.1.2.3 (correlation by common influence quantities).
-.. [6] R. E. Barlow, D. J. Bartholomew, J. M. Bremner and H. D. Brunk, "Statistical Inference
-   under Order Restrictions," Wiley, 1972 (isotonic regression, and with bounds).
-.. [7] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
-   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
-   MA, Tech. Rep. WHOI-2005-10, Dec. 2005, sec. 4.8.
-.. [8] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
-   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
-   MA, Tech. Rep. WHOI-2005-10, Dec. 2005, sec. 4.8, Figures 31, 35.
-.. [9] R. E. Barlow, D. J. Bartholomew, J. M. Bremner and H. D. Brunk, "Statistical Inference
-   under Order Restrictions," Wiley, 1972 (isotonic regression).
+.. [3] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty in
+   measurement," 5.2, F.1.2.3 (correlation by common influence quantities).
+.. [4] R. E. Barlow, D. J. Bartholomew, J. M. Bremner and H. D. Brunk, "Statistical Inference under
+   Order Restrictions," Wiley, 1972 (isotonic regression, and with bounds).
 """
 
 from __future__ import annotations
@@ -334,7 +321,8 @@ def piece_of_pull(
 
     Notes
     -----
-    A slow pull ([3]_) is a static test that only rises; the loads of [2]_ were hung.
+    A slow pull ([2]_) is a static test that only rises; the loads of [1]_, sec. 4.8, Table 4 were
+    hung.
 
     Examples
     --------
@@ -376,12 +364,12 @@ def piece_of_steps(
     Notes
     -----
     The relative uncertainty is that of the secant modulus E_s: of the weight and of the reading
-    of the length.  The diameter is in the modulus and in no tension.  Table 4 of [2]_ has a row
+    of the length.  The diameter is in the modulus and in no tension.  Table 4 of [1]_ has a row
     of each kind that is left out.
 
     Examples
     --------
-    See `tests/unit/test_lookup_staticpiece.py`, which reads Table 4 of [2]_.
+    See `tests/unit/test_lookup_staticpiece.py`, which reads Table 4 of [1]_.
     """
     kept = (steps.branch == BRANCH_VALUES[branch]) & ~steps.is_inconsistent & ~steps.is_odd
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -412,7 +400,7 @@ def _between_pieces(
     Notes
     -----
     First order in the errors (module).  Never below zero: differences that the errors explain
-    leave nothing ([4]_ shows some that they do not).
+    leave nothing ([1]_, Figure 35 shows some that they do not).
 
     Examples
     --------
@@ -457,7 +445,7 @@ def _variance_apart(pieces: Sequence[CurvePiece], strain: Floats, tension: Float
     -----
     An error that is in all pieces moves their mean by as much, whatever their weights, and says
     nothing of which of them to trust.  Of each error what all of them have is the share of the
-    tension that is nearest to zero, and none where the signs differ ([5]_, F.1.2.3).  Beyond its
+    tension that is nearest to zero, and none where the signs differ ([3]_, F.1.2.3).  Beyond its
     ends a piece has the share of its end, so that no weight jumps where a piece begins.
 
     Examples
@@ -488,7 +476,8 @@ def _pulls_within_loops(
 
     Notes
     -----
-    Another state of the material, not another reading of it: nothing is taken off ([4]_).
+    Another state of the material, not another reading of it: nothing is taken off ([1]_, Figure
+    35).
 
     Examples
     --------
@@ -555,7 +544,7 @@ def _blend_pieces(
 
     Notes
     -----
-    Isotonic regression ([6]_) of the mean less the integral of the least slope, with the weight
+    Isotonic regression ([4]_) of the mean less the integral of the least slope, with the weight
     of all pieces there, bounded below by zero tension: the least squares solution.  Where one
     piece is alone its slope is above a share of itself, and nothing is moved.
 
@@ -727,7 +716,7 @@ def _quality_warning(blend: _Blend) -> tuple[str, Bools]:
 
     Notes
     -----
-    What all pieces share moves curve and pieces alike, and is no excuse ([7]_, Figure 35).
+    What all pieces share moves curve and pieces alike, and is no excuse ([1]_, Figure 35).
 
     Examples
     --------
@@ -760,7 +749,7 @@ def _notes_of(
 
     Notes
     -----
-    Shares of tension, since pieces of rubber differ by a share of it ([7]_).
+    Shares of tension, since pieces of rubber differ by a share of it ([1]_, sec. 4.8).
 
     Examples
     --------
@@ -917,7 +906,7 @@ def _composite_curve(
     is between them (another state of the rubber), so s decides, and it is one number of a
     kind: the weights are continuous, and so is the mean.
 
-    *Monotony.*  Isotonic regression ([9]_) with the weight of all pieces there, of the mean less
+    *Monotony.*  Isotonic regression ([4]_) with the weight of all pieces there, of the mean less
     the integral of the least slope: the curve is nowhere softer than a share of the softest
     piece there, and where one piece is alone it is that piece.
 
@@ -927,7 +916,7 @@ def _composite_curve(
 
     *Uncertainty.*  That of a mixture: the mean variance of the pieces, with the greater of their
     variance there and (s T)^2, and the square of the change.  It does not fall with the number
-    of pieces, since they are not draws of one state ([8]_, Figure 35).  What pieces share (a load
+    of pieces, since they are not draws of one state ([1]_, Figure 35).  What pieces share (a load
     cell) is averaged by its sign, error by error, and added as squares in the end; s is judged
     without it.
 

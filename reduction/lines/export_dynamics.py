@@ -9,7 +9,7 @@ they share, and the sensitivity s_i of the parameter.  A load cell is in all thr
 K_1 as it is, and leaves tau alone.
 
 **K_0, K_1 and tau of a line for export, such that it gives back its own K_ap and H.** K_1 and tau
-have surfaces of their own in [4]_, fitted to what was identified run by run.  Beside the surfaces
+have surfaces of their own in [1]_, fitted to what was identified run by run.  Beside the surfaces
 of K_ap and H they are a second fit of the same runs, and the two do not agree: over the tested
 levels of the printed lines the first give K_ap from 0.7 to 2.3 times the second.  K_ap and H are
 what was measured, so K_1 and tau are identified from them at the point that is asked for.
@@ -17,11 +17,9 @@ what was measured, so K_1 and tau are identified from them at the point that is 
 References
 ----------
 .. [1] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
-   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, eqs. 1-4.
-.. [3] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
-   in measurement," 5.2.
-.. [4] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
-   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, eqs. 1-4, Tables 3-19.
+   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, eqs. 1-4; eqs. 1-4, Tables 3-19.
+.. [2] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty in
+   measurement," 5.2.
 """
 
 from __future__ import annotations
@@ -60,7 +58,7 @@ _SLOPE = 1e-4  # of a mean tension, over which the slope of a working curve is t
 
 @dataclass(frozen=True)
 class Viscoelasticity:
-    """A spring K_0 beside a spring K_1 in series with a dashpot: three parameters of [1]_.
+    """A spring K_0 beside a spring K_1 in series with a dashpot: the three parameters of [1]_.
 
     Parameters
     ----------
@@ -525,7 +523,7 @@ def _half_widths(
 
     Notes
     -----
-    First order ([3]_), by the logarithmic derivatives of eqs. 1 and 4 of [1]_.  The levels of a
+    First order ([2]_), by the logarithmic derivatives of eqs. 1 and 4 of [1]_.  The levels of a
     design value are true ones: amplitude and frequency are exact, and what a wrong load cell does
     to them is in the contributions to the surfaces.
 
@@ -609,7 +607,7 @@ def line_dynamics(
 
     Notes
     -----
-    K_1 and tau are identified from K_ap, H and K_0 ([4]_, eqs. 1 and 4 solved at once), as
+    K_1 and tau are identified from K_ap, H and K_0 ([1]_, eqs. 1 and 4 solved at once), as
     `reduction.stages.three_parameter_line.line_model.identify_by_amplitude` does for a run; so the
     exported line gives back K_ap and H at that point.  Where there is no such line (E' not above
     K_0, or H not above zero), the printed K_1 and tau take their place as long as K_ap of them is

@@ -2,13 +2,10 @@
 
 References
 ----------
-.. [2] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
-   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
-   MA, Tech. Rep. WHOI-2005-10, Dec. 2005, sec. 2.3.2.
-.. [3] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
-   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
-   MA, Tech. Rep. WHOI-2005-10, Dec. 2005, sec. 4.8.
-.. [4] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
+.. [1] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
+   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole, MA,
+   Tech. Rep. WHOI-2005-10, Dec. 2005, sec. 2.3.2; sec. 4.8.
+.. [2] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
    Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, eqs. 1-4, Tables 6, 8, 14, 17.
 """
 
@@ -450,7 +447,7 @@ def line_from_assembly(line: DeployedLine, **stated: Any) -> ExportLine:
     Notes
     -----
     Diameter and mass of several tethers side by side are not those of one, and are left to be
-    stated ([2]_ prints none).
+    stated ([1]_, sec. 2.3.2 prints none).
     """
     given, origins = _known_of(stated)
     deployed, assembly = line.deployed, line.deployed.assembly
@@ -626,7 +623,8 @@ def line_from_composite(source: PieceSource, curve: CompositeCurve, **stated: An
 
     Notes
     -----
-    Tested from the first node of a piece to the last; a gap between is in the notes ([3]_).
+    Tested from the first node of a piece to the last; a gap between is in the notes ([1]_, sec.
+    4.8).
     """
     source = used_of(source, curve)
     given, origins = _known_of(stated)
@@ -696,7 +694,7 @@ def line_from_lookup(
     -----
     Static and dynamic stiffness are those of `reduction.lines.export_dynamics.line_dynamics`: K_0
     and
-    K_0 + K_1 at the mean tension, N = K_1 tau ([4]_), identified so that the line gives back its
+    K_0 + K_1 at the mean tension, N = K_1 tau ([2]_), identified so that the line gives back its
     own K_ap and H.
     """
     curve = _trusted(source, _curve_of(source, branch))

@@ -19,15 +19,13 @@ contributions of one error are put together first and squared then.
 References
 ----------
 .. [1] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
-   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, Tables 6-9.
+   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, Tables 6-9; sec. 4.4.1.
 .. [2] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
-   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
-   MA, Tech. Rep. WHOI-2005-10, Dec. 2005, Tables 5, 6.
-.. [3] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
-   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.4.1.
-.. [4] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
-   in measurement," 5.2, F.1.2.3 (correlation by common influence quantities), G.4.1 (effective
-   degrees of freedom, Welch and Satterthwaite).
+   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole, MA,
+   Tech. Rep. WHOI-2005-10, Dec. 2005, Tables 5, 6.
+.. [3] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty in
+   measurement," 5.2, F.1.2.3 (correlation by common influence quantities), G.4.1 (effective degrees
+   of freedom, Welch and Satterthwaite).
 """
 
 from __future__ import annotations
@@ -92,8 +90,9 @@ def evaluate_curve(curve: LineCurve, at: ArrayLike) -> _CurvePoints:
 
     Notes
     -----
-    Source: [1]_ for polynomials, [2]_ for moduli over strain.  Between points every part of the
-    uncertainty is on a straight line, as the value is: neighbours are of the same cycles.
+    Source: [1]_, Tables 6-9 for polynomials, [2]_ for moduli over strain.  Between points every
+    part of the uncertainty is on a straight line, as the value is: neighbours are of the same
+    cycles.
 
     Examples
     --------
@@ -163,9 +162,9 @@ def interval_between_lines(
 
     Notes
     -----
-    [3]_ gives the scatter as typical, a tenth for new lines and half for exposed ones, without a
-    number of degrees of freedom: those of the surface are taken for it as well.  The interval is
-    never narrower than the one it is made from.
+    [1]_, sec. 4.4.1 gives the scatter as typical, a tenth for new lines and half for exposed ones,
+    without a number of degrees of freedom: those of the surface are taken for it as well.  The
+    interval is never narrower than the one it is made from.
 
     Examples
     --------
@@ -225,7 +224,7 @@ def shared_half_width(contribution: ArrayLike) -> Floats:
 
     Notes
     -----
-    Normal, as the errors of instruments are taken ([4]_).
+    Normal, as the errors of instruments are taken ([3]_).
 
     Examples
     --------
@@ -259,7 +258,7 @@ def own_half_width(found: DesignValues, end: End) -> Floats:
     Notes
     -----
     See the module.  Of an interval that reaches farther to one side the same share of each is the
-    value's own; the scatter between lines is ([4]_).  Where the parts are not known an interval
+    value's own; the scatter between lines is ([3]_).  Where the parts are not known an interval
     counts as normal, less what is shared.
 
     Examples
@@ -313,7 +312,7 @@ def is_even(found: DesignValues) -> bool:
 
     Notes
     -----
-    Differences and products of such values have the degrees of freedom of all their parts ([4]_).
+    Differences and products of such values have the degrees of freedom of all their parts ([3]_).
 
     Examples
     --------
@@ -354,7 +353,7 @@ def half_width_of_parts(
 
     Notes
     -----
-    Welch and Satterthwaite ([4]_).
+    Welch and Satterthwaite ([3]_).
 
     Examples
     --------
@@ -395,7 +394,7 @@ def shared_of(values: Mapping[str, DesignValues]) -> Contributions:
 
     Notes
     -----
-    Errors of one source and one ``of`` are one error ([4]_).
+    Errors of one source and one ``of`` are one error ([3]_).
 
     Examples
     --------

@@ -3,14 +3,10 @@ r"""Looks up design values of a line from its surfaces and curves.
 References
 ----------
 .. [1] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
-   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 3.4, 5.0.
+   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 3.4, 5.0; eq. 5, App. C; sec. 4.4.
 .. [2] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
-   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
-   MA, Tech. Rep. WHOI-2005-10, Dec. 2005, sec. 2.3.2.
-.. [4] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
-   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, eq. 5, App. C.
-.. [6] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
-   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.4.
+   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole, MA,
+   Tech. Rep. WHOI-2005-10, Dec. 2005, sec. 2.3.2.
 """
 
 from __future__ import annotations
@@ -101,10 +97,10 @@ def cycle_loads(
 
     Notes
     -----
-    Source: [1]_: at most 60 % of the break strength where a line is always loaded, 30 % where it
-    goes slack.  Between 3 % and 62 % (sec. 5.0) it kept its strength, from zero to above 30 % it
-    failed; nothing was tested with less than 3 %, and the lower share is taken there.  Of a line
-    that lost strength the share is that of what it has left.
+    Source: [1]_, sec. 3.4, 5.0: at most 60 % of the break strength where a line is always loaded,
+    30 % where it goes slack.  Between 3 % and 62 % (sec. 5.0) it kept its strength, from zero to
+    above 30 % it failed; nothing was tested with less than 3 %, and the lower share is taken there.
+    Of a line that lost strength the share is that of what it has left.
 
     Examples
     --------
@@ -157,9 +153,9 @@ def _loads_of_line(
 
     Notes
     -----
-    The rule of [1]_ is of nylon and polyester, where zero tension lowers what a line stands; a
-    tether of rubber must not go slack at all, since it tangles and is cut ([2]_).  Beyond a
-    curve that is given by points the tension is not known, and no rule can be checked.
+    The rule of [1]_, sec. 3.4, 5.0 is of nylon and polyester, where zero tension lowers what a line
+    stands; a tether of rubber must not go slack at all, since it tangles and is cut ([2]_).  Beyond
+    a curve that is given by points the tension is not known, and no rule can be checked.
 
     Examples
     --------
@@ -327,8 +323,9 @@ def sigma_from_r2(coefficient: ArrayLike, r2: float, *, n_factors: int = 3) -> f
     Notes
     -----
     Least squares with a mean leaves the mean of the fitted values that of the runs, so that the
-    explained sum of squares follows from the design, which [4]_ states, and the coefficients.  The
-    rounding of r2 moves it: 0.985 stands for 0.9845 to 0.9855, sigma for +-1.7 %.
+    explained sum of squares follows from the design, which [1]_, eq. 5, App. C states, and the
+    coefficients.  The rounding of r2 moves it: 0.985 stands for 0.9845 to 0.9855, sigma for +-1.7
+    %.
 
     Examples
     --------
@@ -669,8 +666,8 @@ def look_up(
 
     Notes
     -----
-    [6]_ calls the range of its levels the range of usefulness.  Inside it, the corners of a
-    Box-Behnken cube are farther from the runs than any run is: they are flagged as untested.
+    [1]_, sec. 4.4 calls the range of its levels the range of usefulness.  Inside it, the corners of
+    a Box-Behnken cube are farther from the runs than any run is: they are flagged as untested.
 
     Examples
     --------

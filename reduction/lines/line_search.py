@@ -15,11 +15,9 @@ is Student's t of the degrees of freedom of all parts together.
 References
 ----------
 .. [1] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
-   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, Table 2.
-.. [2] G. Y. Zou and A. Donner, "Construction of Confidence Limits about Effect Measures: A
-   General Approach," Statistics in Medicine, vol. 27, no. 10, pp. 1693-1702, 2008.
-.. [3] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
-   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.4.1, Tables 4, 5.
+   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, Table 2; sec. 4.4.1, Tables 4, 5.
+.. [2] G. Y. Zou and A. Donner, "Construction of Confidence Limits about Effect Measures: A General
+   Approach," Statistics in Medicine, vol. 27, no. 10, pp. 1693-1702, 2008.
 """
 
 from __future__ import annotations
@@ -64,8 +62,8 @@ def find_lines(
 
     Notes
     -----
-    Sizes are nominal ([1]_).  Sizes in inches are 1/16 in or more apart: the default joins names
-    of one size in two systems, and parts two sizes up to 2 in.
+    Sizes are nominal ([1]_, Table 2).  Sizes in inches are 1/16 in or more apart: the default joins
+    names of one size in two systems, and parts two sizes up to 2 in.
 
     Examples
     --------
@@ -323,12 +321,12 @@ def compare_values(first: DesignValues, second: DesignValues) -> LineDifference:
     values of the same degrees of freedom it is Student's t of those times the root of the summed
     variances, which is never below 95 %.  What is said of two surfaces is said of the lines that
     were tested; that lines of the two kinds differ is said by the intervals of the kinds alone,
-    which hold how lines of one kind differ among each other ([3]_, sec. 4.4.1: K_ap of new ones by
+    which hold how lines of one kind differ among each other ([1]_, sec. 4.4.1: K_ap of new ones by
     about 10 %, after years in the sea by 50 %).
 
     Examples
     --------
-    Table 5 of [3]_: plaited polyester line is 30 % stiffer after four years.
+    Table 5 of [1]_: plaited polyester line is 30 % stiffer after four years.
 
     >>> from reduction.lines.line_lookup import look_up
     >>> from reduction.lines.lookup_product import LineCurve, LineSource

@@ -3,12 +3,11 @@
 References
 ----------
 .. [1] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
-   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, eq. 5, App. C.
-.. [2] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
-   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.4 ("range of usefulness"), 3.4.
-.. [3] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
-   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
-   MA, Tech. Rep. WHOI-2005-10, Dec. 2005, sec. 2.3.2.
+   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, eq. 5, App. C; sec. 4.4 ("range of usefulness"),
+   3.4.
+.. [2] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
+   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole, MA,
+   Tech. Rep. WHOI-2005-10, Dec. 2005, sec. 2.3.2.
 """
 
 from __future__ import annotations

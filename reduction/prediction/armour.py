@@ -60,27 +60,10 @@ References
 ----------
 .. [1] H. Wang, Z. Yang, J. Yan, G. Wang, D. Shi, B. Zhou and Y. Li, "Prediction Method and
    Validation Study of Tensile Performance of Reinforced Armor Layer in Marine Flexible
-   Pipe/Cables," J. Mar. Sci. Eng., vol. 10, 642, 2022.
-.. [2] H. Wang, Z. Yang, J. Yan, G. Wang, D. Shi, B. Zhou and Y. Li, "Prediction Method and
-   Validation Study of Tensile Performance of Reinforced Armor Layer in Marine Flexible
-   Pipe/Cables," J. Mar. Sci. Eng., vol. 10, 642, 2022, sec. 2.
-.. [3] H. Wang, Z. Yang, J. Yan, G. Wang, D. Shi, B. Zhou and Y. Li, "Prediction Method and
-   Validation Study of Tensile Performance of Reinforced Armor Layer in Marine Flexible
-   Pipe/Cables," J. Mar. Sci. Eng., vol. 10, 642, 2022, sec. 3.
-.. [4] H. Wang, Z. Yang, J. Yan, G. Wang, D. Shi, B. Zhou and Y. Li, "Prediction Method and
-   Validation Study of Tensile Performance of Reinforced Armor Layer in Marine Flexible
-   Pipe/Cables," J. Mar. Sci. Eng., vol. 10, 642, 2022, sec. 3.1.
-.. [5] A. E. H. Love, A Treatise on the Mathematical Theory of Elasticity, 4th ed., Cambridge
-   Univ. Press, 1944, ch. 18-19.
-.. [6] H. Wang, Z. Yang, J. Yan, G. Wang, D. Shi, B. Zhou and Y. Li, "Prediction Method and
-   Validation Study of Tensile Performance of Reinforced Armor Layer in Marine Flexible
-   Pipe/Cables," J. Mar. Sci. Eng., vol. 10, 642, 2022, sec. 5.
-.. [7] H. Wang, Z. Yang, J. Yan, G. Wang, D. Shi, B. Zhou and Y. Li, "Prediction Method and
-   Validation Study of Tensile Performance of Reinforced Armor Layer in Marine Flexible
-   Pipe/Cables," J. Mar. Sci. Eng., vol. 10, 642, 2022, sec. 3.1 and 5.3.
-.. [8] H. Wang, Z. Yang, J. Yan, G. Wang, D. Shi, B. Zhou and Y. Li, "Prediction Method and
-   Validation Study of Tensile Performance of Reinforced Armor Layer in Marine Flexible
-   Pipe/Cables," J. Mar. Sci. Eng., vol. 10, 642, 2022, sec. 5.3.
+   Pipe/Cables," J. Mar. Sci. Eng., vol. 10, 642, 2022, sec. 2; sec. 3; sec. 3.1; sec. 5; sec. 3.1
+   and 5.3; sec. 5.3.
+.. [2] A. E. H. Love, A Treatise on the Mathematical Theory of Elasticity, 4th ed., Cambridge Univ.
+   Press, 1944, ch. 18-19.
 """
 
 from __future__ import annotations
@@ -312,7 +295,7 @@ def _fill_factor(design: ArmourDesign) -> Floats:
 
     Notes
     -----
-    Geometry of [2]_, Figure 2.
+    Geometry of [1]_, Figure 2.
 
     Examples
     --------
@@ -333,8 +316,8 @@ def _wire_gap(design: ArmourDesign) -> Floats:
     -----
     The angle of the nearest point is the root of :math:`\sin\psi = \cot^2\!\alpha(2\pi/n - \psi)`.
     The difference of the two sides is concave up to half a turn and below zero at first, so
-    that Newton's steps from zero go up to the first root and never past it.  Geometry of [2]_,
-    Figure 2.
+    that Newton's steps from zero go up to the first root and never past it.  Geometry of [1]_, sec.
+    2, Figure 2.
 
     Examples
     --------
@@ -368,7 +351,7 @@ def _predict_intermediate(design: ArmourDesign, strain: Floats) -> _ArmourRespon
 
     Notes
     -----
-    Source: [3]_, eq. (10)-(19).  The change of angle is current minus rest, as the text defines
+    Source: [1]_, eq. (10)-(19).  The change of angle is current minus rest, as the text defines
     it; (9)-(15) use the opposite.  As printed, the torsion moment of (4) has the bending
     stiffness, 1 + nu times too much, and that of (16) and (19) has :math:`2\sin^2\alpha` where
     (15) gives :math:`1 - 2\cos^2\alpha`.  As computed: (15) with the torsional stiffness,
@@ -404,7 +387,7 @@ def _predict_small(design: ArmourDesign, strain: Floats) -> _ArmourResponse:
 
     Notes
     -----
-    Source: [3]_, eq. (20)-(22), for 0-20 deg.  (20) is (12), so the axial force is that of
+    Source: [1]_, eq. (20)-(22), for 0-20 deg.  (20) is (12), so the axial force is that of
     intermediate angles.  (21) is :math:`(1+\varepsilon)/(1+\zeta)` to the first order.  As
     printed, the bending and torsion moments of (22) have the opposite sign to (16), and the
     torsion moment lacks one wire radius; as computed, (14) and (15) with this change of angle.
@@ -437,7 +420,7 @@ def _predict_large(design: ArmourDesign, strain: Floats) -> _ArmourResponse:
 
     Notes
     -----
-    Source: [3]_, eq. (23)-(29), for 70-90 deg.  (25) has the pitch :math:`2\pi r/\tan\alpha`,
+    Source: [1]_, eq. (23)-(29), for 70-90 deg.  (25) has the pitch :math:`2\pi r/\tan\alpha`,
     not the printed :math:`2\pi r\tan\alpha`; (26) leaves out the sine of the torsion moment.
     Shear force and bending moment are not printed: they are the statics of a spring whose ends
     are free to turn, and meet (6) without core.  This is another body than a wire on a rigid
@@ -491,7 +474,7 @@ def _predict_exact(design: ArmourDesign, strain: Floats) -> _ArmourResponse:
 
     Notes
     -----
-    Source: [4]_, eq. (2)-(8) before they are made linear, after [5]_; the printed torsion moment
+    Source: [1]_, eq. (2)-(8) before they are made linear, after [2]_; the printed torsion moment
     of (4) has the bending stiffness.
 
     Examples
@@ -514,11 +497,12 @@ def _predict_conjugate(design: ArmourDesign, strain: Floats) -> _ArmourResponse:
 
     Notes
     -----
-    Derived in the module's text, balance of forces and moments by [4]_, eq. (6).
+    Derived in the module's text, balance of forces and moments by [1]_, eq. (6).
 
     Examples
     --------
-    The torsion moment at 45 deg, which [4]_ makes zero, to the first order GJ strain / (4 r):
+    The torsion moment at 45 deg, which [1]_, sec. 3.1 makes zero, to the first order GJ strain / (4
+    r):
 
     >>> design = ArmourDesign(np.radians(45.0), 2.5e-3, 25e-3, 210e9)
     >>> wire = _predict_conjugate(design, np.array([1e-6]))
@@ -649,14 +633,14 @@ def theory_errors(
 
     Notes
     -----
-    The torsion moment of ``exact`` passes zero near 45 deg, where [6]_, sec. 5.3, finds an error
+    The torsion moment of ``exact`` passes zero near 45 deg, where [1]_, sec. 5.3, finds an error
     of 100 % of a moment that is nothing.  Its error is therefore relative to
     :math:`GJ\sqrt{\Delta\kappa'^2 + \Delta\tau^2}`; of the others, to their own value, which has
     no zero.
 
     Examples
     --------
-    [6]_, sec. 5.2: the axial force of small and intermediate angles, and of a spring
+    [1]_, sec. 5.2: the axial force of small and intermediate angles, and of a spring
 
     >>> design = ArmourDesign(np.radians(20.0), 2.5e-3, 25e-3, 210e9)
     >>> for percent in 100 * theory_errors(design, 1e-3).error[:, 0, 0]:
@@ -704,7 +688,7 @@ def _angles_of_use(
 
     Notes
     -----
-    [6]_, sec. 3.2, gives 0-20 and 70-90 deg to the theories of small and large angles without a
+    [1]_, sec. 3.2, gives 0-20 and 70-90 deg to the theories of small and large angles without a
     tolerance.
 
     Examples
@@ -768,7 +752,7 @@ def _thinning_loss(design: ArmourDesign) -> Floats:
     -----
     The centre of a wire that rests on the core comes :math:`\nu\zeta R_2` closer to the axis.
     To the first order this shortens the helix by :math:`\nu\zeta (R_2/r)\sin^2\alpha`.  It is
-    more than what separates the theories at 0.1 % of strain, and about what [6]_, sec. 5.3,
+    more than what separates the theories at 0.1 % of strain, and about what [1]_, sec. 5.3,
     finds its theory above its numerical results ("because the Poisson effect was considered").
     The pressing of wire and core into each other comes on top, and is not in it.
 
@@ -808,7 +792,7 @@ def _layer_stiffness(design: ArmourDesign) -> _LayerStiffness:
 
     Notes
     -----
-    The layer stiffness of [7]_, sec. 5.3, is that of the axial stress alone, n E A cos^3.  A
+    The layer stiffness of [1]_, sec. 5.3, is that of the axial stress alone, n E A cos^3.  A
     single layer that may turn has next to none: the wires turn out of the load, and only their
     bending and torsion is left.
 
@@ -856,7 +840,7 @@ def _wire_stress(response: _ArmourResponse, *, criterion: YieldCriterion = "von-
 
     Notes
     -----
-    Source: [8]_, sec. 5.3 adds axial and bending stress.  The three meet at one point of the
+    Source: [1]_, sec. 5.3 adds axial and bending stress.  The three meet at one point of the
     surface of the wire, where the shear force has no stress.  Neither the stress of laying the
     wires nor that of contact is in it.
 
@@ -892,7 +876,7 @@ def _yield_strain(
     Strain of the wire and strain of the cable are one in closed form
     (`reduction.prediction.hose_geometry`),
     and the stress is all but proportional to the strain of the wire: it is scaled until the
-    stress is the yield stress to 1e-10.  [8]_, sec. 5.3, takes the axial stress alone.
+    stress is the yield stress to 1e-10.  [1]_, sec. 5.3, takes the axial stress alone.
 
     Examples
     --------
@@ -938,7 +922,7 @@ def layer_strength(design: ArmourDesign, yield_stress: ArrayLike) -> Floats:
 
     Notes
     -----
-    Source: [8]_, sec. 5.3, which divides by the cosine where the component along the axis is
+    Source: [1]_, sec. 5.3, which divides by the cosine where the component along the axis is
     to be multiplied by it: at 20 deg 13 % too much, at 80 deg 33 times.  The angle is that at
     rest, and bending, torsion and shear are left out; `_yield_strain` has them.
 

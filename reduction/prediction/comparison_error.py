@@ -12,25 +12,17 @@ at every strain, and with the covariance over the strains for the curve as a who
 
 References
 ----------
-.. [1] ASME V&V 20-2009, "Standard for Verification and Validation in Computational Fluid
-   Dynamics and Heat Transfer."
-.. [2] C. J. Geyer, "Practical Markov chain Monte Carlo," Statist. Sci., vol. 7, 1992 (the
-   initial positive sequence).
+.. [1] ASME V&V 20-2009, "Standard for Verification and Validation in Computational Fluid Dynamics
+   and Heat Transfer," sec. 1-5 (comparison error E = S - D); sec. 1-5 and 6.
+.. [2] C. J. Geyer, "Practical Markov chain Monte Carlo," Statist. Sci., vol. 7, 1992 (the initial
+   positive sequence).
 .. [3] N. F. Zhang, "Calculation of the uncertainty of the mean of autocorrelated measurements,"
    Metrologia, vol. 43, 2006.
-.. [5] ASME V&V 20-2009, "Standard for Verification and Validation in Computational Fluid
-   Dynamics and Heat Transfer," sec. 1-5 (comparison error E = S - D).
-.. [6] W. Paul, "Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical
-   Properties," Woods Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2004-06, 2004, sec.
-   1.2.
-.. [7] G. A. F. Seber and C. J. Wild, "Nonlinear Regression," Wiley, 1989, ch. 9 (two phases
-   with a change point that is not known).
-.. [8] W. Paul, "Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical
-   Properties," Woods Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2004-06, 2004, sec.
-   3.0.
-.. [9] ASME V&V 20-2009, "Standard for Verification and Validation in Computational Fluid
-   Dynamics and Heat Transfer," sec. 1-5 and 6.
-.. [10] ASME V&V 20.1-2024, "Multivariate Metric for Validation."
+.. [4] W. Paul, "Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical Properties,"
+   Woods Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2004-06, 2004, sec. 1.2; sec. 3.0.
+.. [5] G. A. F. Seber and C. J. Wild, "Nonlinear Regression," Wiley, 1989, ch. 9 (two phases with a
+   change point that is not known).
+.. [6] ASME V&V 20.1-2024, "Multivariate Metric for Validation."
 """
 
 from __future__ import annotations
@@ -353,10 +345,10 @@ def difference_of(
 
     Notes
     -----
-    Positive where the prediction is above the test [5]_.  The relative RMS is the RMS of the
-    error over the RMS of the measured tension, both at the same strains; unlike a mean of
-    relative errors it is not ruled by the start of the curve, where tension goes to zero, and it
-    is 1 for a prediction of nothing.  Strains count alike: the axis is equally spaced.
+    Positive where the prediction is above the test [1]_, sec. 1-5.  The relative RMS is the RMS of
+    the error over the RMS of the measured tension, both at the same strains; unlike a mean of
+    relative errors it is not ruled by the start of the curve, where tension goes to zero, and it is
+    1 for a prediction of nothing.  Strains count alike: the axis is equally spaced.
 
     Examples
     --------
@@ -567,13 +559,13 @@ def measured_pick_up(measured: MeasuredCurve) -> PickUp:
 
     Notes
     -----
-    Below the bend the rubber alone carries, above it the cords as well [6]_: the curve has no
-    jump and its slope has one, :math:`c_1`.  Every place of the bend is tried [7]_, read as the
-    samples were, in the part of the curve from its beginning that shows it best.  Its uncertainty
-    is the width over which the sum of squares stays within one variance of the residuals, times
-    the length over which these err together; and the difference to a curve of the second degree
-    above the bend over half as far, since neither is that of the cords.  An error of the
-    strain moves the bend as it is.
+    Below the bend the rubber alone carries, above it the cords as well [4]_, sec. 1.2: the curve
+    has no jump and its slope has one, :math:`c_1`.  Every place of the bend is tried [5]_, read as
+    the samples were, in the part of the curve from its beginning that shows it best.  Its
+    uncertainty is the width over which the sum of squares stays within one variance of the
+    residuals, times the length over which these err together; and the difference to a curve of the
+    second degree above the bend over half as far, since neither is that of the cords.  An error of
+    the strain moves the bend as it is.
 
     It is a bend that is found, not a law of a hose: it answers to a hose that was not built as
     drawn, and is not as fine as a calibrated wrap angle.
@@ -838,13 +830,13 @@ def plausibility_of_working_strain(
 
     Notes
     -----
-    [8]_ reports a maximum stretch of 79 % at the 115,000th cycle for 64 degrees and 130 % at
-    the 127,000th for 68 degrees, "to 1/3rd of its theoretical breaking strength".  These are
-    dynamic, of two hoses whose cord curve and section are not printed, and one cord strain
-    cannot give both (79 % needs 3.3 % in the cord, 130 % needs 5.6 %).  They are a band in
-    which a hose of that angle may lie and no target: a static cord curve with 9.5 % at a third
-    of its break load gives 105 and 146 %.  The band goes from the reported stretch down by one
-    degree of wrap angle, and up to what a static curve adds and one degree more.
+    [4]_, sec. 3.0 reports a maximum stretch of 79 % at the 115,000th cycle for 64 degrees and 130 %
+    at the 127,000th for 68 degrees, "to 1/3rd of its theoretical breaking strength".  These are
+    dynamic, of two hoses whose cord curve and section are not printed, and one cord strain cannot
+    give both (79 % needs 3.3 % in the cord, 130 % needs 5.6 %).  They are a band in which a hose of
+    that angle may lie and no target: a static cord curve with 9.5 % at a third of its break load
+    gives 105 and 146 %.  The band goes from the reported stretch down by one degree of wrap angle,
+    and up to what a static curve adds and one degree more.
 
     Examples
     --------
@@ -898,7 +890,7 @@ def verdict_words(
     Notes
     -----
     Agreement is one of every strain by itself; where the shape of the difference is one that the
-    stated errors make in less than 5 % of all cases [9]_, the sentence says so.
+    stated errors make in less than 5 % of all cases [1]_, sec. 1-5 and 6, the sentence says so.
 
     Examples
     --------
@@ -1050,9 +1042,9 @@ def validate_curve(
     a right prediction is called wrong in 5 % of all cases however many strains there are: 1.96
     for strains that err as one, 3.3 for fifty that err each for itself.  U is that factor
     times u_val.  Agreement within U means that an error of the model cannot be seen; it does not
-    mean that there is none [9]_.
+    mean that there is none [1]_, sec. 1-5 and 6.
 
-    *Chi square* E' V^-1 E with the full covariance [10]_ sees a wrong shape that stays inside
+    *Chi square* E' V^-1 E with the full covariance [6]_ sees a wrong shape that stays inside
     the band, and needs the uncertainties to be right in every direction; it does not make the
     verdict, which says so where it does not agree.  Its probability is the share of the draws
     that exceed it, since tension is no linear function of the angle where cords pick up.

@@ -9,14 +9,11 @@ it.
 
 References
 ----------
-.. [1] W. Paul, "Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical
-   Properties," Woods Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2004-06, 2004, sec.
-   1.2.4.
+.. [1] W. Paul, "Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical Properties,"
+   Woods Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2004-06, 2004, sec. 1.2.4; sec. 1.2.1,
+   1.2.4: the load-elongation curve of the cord is an input.
 .. [2] F. N. Fritsch and R. E. Carlson, "Monotone piecewise cubic interpolation," SIAM J. Numer.
    Anal., vol. 17, no. 2, pp. 238-246, 1980.
-.. [3] W. Paul, "Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical
-   Properties," Woods Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2004-06, 2004, sec.
-   1.2.1, 1.2.4: the load-elongation curve of the cord is an input.
 """
 
 from __future__ import annotations
@@ -215,7 +212,7 @@ def cord_load(curve: CordCurve, strain: ArrayLike) -> Floats:
 
     Notes
     -----
-    Source: [3]_, sec. 1.2.1; [2]_ between the points.
+    Source: [1]_, sec. 1.2.1; [2]_ between the points.
 
     Examples
     --------

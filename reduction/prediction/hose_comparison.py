@@ -9,14 +9,12 @@ References
 ----------
 .. [1] R. Brun, P. Reichert and H. R. Kunsch, "Practical identifiability analysis of large
    environmental simulation models," Water Resour. Res., vol. 37, 2001 (collinearity index).
-.. [4] JCGM 101:2008, "Propagation of distributions using a Monte Carlo method."
-.. [5] ASME V&V 20-2009, "Standard for Verification and Validation in Computational Fluid
-   Dynamics and Heat Transfer," sec. 2 (u_num).
-.. [7] R. T. Birge, "The calculation of errors by the method of least squares," Phys. Rev., vol.
-   40, 1932.
-.. [9] G. A. F. Seber and C. J. Wild, "Nonlinear Regression," Wiley, 1989, ch. 2 and 6.
-.. [10] ASME V&V 20-2009, "Standard for Verification and Validation in Computational Fluid
-   Dynamics and Heat Transfer."
+.. [2] JCGM 101:2008, "Propagation of distributions using a Monte Carlo method."
+.. [3] ASME V&V 20-2009, "Standard for Verification and Validation in Computational Fluid Dynamics
+   and Heat Transfer," sec. 2 (u_num).
+.. [4] R. T. Birge, "The calculation of errors by the method of least squares," Phys. Rev., vol. 40,
+   1932.
+.. [5] G. A. F. Seber and C. J. Wild, "Nonlinear Regression," Wiley, 1989, ch. 2 and 6.
 """
 
 from __future__ import annotations
@@ -358,7 +356,7 @@ def _input_draws(
     Notes
     -----
     Normal and independent, cut at three standard uncertainties and at the range of the number
-    (propagation of distributions, [4]_).  Where cords pick up, tension is no linear function
+    (propagation of distributions, [2]_).  Where cords pick up, tension is no linear function
     of the angle over the width of its uncertainty, and no covariance from derivatives has the
     shapes of curve that it makes.  What the cord curve may be between its points is drawn beside
     them (`_cord_curve_errors`): where that shows in the hose goes with the angle.
@@ -409,12 +407,12 @@ def _cord_curve_errors(
 
     Notes
     -----
-    Nobody states this error: it is one of the numerical solution [5]_.  It is a few newtons for a
-    curve of fourteen points, far below the noise of any one strain; but it is smooth, and bends the
-    curve as a scale of the cord strain does.  A spline follows a law that is smooth at rest, and no
-    law of which the stiffness is not finite there or bends at once, such as :math:`e^{1.15}`; a
-    power does.  What a cord does between two points says nothing of what it does between two
-    others, so that each interval has errors of its own.
+    Nobody states this error: it is one of the numerical solution [3]_, sec. 2.  It is a few newtons
+    for a curve of fourteen points, far below the noise of any one strain; but it is smooth, and
+    bends the curve as a scale of the cord strain does.  A spline follows a law that is smooth at
+    rest, and no law of which the stiffness is not finite there or bends at once, such as
+    :math:`e^{1.15}`; a power does.  What a cord does between two points says nothing of what it
+    does between two others, so that each interval has errors of its own.
 
     Examples
     --------
@@ -872,7 +870,7 @@ def _spread_of(problem: _FitProblem, best: Floats, noise: Floats) -> _FitSpread:
     Notes
     -----
     The information of the data is divided by tau times the reduced chi square, where that is
-    above 1 [7]_; shared errors keep the information of their stated uncertainty.
+    above 1 [4]_; shared errors keep the information of their stated uncertainty.
 
     Examples
     --------
@@ -932,14 +930,14 @@ def _calibrate_hose(
 
     Notes
     -----
-    *Weights* [9]_. Type A of each strain, and s, one variance for all strains that makes the
+    *Weights* [5]_. Type A of each strain, and s, one variance for all strains that makes the
     residuals of a first fit what they should be: where the model is wrong by more than the
     noise, all strains count alike instead of the few with the least scatter.
 
     *Intervals.* A model that is wrong is wrong smoothly: neighbouring residuals are no
     independent witnesses.  The variance of the data is multiplied by the length over which
     residuals are correlated, tau, and by what is left of the reduced chi square where that
-    is above 1 [7]_; the interval is Student's with n / tau - p degrees of freedom.  Shared
+    is above 1 [4]_; the interval is Student's with n / tau - p degrees of freedom.  Shared
     errors keep their stated variance.  Not in the interval: a smooth error of the model that
     fitted numbers can follow and that leaves no residual; but where `_identify_directions` finds
     that the curve does not show a direction, what one percent of it would do is.  An interval
@@ -1184,7 +1182,7 @@ def _compare_hose(
 
     Notes
     -----
-    Every difference is predicted less measured [10]_.  The prediction is elastic; it is judged
+    Every difference is predicted less measured [3]_.  The prediction is elastic; it is judged
     by the midline of the loop, since either branch is off by half of a loop that no cord
     curve knows of.  The verdict reads the prediction at the strains of the samples, as the curve
     was, so that a kink is rounded in both.  Where one branch was measured, that one is judged,

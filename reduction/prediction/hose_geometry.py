@@ -42,18 +42,9 @@ that closes when the hose stretches far.
 
 References
 ----------
-.. [1] W. Paul, "Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical
-   Properties," Woods Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2004-06, 2004, sec.
-   1.2.1.
-.. [2] W. Paul, "Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical
-   Properties," Woods Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2004-06, 2004, eq.
-   10, 11, 22, 23 and section 2.0.
-.. [3] W. Paul, "Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical
-   Properties," Woods Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2004-06, 2004, eq. 8
-   and Figure 7.
-.. [4] W. Paul, "Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical
-   Properties," Woods Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2004-06, 2004,
-   sections 1.2 and 2.0, eq. 8.
+.. [1] W. Paul, "Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical Properties,"
+   Woods Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2004-06, 2004, sec. 1.2.1; eq. 10, 11,
+   22, 23 and section 2.0; eq. 8 and Figure 7; sections 1.2 and 2.0, eq. 8.
 """
 
 from __future__ import annotations
@@ -372,7 +363,7 @@ def ribbon_width(wrap_diameter: ArrayLike, wrap_angle: ArrayLike) -> Floats:
 
     Notes
     -----
-    Eq. 10 of [2]_ (module): :math:`p_c \sin\alpha_0` with the pitch :math:`p_c = \pi d_w /
+    Eq. 10 of [1]_ (module): :math:`p_c \sin\alpha_0` with the pitch :math:`p_c = \pi d_w /
     \tan\alpha_0` is the same.  Each of two layers needs its own width, as it has its own
     diameter.
 
@@ -400,7 +391,7 @@ def number_of_cords(
 
     Notes
     -----
-    Eq. 11 of [2]_ (module), with eq. 10.
+    Eq. 11 of [1]_ (module), with eq. 10.
 
     Examples
     --------
@@ -437,7 +428,7 @@ def cord_strain_chart(
 
     Notes
     -----
-    Eq. 8 of [3]_ (module).  The report reads "about 54 degrees" from its figure for the angle
+    Eq. 8 of [1]_ (module).  The report reads "about 54 degrees" from its figure for the angle
     above which cords go slack; it is the arctangent of the root of two.
 
     Examples
@@ -509,7 +500,7 @@ def layer_range(
 
     Notes
     -----
-    Eq. 8 of [4]_ (module); convex, hence no search.  The report says that a steep layer will
+    Eq. 8 of [1]_ (module); convex, hence no search.  The report says that a steep layer will
     "not be stretched, just changed in [its] geometry": it is also shortened.
 
     Examples
@@ -550,7 +541,7 @@ def least_layer_angle(
 
     Notes
     -----
-    The greatest strain stands at the end of the range, so the angle is that of eq. 8 of [4]_
+    The greatest strain stands at the end of the range, so the angle is that of eq. 8 of [1]_
     (module) there; for no stretch at all :math:`\tan^2\alpha_0 = \lambda_h^2 + \lambda_h`.
 
     Examples
@@ -576,7 +567,7 @@ def greatest_layer_angle(
 
     Notes
     -----
-    From eq. 8 of [4]_ (module) the least stretch ratio :math:`\lambda` of a layer obeys
+    From eq. 8 of [1]_ (module) the least stretch ratio :math:`\lambda` of a layer obeys
     :math:`\lambda^6 = \tfrac{27}{4} \sin^4\alpha_0 \cos^2\alpha_0`; with :math:`q =
     \cos^2\alpha_0` that is a cubic, and :math:`q = \tfrac23 [1 + \cos(\tfrac23
     \arccos\lambda^3 - \tfrac{4\pi}{3})]`.  Where the range ends before that least ratio, the

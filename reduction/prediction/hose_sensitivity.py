@@ -19,12 +19,9 @@ the free stretch.  At an event the cord strain is held: the hose stretch follows
 
 References
 ----------
-.. [1] W. Paul, "Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical
-   Properties," Woods Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2004-06, 2004, sec.
-   1.2.1.
-.. [3] W. Paul, "Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical
-   Properties," Woods Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2004-06, 2004, eq. 8,
-   24 and 26 (the equations that are differentiated, with the end cap by virtual work).
+.. [1] W. Paul, "Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical Properties,"
+   Woods Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2004-06, 2004, sec. 1.2.1; eq. 8, 24
+   and 26 (the equations that are differentiated, with the end cap by virtual work).
 """
 
 from __future__ import annotations
@@ -266,7 +263,7 @@ def hose_sensitivity(design: HoseDesign, strain: ArrayLike) -> _HoseSensitivity:
 
     Notes
     -----
-    Eq. 8, 24 and 26 of [3]_ (module) differentiated.  A row ``layer_diameter`` moves both
+    Eq. 8, 24 and 26 of [1]_ (module) differentiated.  A row ``layer_diameter`` moves both
     layers by the same length.  Every row holds the others: a layer diameter that comes out
     large *with its ribbon as cut* moves the wrap angle too, by the cotangent of the angle times
     the relative error (eq. 10).
@@ -277,7 +274,7 @@ def hose_sensitivity(design: HoseDesign, strain: ArrayLike) -> _HoseSensitivity:
 
     Examples
     --------
-    Points of stretch a degree at the working load of the two hoses of [3]_, section 3.0, with
+    Points of stretch a degree at the working load of the two hoses of [1]_, section 3.0, with
     a cord that has 9.5 % at a third of its break load; and for 1 % of cord strain.
 
     >>> from reduction.prediction.cord_curve import CordCurve

@@ -29,15 +29,9 @@ would: a hose has weaker places, at its ends above all.
 
 References
 ----------
-.. [1] W. Paul, "Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical
-   Properties," Woods Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2004-06, 2004, eq.
-   (10), (11), (24), (26).
-.. [2] W. Paul, "Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical
-   Properties," Woods Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2004-06, 2004, sec.
-   1.2.
-.. [3] W. Paul, "Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical
-   Properties," Woods Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2004-06, 2004, sec.
-   1.2.1, 1.2.4, Fig. 11.
+.. [1] W. Paul, "Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical Properties,"
+   Woods Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2004-06, 2004, eq. (10), (11), (24),
+   (26); sec. 1.2; sec. 1.2.1, 1.2.4, Fig. 11.
 """
 
 from __future__ import annotations
@@ -243,7 +237,7 @@ def predict_hose(design: HoseDesign, strain: ArrayLike) -> HosePrediction:
 
     Notes
     -----
-    Source: [2]_, sec. 1.2.  Equation (8) gives the cord strain, the cord curve the cord tension,
+    Source: [1]_, sec. 1.2.  Equation (8) gives the cord strain, the cord curve the cord tension,
     (24) the fill pressure, (26) the tension, with the end cap on the current area inside the
     cords and a law of rubber that is zero at rest.  As printed, (25) has the square root closed
     too late (its unit is lbf/in), (20) has the stretch of the cord for that of the hose, and (26)
@@ -471,7 +465,7 @@ def hose_energy(design: HoseDesign, stretch_ratio: ArrayLike) -> Floats:
     Notes
     -----
     Cords of both layers together are pi (d1 + d2) n cos a0, each 1/cos a0 long a length of hose
-    ([2]_, eq. (2), (10), (11)).  The water and the dead ends hold none.
+    ([1]_, eq. (2), (10), (11)).  The water and the dead ends hold none.
 
     Examples
     --------
@@ -522,7 +516,7 @@ def find_events(design: HoseDesign) -> HoseEvents:
 
     Notes
     -----
-    Source: [3]_, eq. (8) and Fig. 11.  The safe working load is the tension of the hose "at which
+    Source: [1]_, eq. (8) and Fig. 11.  The safe working load is the tension of the hose "at which
     the nylon tire cords are stressed to 1/3rd of their breaking strength" (sec. 1.2.4): of the
     cords, not of the hose, which the rubber makes another number.
 

@@ -42,26 +42,12 @@ References
 ----------
 .. [1] S. Zhang, C. Chen, Q. Zhang, D. Zhang and F. Zhang, "Wave Loads Computation for Offshore
    Floating Hose Based on Partially Immersed Cylinder Model of Improved Morison Formula," Open
-   Petroleum Eng. J., vol. 8, 2015, eq. 4-8 and 11, Table 3.
-.. [2] S. Zhang, C. Chen, Q. Zhang, D. Zhang and F. Zhang, "Wave Loads Computation for Offshore
-   Floating Hose Based on Partially Immersed Cylinder Model of Improved Morison Formula," Open
-   Petroleum Eng. J., vol. 8, 2015, Table 2 and eq. 12.
-.. [3] G. H. Keulegan and L. H. Carpenter, "Forces on cylinders and plates in an oscillating
-   fluid," J. Res. Nat. Bur. Standards, vol. 60, 1958, pp. 423-440.
-.. [4] ITTC, "Fresh Water and Seawater Properties," Recommended Procedure 7.5-02-01-03, 2011.
-.. [5] S. Zhang, C. Chen, Q. Zhang, D. Zhang and F. Zhang, "Wave Loads Computation for Offshore
-   Floating Hose Based on Partially Immersed Cylinder Model of Improved Morison Formula," Open
-   Petroleum Eng. J., vol. 8, 2015, eq. 1-3, 7-10.
-.. [6] S. Zhang, C. Chen, Q. Zhang, D. Zhang and F. Zhang, "Wave Loads Computation for Offshore
-   Floating Hose Based on Partially Immersed Cylinder Model of Improved Morison Formula," Open
-   Petroleum Eng. J., vol. 8, 2015, Tables 5 and 6.
-.. [7] S. Zhang, C. Chen, Q. Zhang, D. Zhang and F. Zhang, "Wave Loads Computation for Offshore
-   Floating Hose Based on Partially Immersed Cylinder Model of Improved Morison Formula," Open
-   Petroleum Eng. J., vol. 8, 2015, eq. 18-19, Tables 7 and 8.
-.. [8] S. Zhang, C. Chen, Q. Zhang, D. Zhang and F. Zhang, "Wave Loads Computation for Offshore
-   Floating Hose Based on Partially Immersed Cylinder Model of Improved Morison Formula," Open
-   Petroleum Eng. J., vol. 8, 2015, eq. 4, Fig. 3.
-.. [9] ISO 2533:1975, Standard Atmosphere.
+   Petroleum Eng. J., vol. 8, 2015, eq. 4-8 and 11, Table 3; Table 2 and eq. 12; eq. 1-3, 7-10;
+   Tables 5 and 6; eq. 18-19, Tables 7 and 8; eq. 4, Fig. 3.
+.. [2] G. H. Keulegan and L. H. Carpenter, "Forces on cylinders and plates in an oscillating fluid,"
+   J. Res. Nat. Bur. Standards, vol. 60, 1958, pp. 423-440.
+.. [3] ITTC, "Fresh Water and Seawater Properties," Recommended Procedure 7.5-02-01-03, 2011.
+.. [4] ISO 2533:1975, Standard Atmosphere.
 """
 
 from __future__ import annotations
@@ -164,8 +150,8 @@ def immerse_hose(
     -----
     Eq. (6) of [1]_.  Eq. (5) leaves out the acceleration of free fall, which cancels.
 
-    An empty hose is taken as round; a collapsible one lies flat, which [1]_ says and does not
-    compute.
+    An empty hose is taken as round; a collapsible one lies flat, which [1]_, eq. 4-8 and 11, Table
+    3 says and does not compute.
 
     Examples
     --------
@@ -279,7 +265,7 @@ def _refuse(bad: Bools, problem: str, values: Floats, needed: str) -> None:
 
 SEAWATER_VISCOSITY = 1.1892e-6
 
-"""Kinematic, of standard seawater at 15 deg C ([3]_). [m2 s-1]"""
+"""Kinematic, of standard seawater at 15 deg C ([2]_). [m2 s-1]"""
 
 GREATEST_DIAMETER_TO_LENGTH = 0.2
 
@@ -349,11 +335,12 @@ def _keulegan_carpenter_number(
 
     Notes
     -----
-    Defined in [3]_.
+    Defined in [2]_.
 
     Examples
     --------
-    The hose of [2]_ in its 6 m deep wave, 1.15 m/s: far in the region of drag, yet not steady.
+    The hose of [1]_, Table 2 and eq. 12 in its 6 m deep wave, 1.15 m/s: far in the region of drag,
+    yet not steady.
 
     >>> print(_keulegan_carpenter_number(1.15, 3.57, 0.114).round(1))
     36.0
@@ -373,7 +360,7 @@ def _reynolds_number(
 
     Notes
     -----
-    Viscosity of seawater from [4]_.
+    Viscosity of seawater from [3]_.
 
     Examples
     --------
@@ -395,7 +382,7 @@ def _drag_to_inertia(
 
     Notes
     -----
-    From eq. (1) of [2]_ with u = u_max cos: (C_D D u^2 / 2) / (C_M pi D^2 / 4 * 2 pi u / T).
+    From eq. (1) of [1]_ with u = u_max cos: (C_D D u^2 / 2) / (C_M pi D^2 / 4 * 2 pi u / T).
 
     Examples
     --------
@@ -423,8 +410,8 @@ def _flow_regime(
     Notes
     -----
     Of the horizontal velocity, the current included; some sources give KC for the wave alone
-    and the current apart.  Table 2 of [2]_ gives no range of KC or Re for its numbers,
-    though [3]_ shows that they depend on KC.
+    and the current apart.  Table 2 of [1]_ gives no range of KC or Re for its numbers,
+    though [2]_ shows that they depend on KC.
 
     Examples
     --------
@@ -504,7 +491,7 @@ def load_factors(
 
     Notes
     -----
-    Eq. (9) of [5]_ takes the height h for the vertical load too.  Water that rises meets the
+    Eq. (9) of [1]_ takes the height h for the vertical load too.  Water that rises meets the
     width, which is D for its hose: h understates the drag by 1 - h/D, 16.6 %.
 
     Examples
@@ -543,14 +530,14 @@ def wave_load(
 
     Notes
     -----
-    Eq. (1) and (10) of [5]_.  The hose is held in place with its waterline at the mean level,
+    Eq. (1) and (10) of [1]_.  The hose is held in place with its waterline at the mean level,
     as there; one that rides the wave meets less.  Drag is taken direction by direction; on a
     round section wholly under water it would go with the speed of both together, which is
     more.  Lift and the change of buoyancy are left out.
 
     Examples
     --------
-    Table 7 of [5]_ prints 84.21 and 70.25 N/m at time 0; with a length that fits the period, the
+    Table 7 of [1]_ prints 84.21 and 70.25 N/m at time 0; with a length that fits the period, the
     hose at its own depth and 1025 kg/m3 it is this.
 
     >>> from reduction.prediction.wave_load import immerse_hose
@@ -638,7 +625,7 @@ def _find_extremes(
 
     Notes
     -----
-    Table 5 of [6]_ is the extreme on a grid of 0.1 s up to 5 s, its Table 6 up to 10 s; both
+    Table 5 of [1]_ is the extreme on a grid of 0.1 s up to 5 s, its Table 6 up to 10 s; both
     miss the extremes of their own formula, by up to 0.4 N/m.
 
     Examples
@@ -770,7 +757,7 @@ def _load_difference(
 
     Notes
     -----
-    Eq. (18) and (19) of [7]_.  Drag and inertia vanish at different times and are cut by
+    Eq. (18) and (19) of [1]_.  Drag and inertia vanish at different times and are cut by
     different shares, so the two loads pass zero at different times, where P of eq. (19) is
     any number: 35.85 % in Table 7 is at 8 % of the greatest load.  Its mean over a period does
     not exist, and that of Table 8 depends on the times chosen.  The differences of the
@@ -816,7 +803,7 @@ def _cut(improved: Floats, classic: Floats) -> Floats:
 
 AIR_DENSITY = 1.225
 
-"""At sea level, 15 deg C ([2]_). [kg m-3]"""
+"""At sea level, 15 deg C ([1]_, Table 2 and eq. 12). [kg m-3]"""
 
 
 @dataclass(frozen=True)
@@ -843,8 +830,8 @@ def _wind_load(
 
     Notes
     -----
-    [8]_ names the load in eq. (4) and gives no form; this is drag on D - h.  A wind stated for
-    a height of 10 m is larger than that at the hose.
+    [1]_, eq. 4, Fig. 3 names the load in eq. (4) and gives no form; this is drag on D - h.  A wind
+    stated for a height of 10 m is larger than that at the hose.
 
     Examples
     --------
@@ -869,7 +856,7 @@ def _current_load(
 
     Notes
     -----
-    The drag of eq. (9) of [8]_ with the current for the velocity.
+    The drag of eq. (9) of [1]_ with the current for the velocity.
 
     Examples
     --------
@@ -899,14 +886,14 @@ def _anchor_force(
 
     Notes
     -----
-    Eq. (4) of [8]_, the extreme case in which all act in one direction, adds loads; the cross
+    Eq. (4) of [1]_, the extreme case in which all act in one direction, adds loads; the cross
     term 2 u U of the squared velocity is missing there, so that the sum is too low where the
     current follows the wave, the very case meant.  Where the current opposes the wave the
     term takes from the load under the crest, and the sum is too high.
 
     Examples
     --------
-    A current of 0.5 m/s and a wind of 10 m/s on 100 m of the hose of [8]_.
+    A current of 0.5 m/s and a wind of 10 m/s on 100 m of the hose of [1]_, eq. 4, Fig. 3.
 
     >>> from reduction.prediction.wave_theory import airy_wave
     >>> hose = ImmersedSection(np.array(0.114), np.array(0.0091), np.array(0.0951))

@@ -33,11 +33,11 @@ U`,
    u_z = \tfrac{\sigma H}{2} \frac{\sinh k(z+d)}{\sinh kd} \sin\theta
          + \tfrac{3 k \sigma H^2}{16} \frac{\sinh 2k(z+d)}{\sinh^4 kd} \sin 2\theta
 
-The first terms are Airy's.  Over still water sigma H/2 is pi H/T, eq. (16) and (17) of [8]_.
+The first terms are Airy's.  Over still water sigma H/2 is pi H/T, eq. (16) and (17) of [1]_.
 
-Stokes' theory of third and of fifth order ([14]_), from the coefficients of raschii.
+Stokes' theory of third and of fifth order ([7]_), from the coefficients of raschii.
 
-Cnoidal waves of first order ([15]_), with the parameter m and the integrals K and E of m,
+Cnoidal waves of first order ([8]_), with the parameter m and the integrals K and E of m,
 
 .. math::
    \eta = H \left[\mathrm{cn}^2\!\left(\tfrac{K}{\pi} \theta\right)
@@ -60,38 +60,24 @@ References
 ----------
 .. [1] S. Zhang, C. Chen, Q. Zhang, D. Zhang and F. Zhang, "Wave Loads Computation for Offshore
    Floating Hose Based on Partially Immersed Cylinder Model of Improved Morison Formula," Open
-   Petroleum Eng. J., vol. 8, 2015, eq. 14 and Table 4.
-.. [2] C. Eckart, "The propagation of gravity waves from deep to shallow water," in Gravity
-   Waves, Nat. Bur. Standards Circ. 521, 1952, pp. 165-173.
-.. [3] D. H. Peregrine, "Interaction of water waves and currents," Adv. Appl. Mech., vol. 16,
-   1976, pp. 9-117, sec. II.
-.. [4] S. Zhang, C. Chen, Q. Zhang, D. Zhang and F. Zhang, "Wave Loads Computation for Offshore
-   Floating Hose Based on Partially Immersed Cylinder Model of Improved Morison Formula," Open
-   Petroleum Eng. J., vol. 8, 2015, Table 4.
-.. [7] S. Zhang, C. Chen, Q. Zhang, D. Zhang and F. Zhang, "Wave Loads Computation for Offshore
-   Floating Hose Based on Partially Immersed Cylinder Model of Improved Morison Formula," Open
-   Petroleum Eng. J., vol. 8, 2015, Table 1.
-.. [8] S. Zhang, C. Chen, Q. Zhang, D. Zhang and F. Zhang, "Wave Loads Computation for Offshore
-   Floating Hose Based on Partially Immersed Cylinder Model of Improved Morison Formula," Open
-   Petroleum Eng. J., vol. 8, 2015, eq. 13-17.
-.. [9] J. P. Boyd, "Computing the zeros, maxima and inflection points of Chebyshev, Legendre and
+   Petroleum Eng. J., vol. 8, 2015, eq. 14 and Table 4; Table 1; eq. 13-17; Table 1 and sec. 5.
+.. [2] C. Eckart, "The propagation of gravity waves from deep to shallow water," in Gravity Waves,
+   Nat. Bur. Standards Circ. 521, 1952, pp. 165-173.
+.. [3] D. H. Peregrine, "Interaction of water waves and currents," Adv. Appl. Mech., vol. 16, 1976,
+   pp. 9-117, sec. II.
+.. [4] J. P. Boyd, "Computing the zeros, maxima and inflection points of Chebyshev, Legendre and
    Fourier series: solving transcendental equations by spectral interpolation and polynomial
    rootfinding," J. Eng. Math., vol. 56, 2006, pp. 203-219, sec. 6.
-.. [10] R. G. Dean and R. A. Dalrymple, Water Wave Mechanics for Engineers and Scientists.
-   Singapore: World Scientific, 1991, ch. 3, 4 and 11.
-.. [11] S. Zhang, C. Chen, Q. Zhang, D. Zhang and F. Zhang, "Wave Loads Computation for Offshore
-   Floating Hose Based on Partially Immersed Cylinder Model of Improved Morison Formula," Open
-   Petroleum Eng. J., vol. 8, 2015, Table 1 and sec. 5.
-.. [12] F. Ursell, "The long-wave paradox in the theory of gravity waves," Proc. Cambridge Phil.
+.. [5] R. G. Dean and R. A. Dalrymple, Water Wave Mechanics for Engineers and Scientists. Singapore:
+   World Scientific, 1991, ch. 3, 4 and 11; ch. 11.
+.. [6] F. Ursell, "The long-wave paradox in the theory of gravity waves," Proc. Cambridge Phil.
    Soc., vol. 49, 1953, pp. 685-694.
-.. [13] R. G. Dean and R. A. Dalrymple, Water Wave Mechanics for Engineers and Scientists.
-   Singapore: World Scientific, 1991, ch. 11.
-.. [14] J. D. Fenton, "A fifth-order Stokes theory for steady waves," J. Waterway, Port, Coastal
-   and Ocean Eng., vol. 111, 1985, pp. 216-234.
-.. [15] R. L. Wiegel, "A presentation of cnoidal wave theory for practical application," J. Fluid
+.. [7] J. D. Fenton, "A fifth-order Stokes theory for steady waves," J. Waterway, Port, Coastal and
+   Ocean Eng., vol. 111, 1985, pp. 216-234.
+.. [8] R. L. Wiegel, "A presentation of cnoidal wave theory for practical application," J. Fluid
    Mech., vol. 7, 1960, pp. 273-286.
-.. [16] T. S. Hedges, "Regions of validity of analytical wave theories," Proc. Inst. Civ. Eng.
-   Water, Maritime and Energy, vol. 112, 1995, pp. 111-114.
+.. [9] T. S. Hedges, "Regions of validity of analytical wave theories," Proc. Inst. Civ. Eng. Water,
+   Maritime and Energy, vol. 112, 1995, pp. 111-114.
 """
 
 from __future__ import annotations
@@ -294,7 +280,7 @@ def _check_wave_length(
 
     Examples
     --------
-    Table 4 of [4]_ at the depths of its two examples.
+    Table 4 of [1]_ at the depths of its two examples.
 
     >>> check = _check_wave_length(20.0, 3.57, [6.0, 3.0])
     >>> print(check.period_mismatch.round(3), check.length_mismatch.round(3))
@@ -335,7 +321,7 @@ def breaking_height(wave_number: ArrayLike, water_depth: ArrayLike) -> Floats:
 
     Examples
     --------
-    Table 1 of [7]_ asks for a height of 0.2 lengths or more where it names Stokes' theory. The
+    Table 1 of [1]_ asks for a height of 0.2 lengths or more where it names Stokes' theory. The
     20 m wave of its examples breaks long before, at 0.136 lengths 6 m deep and 0.105 3 m deep.
 
     >>> print((breaking_height(2 * np.pi / 20, [6.0, 3.0]) / 20).round(3))
@@ -356,7 +342,7 @@ def _refuse_breaking(*, wave_height: float, wave_number: float, water_depth: flo
 
     Examples
     --------
-    The wave of [7]_ is well below breaking.
+    The wave of [1]_, Table 1 is well below breaking.
 
     >>> _refuse_breaking(wave_height=1.25, wave_number=2 * np.pi / 20, water_depth=3.0)
     """
@@ -514,7 +500,7 @@ def root_phases(coefficients: Coefficients) -> Floats:
 
     Notes
     -----
-    Eigenvalues of the companion matrix ([9]_).  Roots off the circle are kept: who looks
+    Eigenvalues of the companion matrix ([4]_).  Roots off the circle are kept: who looks
     for the greatest value of a function tries them all and needs no tolerance to tell them
     apart.  Outermost orders that are rounding are left out.
 
@@ -573,7 +559,7 @@ def airy_wave(
 
     Notes
     -----
-    Eq. (13) and (15) of [8]_ print the velocity amplitude H g k / (2 omega) with cosh kd below,
+    Eq. (13) and (15) of [1]_ print the velocity amplitude H g k / (2 omega) with cosh kd below,
     and the acceleration 2 pi^2 H / T^2 with sinh kd below.  One is the derivative of the other
     only where length and period fit.  Here velocities follow the surface (pi H/T over sinh kd)
     whatever the length, and accelerations are their derivative; see
@@ -583,11 +569,11 @@ def airy_wave(
     acceleration: that of a particle to first order.
 
     Between the mean level and the crest the motion is that of the formula carried on,
-    which overstates it; the convective acceleration is left out, as in [8]_.
+    which overstates it; the convective acceleration is left out, as in [1]_, eq. 13-17.
 
     Examples
     --------
-    The wave of Table 4 of [8]_ 6 m deep, at the mean level: pi H/T = 1.1 m/s both ways but for
+    The wave of Table 4 of [1]_ 6 m deep, at the mean level: pi H/T = 1.1 m/s both ways but for
     coth kd.
 
     >>> wave = airy_wave(wave_height=1.25, wave_period=3.57, water_depth=6.0, elevation=0.0,
@@ -624,16 +610,16 @@ def stokes_wave(
 
     Notes
     -----
-    Eq. (16) and (17) of [8]_, which are right as printed; the elevation, which it does not
-    print, from [10]_.  Second order has the dispersion relation of first order: the gain in
-    speed with height is of third order.
+    Eq. (16) and (17) of [1]_, which are right as printed; the elevation, which it does not
+    print, from [5]_, ch. 3, 4 and 11.  Second order has the dispersion relation of first order: the
+    gain in speed with height is of third order.
 
     Not flagged here: a secondary crest in the trough where the second harmonic of the surface
     is above a quarter of the first; see `reduction.prediction.wave_theory`.
 
     Examples
     --------
-    The wave of Table 4 of [8]_ 3 m deep, at the mean level.
+    The wave of Table 4 of [1]_ 3 m deep, at the mean level.
 
     >>> wave = stokes_wave(wave_height=1.25, wave_period=3.57, water_depth=3.0, elevation=0.0,
     ...                    wave_number=2 * np.pi / 20)
@@ -664,7 +650,7 @@ def stokes_wave(
     )
 
 
-_GREATEST_OF_STOKES = 40.0  # Ursell number H L^2 / d^3 at which the series of Stokes end ([16]_)
+_GREATEST_OF_STOKES = 40.0  # Ursell number H L^2 / d^3 at which the series of Stokes end ([9]_)
 
 
 def high_stokes_wave(
@@ -685,17 +671,18 @@ def high_stokes_wave(
     SettingsError
         If raschii is not installed.
     DataError, FitError
-        If the wave breaks, is too long for its depth ([16]_), or no length belongs to its period.
+        If the wave breaks, is too long for its depth ([9]_), or no length belongs to its period.
 
     Notes
     -----
-    Theory of [14]_.  raschii computes surface and velocities; their harmonics are read off at
+    Theory of [7]_.  raschii computes surface and velocities; their harmonics are read off at
     16 phases, which is exact for up to seven of them.  As for the lower orders, velocities
     follow the surface whatever the length, and accelerations are their local rate.
 
     Examples
     --------
-    The steep wave of [8]_, by the linear theory 16.3 m long; raschii finds 17.42 m as well.
+    The steep wave of [1]_, eq. 13-17, by the linear theory 16.3 m long; raschii finds 17.42 m as
+    well.
 
     >>> wave = high_stokes_wave(order=5, wave_height=1.25, wave_period=3.57, water_depth=3.0,
     ...                         elevation=0.0)
@@ -776,7 +763,7 @@ def cnoidal_wave(
 
     Notes
     -----
-    Theory of [15]_, as harmonics of the nome q = exp(-pi K' / K),
+    Theory of [8]_, as harmonics of the nome q = exp(-pi K' / K),
 
     .. math:: a_n = H \frac{2 \pi^2}{m K^2} \frac{n q^n}{1 - q^{2n}}
 
@@ -881,7 +868,8 @@ def stream_wave(
 
     Examples
     --------
-    The 3.57 s wave of [8]_ over 3 m of water: by the linear theory 16.3 m, with its height 17.4 m.
+    The 3.57 s wave of [1]_, eq. 13-17 over 3 m of water: by the linear theory 16.3 m, with its
+    height 17.4 m.
 
     >>> wave = stream_wave(wave_height=1.25, wave_period=3.57, water_depth=3.0, elevation=0.0)
     >>> print(round(2 * np.pi / wave.wave_number, 2))
@@ -1056,13 +1044,13 @@ def _theory_by_depth(relative_depth: float) -> WaveTheoryName:
 
     Notes
     -----
-    Table 1 of [11]_ leaves d/L = 0.1 to nobody; it is given to Stokes here, as in sec. 5
+    Table 1 of [1]_ leaves d/L = 0.1 to nobody; it is given to Stokes here, as in sec. 5
     ("between 2 and 4 meters" of a 20 m wave).  Its lowest limit, "0.04~0.05", is taken as 0.04.
     "Conical" and solitary share a row: a solitary wave is a cnoidal one of long period.
 
     Examples
     --------
-    The 20 m wave of [11]_ over 6 m, 3 m and 1.5 m of water.
+    The 20 m wave of [1]_, Table 1 and sec. 5 over 6 m, 3 m and 1.5 m of water.
 
     >>> [_theory_by_depth(depth / 20) for depth in (6.0, 3.0, 1.5)]
     ['airy', 'stokes', 'cnoidal']
@@ -1080,7 +1068,7 @@ def _printed_theory(relative_depth: float, steepness: float) -> PrintedTheory:
 
     Notes
     -----
-    Table 1 of [11]_ contradicts itself: its row of Stokes asks for H/L of 0.2 or more, where
+    Table 1 of [1]_ contradicts itself: its row of Stokes asks for H/L of 0.2 or more, where
     every wave has broken (at most 0.142, and 0.12 at d/L = 0.2), and its row of Airy allows
     up to 0.2.  The second example of the paper, H/L = 0.0625 at d/L = 0.15, is in no row.
 
@@ -1115,7 +1103,7 @@ class WaveTheory:
     Parameters
     ----------
     theory : {"airy", "stokes", "cnoidal", "beyond the table"}
-        By relative depth, as [11]_ itself reads its Table 1.
+        By relative depth, as [1]_, Table 1 and sec. 5 itself reads its Table 1.
     printed : {"airy", "stokes", "cnoidal or solitary", "none"}
         By both columns of Table 1, to the letter.
     wave_length : float
@@ -1176,13 +1164,13 @@ def describe_wave(
 
     Notes
     -----
-    Limits of height: `reduction.prediction.wave_theory`.  Number of [12]_, secondary crest after
-    [13]_.  What counts as a small second harmonic (5 %) and as a length that fits its period
+    Limits of height: `reduction.prediction.wave_theory`.  Number of [6]_, secondary crest after
+    [5]_, ch. 11.  What counts as a small second harmonic (5 %) and as a length that fits its period
     (1 %) is set by this package.
 
     Examples
     --------
-    The second example of [11]_ is at the edge of Stokes' second order.
+    The second example of [1]_, Table 1 and sec. 5 is at the edge of Stokes' second order.
 
     >>> wave = describe_wave(wave_height=1.25, wave_period=3.57, water_depth=3.0,
     ...                      wave_length=20.0)
@@ -1277,7 +1265,7 @@ def regular_wave(
 
     Examples
     --------
-    The second example of [11]_ has two harmonics.
+    The second example of [1]_, Table 1 and sec. 5 has two harmonics.
 
     >>> sea = dict(wave_height=1.25, wave_period=3.57, water_depth=3.0)
     >>> regular_wave(describe_wave(**sea), **sea, elevation=0.0).elevation.size

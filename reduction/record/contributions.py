@@ -2,13 +2,10 @@
 
 References
 ----------
-.. [2] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
-   in measurement," 5.2, G.4 (effective degrees of freedom, Welch and Satterthwaite).
-.. [3] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
-   in measurement," F.1.2.3 (correlation by common influence quantities).
-.. [4] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
-   in measurement," 4.3.3 (expanded), 4.3.7 (rectangular), 4.3.9 (triangular), F.2.2.1
-   (resolution).
+.. [1] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty in
+   measurement," 5.2, G.4 (effective degrees of freedom, Welch and Satterthwaite); F.1.2.3
+   (correlation by common influence quantities); 4.3.3 (expanded), 4.3.7 (rectangular), 4.3.9
+   (triangular), F.2.2.1 (resolution).
 """
 
 from __future__ import annotations
@@ -285,7 +282,7 @@ def effective_degrees_of_freedom(
 
     Notes
     -----
-    Welch and Satterthwaite, [2]_, G.4.1, eq. G.2b.
+    Welch and Satterthwaite, [1]_, 5.2, G.4, G.4.1, eq. G.2b.
 
     Examples
     --------
@@ -336,7 +333,7 @@ def coverage_factor(degrees_of_freedom: ArrayLike, *, confidence: float = CONFID
 
     Notes
     -----
-    Student's, [2]_, G.3.
+    Student's, [1]_, 5.2, G.4, G.3.
 
     Examples
     --------
@@ -370,7 +367,7 @@ def merged(parts: Sequence[Contributions]) -> Contributions:
 
     Notes
     -----
-    Components that are equal are one error ([3]_).
+    Components that are equal are one error ([1]_, F.1.2.3).
 
     Examples
     --------
@@ -412,7 +409,7 @@ def added(parts: Sequence[Contributions]) -> Contributions:
 
     Notes
     -----
-    Components that are equal are one error ([3]_).
+    Components that are equal are one error ([1]_, F.1.2.3).
 
     Examples
     --------
@@ -452,7 +449,7 @@ def stacked(entries: Sequence[Contributions]) -> Contributions:
 
     Notes
     -----
-    Components that are equal are one error ([3]_).
+    Components that are equal are one error ([1]_, F.1.2.3).
 
     Examples
     --------
@@ -498,7 +495,7 @@ def renamed(found: Contributions, names: dict[str, str]) -> Contributions:
 
     Notes
     -----
-    Nothing is computed ([3]_).
+    Nothing is computed ([1]_, F.1.2.3).
 
     Examples
     --------
@@ -549,7 +546,7 @@ def of_half_width(half_width: float, shape: Shape = "rectangular") -> float:
 
     Notes
     -----
-    [4]_, 4.3.7 and 4.3.9; arcsine is that of something that swings.
+    [1]_, 4.3.3, 4.3.7 and 4.3.9; arcsine is that of something that swings.
 
     Examples
     --------
@@ -585,7 +582,7 @@ def of_expanded(expanded: float, coverage_factor: float) -> float:
 
     Notes
     -----
-    [4]_, 4.3.3.
+    [1]_, 4.3.3, 4.3.3.
 
     Examples
     --------
@@ -616,7 +613,7 @@ def of_resolution(resolution: float) -> float:
 
     Notes
     -----
-    [4]_, F.2.2.1: half a step to either side, all equally likely.
+    [1]_, 4.3.3, F.2.2.1: half a step to either side, all equally likely.
 
     Examples
     --------

@@ -21,17 +21,13 @@ an area.
 
 References
 ----------
-.. [2] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
-   in measurement," 5.1.3 (sensitivity coefficients) and F.1.2.3 (common influence quantities).
-.. [3] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
-   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
-   MA, Tech. Rep. WHOI-2005-10, Dec. 2005, Table 3.
-.. [4] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
-   in measurement," 4.3.7 and F.2.4.5 (limits, and an error that is known and not corrected).
-.. [5] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
-   in measurement," 5.1.3 (sensitivity coefficients) and 5.2 (correlated inputs).
-.. [6] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
-   in measurement," 5.1.3 (sensitivity coefficients) and 5.2.
+.. [1] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty in
+   measurement," 5.1.3 (sensitivity coefficients) and F.1.2.3 (common influence quantities); 4.3.7
+   and F.2.4.5 (limits, and an error that is known and not corrected); 5.1.3 (sensitivity
+   coefficients) and 5.2 (correlated inputs).
+.. [2] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
+   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole, MA,
+   Tech. Rep. WHOI-2005-10, Dec. 2005, Table 3.
 """
 
 from __future__ import annotations
@@ -99,10 +95,10 @@ def _load_parts(errors: InstrumentErrors, model: StrainModel, load: Floats) -> l
 
     Notes
     -----
-    First order ([2]_).  A wrong gain of the one cell that read samples and marks leaves strain as
-    it is, and a wrong zero nearly so: a splice strains at its marks what the tape says, whatever
-    the cell reads.  Under another cell 1 % of gain is 0.14 % of strain on the tethers of [3]_,
-    and the error of the marks' cell is as much, the other way.
+    First order ([1]_, 5.1.3).  A wrong gain of the one cell that read samples and marks leaves
+    strain as it is, and a wrong zero nearly so: a splice strains at its marks what the tape says,
+    whatever the cell reads.  Under another cell 1 % of gain is 0.14 % of strain on the tethers of
+    [2]_, and the error of the marks' cell is as much, the other way.
 
     Examples
     --------
@@ -224,11 +220,11 @@ def _splice_method_error(
     -----
     The law was asked for; the marks say another one, the average over the laws that they do not
     reject.  The error lies between 0 and D, the difference of both, and has one sign.  It is not
-    corrected: its standard uncertainty is the root of its mean square about zero ([4]_, F.2.4.5).
-    Were all of the range equally likely, that would be :math:`D / \sqrt 3`.  It is not: where marks
-    can tell ([3]_), the error is D.  On synthetic tethers whose splices follow tension, with marks
-    over 360-600 N, 95 % intervals held the truth of the loop energy in 70 % of cases by
-    :math:`D / \sqrt 3`, and those of a segment in 87 %; by D in 100 and 94 %.  D it is.
+    corrected: its standard uncertainty is the root of its mean square about zero ([1]_, 4.3.7 and
+    F.2.4.5, F.2.4.5). Were all of the range equally likely, that would be :math:`D / \sqrt 3`.  It
+    is not: where marks can tell ([2]_), the error is D.  On synthetic tethers whose splices follow
+    tension, with marks over 360-600 N, 95 % intervals held the truth of the loop energy in 70 % of
+    cases by :math:`D / \sqrt 3`, and those of a segment in 87 %; by D in 100 and 94 %.  D it is.
 
     Examples
     --------
@@ -313,8 +309,8 @@ def coefficient_errors(model: StrainModel, covariance: Floats | None = None) -> 
 
     Notes
     -----
-    Whatever rests on one of the coefficients moves with them together ([5]_, 5.2): the relaxed
-    length is in the strain at slack, in a permanent set, and in every strain of the test.
+    Whatever rests on one of the coefficients moves with them together ([1]_, 5.1.3, 5.2): the
+    relaxed length is in the strain at slack, in a permanent set, and in every strain of the test.
 
     Examples
     --------
@@ -605,10 +601,10 @@ def error_field(
 
     Notes
     -----
-    First order ([6]_, 5.1.3).  Where the marks were read under tensions from the same load cell,
-    the splice law is fitted to them: an error of that cell is in the law too, and strain stays
-    what the tape says; a law made under another cell has the errors of that one
-    (`reduction.uncertainty.error_field._load_parts`, [3]_).  An extensometer knows neither; what
+    First order ([1]_, 5.1.3, 5.1.3).  Where the marks were read under tensions from the same load
+    cell, the splice law is fitted to them: an error of that cell is in the law too, and strain
+    stays what the tape says; a law made under another cell has the errors of that one
+    (`reduction.uncertainty.error_field._load_parts`, [2]_).  An extensometer knows neither; what
     position alone misses is `_splice_method_error`.
 
     Examples

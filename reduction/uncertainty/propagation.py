@@ -90,37 +90,17 @@ One load cell, or one crosshead, is in both moduli and cancels as far as it does
 
 References
 ----------
-.. [1] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
-   in measurement," 5.1.3.
+.. [1] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty in
+   measurement," 5.1.3; 5.2; 5.2, F.1.2.3; 5.1.6 (relative uncertainty of products of powers); 5.2.2
+   and G.4.1.
 .. [2] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
-   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
-   MA, Tech. Rep. WHOI-2005-10, Dec. 2005, eq. 2 and sec. 4.
-.. [3] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
-   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
-   MA, Tech. Rep. WHOI-2005-10, Dec. 2005, eqs. 1 and 2.
-.. [4] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
-   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
-   MA, Tech. Rep. WHOI-2005-10, Dec. 2005, Tables 5 and 6.
-.. [5] R. W. Ogden, G. Saccomandi and I. Sgura, "Fitting hyperelastic models to experimental
-   data," Comput. Mech. 34, 2004.
-.. [7] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
-   in measurement," 5.2.
-.. [8] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
-   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, eqs. 1 and 4.
-.. [10] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
-   in measurement," 5.2, F.1.2.3.
-.. [11] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
-   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.4.2 and App. D.
-.. [12] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
-   in measurement," 5.1.6 (relative uncertainty of products of powers).
-.. [13] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of
-   Rubber Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods
-   Hole, MA, Tech. Rep. WHOI-2005-10, Dec. 2005, Table 4.
-.. [14] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
-   in measurement," 5.2.2 and G.4.1.
-.. [15] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of
-   Rubber Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods
-   Hole, MA, Tech. Rep. WHOI-2005-10, Dec. 2005, sec. 4.6.
+   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole, MA,
+   Tech. Rep. WHOI-2005-10, Dec. 2005, eq. 2 and sec. 4; eqs. 1 and 2; Tables 5 and 6; Table 4; sec.
+   4.6.
+.. [3] R. W. Ogden, G. Saccomandi and I. Sgura, "Fitting hyperelastic models to experimental data,"
+   Comput. Mech. 34, 2004.
+.. [4] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
+   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, eqs. 1 and 4; sec. 4.4.2 and App. D.
 """
 
 from __future__ import annotations
@@ -253,10 +233,10 @@ def curve_contributions(
 
     Notes
     -----
-    First order ([1]_).  Tension that is logged late stands lower on a rising branch and higher on
-    a falling one; where the modulus is constant and the rate too, no modulus changes (the slope of
-    the splices' share is left out: a hundredth of that).  What is late is what the load cell felt,
-    the inertia that was taken off (its slope over strain, in N) with it.
+    First order ([1]_, 5.1.3).  Tension that is logged late stands lower on a rising branch and
+    higher on a falling one; where the modulus is constant and the rate too, no modulus changes (the
+    slope of the splices' share is left out: a hundredth of that).  What is late is what the load
+    cell felt, the inertia that was taken off (its slope over strain, in N) with it.
 
     Examples
     --------
@@ -341,7 +321,7 @@ def with_diameter(
 
     Notes
     -----
-    Eq. 2 of [3]_.
+    Eq. 2 of [2]_.
 
     Examples
     --------
@@ -371,7 +351,7 @@ def section_contributions(errors: InstrumentErrors, *, area: float) -> Contribut
 
     Notes
     -----
-    Eq. 2 of [3]_.
+    Eq. 2 of [2]_.
 
     Examples
     --------
@@ -405,7 +385,7 @@ def stress_contributions(
 
     Notes
     -----
-    First order ([1]_).
+    First order ([1]_, 5.1.3).
 
     Examples
     --------
@@ -443,7 +423,7 @@ def secant_contributions(
 
     Notes
     -----
-    Eq. 1 of [3]_; first order ([1]_).
+    Eq. 1 of [2]_; first order ([1]_, 5.1.3).
 
     Examples
     --------
@@ -473,7 +453,7 @@ def chord_contributions(
 
     Notes
     -----
-    First order ([1]_).  A zero of the load cell is in no difference of tension.
+    First order ([1]_, 5.1.3).  A zero of the load cell is in no difference of tension.
 
     Examples
     --------
@@ -505,8 +485,8 @@ def segment_contributions(
 
     Notes
     -----
-    The segments of [4]_ are chords of the curve: the errors of their ends are those of the curve
-    there.  The diameter enters a modulus by the area.
+    The segments of [2]_, Tables 5 and 6 are chords of the curve: the errors of their ends are those
+    of the curve there.  The diameter enters a modulus by the area.
 
     Examples
     --------
@@ -554,9 +534,9 @@ def elastomer_contributions(
 
     Notes
     -----
-    First order ([1]_), through the least squares that made the fit: on means over even
+    First order ([1]_, 5.1.3), through the least squares that made the fit: on means over even
     intervals of strain, each of which counts alike.  Two Ogden terms may fit alike with very
-    different parameters ([5]_): the change is that of the set that was found, and no first order
+    different parameters ([3]_): the change is that of the set that was found, and no first order
     tells of a jump to another.
 
     Examples
@@ -621,9 +601,9 @@ def hold_contributions(
 
     Notes
     -----
-    First order ([1]_).  Relaxation is at one length of the machine; that splices take up a little
-    of it is in the tension itself.  Creep is at one tension, where strain errs by its own slope.
-    Times of a series know none of these errors.
+    First order ([1]_, 5.1.3).  Relaxation is at one length of the machine; that splices take up a
+    little of it is in the tension itself.  Creep is at one tension, where strain errs by its own
+    slope. Times of a series know none of these errors.
 
     Examples
     --------
@@ -686,7 +666,7 @@ def pull_contributions(
 
     Notes
     -----
-    First order ([7]_).  A lag at the rate of a slow pull counts as nothing.
+    First order ([1]_, 5.2).  A lag at the rate of a slow pull counts as nothing.
 
     Examples
     --------
@@ -749,7 +729,7 @@ def line_contributions(
 
     Notes
     -----
-    By the logarithmic derivatives of eqs. 1 and 4 of [8]_
+    By the logarithmic derivatives of eqs. 1 and 4 of [4]_
     (`reduction.stages.three_parameter_line.line_model`).
 
     Examples
@@ -818,16 +798,16 @@ def loop_contributions(
 
     Notes
     -----
-    First order ([1]_).  The ends of the loop are where strain and tension have their extremes,
-    taken to be the same place.  A specimen that is stiffer than at the stated temperature pulls
-    harder where the machine sets the position, and stretches less where it sets the load; by as
-    much, relatively, at the mean as at the amplitude.  Tension that is logged late turns the
+    First order ([1]_, 5.1.3).  The ends of the loop are where strain and tension have their
+    extremes, taken to be the same place.  A specimen that is stiffer than at the stated temperature
+    pulls harder where the machine sets the position, and stretches less where it sets the load; by
+    as much, relatively, at the mean as at the amplitude.  Tension that is logged late turns the
     complex modulus back by 2 pi f lag and narrows the loop; it has no first-order effect on
     extremes, but where a wave ``has_corners`` that its other channel is read at.  It is what the
-    load cell felt that is late: the inertia that was taken off with it.
-    Inertia goes with the position and does no work over a cycle, so that an error of its mass
-    leaves the energy alone.  Splices that are longer on the way down widen the loop by the
-    difference of strain, over the range of tension.
+    load cell felt that is late: the inertia that was taken off with it. Inertia goes with the
+    position and does no work over a cycle, so that an error of its mass leaves the energy alone.
+    Splices that are longer on the way down widen the loop by the difference of strain, over the
+    range of tension.
 
     Examples
     --------
@@ -1028,9 +1008,9 @@ def fit_contributions(pull: SlowPull, tension: ArrayLike, *, of: str) -> Contrib
 
     Notes
     -----
-    First order ([10]_, of the slope of [11]_).  The covariance is taken apart into independent
-    errors.  What the curve misses of its slope is one error more, of one sign along the curve: a
-    size is known of it, no course.
+    First order ([1]_, 5.2, F.1.2.3, of the slope of [4]_, sec. 4.4.2 and App. D).  The covariance
+    is taken apart into independent errors.  What the curve misses of its slope is one error more,
+    of one sign along the curve: a size is known of it, no course.
 
     Examples
     --------
@@ -1069,7 +1049,7 @@ def over_strength(
 
     Notes
     -----
-    First order ([12]_, 5.1.6).
+    First order ([1]_, 5.1.6, 5.1.6).
 
     Examples
     --------
@@ -1097,8 +1077,8 @@ def stepwise_contributions(
 
     Notes
     -----
-    First order ([1]_).  One gauge length is in every strain: on Table 4 of [13]_ it is the one
-    that the recorded elongations give.
+    First order ([1]_, 5.1.3).  One gauge length is in every strain: on Table 4 of [2]_ it is the
+    one that the recorded elongations give.
 
     Examples
     --------
@@ -1185,7 +1165,7 @@ def ratio_contributions(
 
     Notes
     -----
-    First order ([14]_, 5.2.2).
+    First order ([1]_, 5.2.2 and G.4.1, 5.2.2).
 
     Examples
     --------
@@ -1209,7 +1189,8 @@ def with_shared_interval(
 
     Notes
     -----
-    Source: [15]_ compares new and used tethers; factor by effective degrees of freedom ([14]_).
+    Source: [2]_, sec. 4.6 compares new and used tethers; factor by effective degrees of freedom
+    ([1]_, 5.2.2 and G.4.1).
 
     Examples
     --------

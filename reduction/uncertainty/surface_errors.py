@@ -19,13 +19,11 @@ coefficients, and the degrees of freedom of Welch and Satterthwaite.
 
 References
 ----------
-.. [1] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
-   in measurement," 5.2.
+.. [1] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty in
+   measurement," 5.2; 5.2.2, G.4.1.
 .. [2] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
    Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, eq. 5, App. C.
-.. [3] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
-   in measurement," 5.2.2, G.4.1.
-.. [4] H. Scheffe, The Analysis of Variance. New York: Wiley, 1959, sec. 3.5.
+.. [3] H. Scheffe, The Analysis of Variance. New York: Wiley, 1959, sec. 3.5.
 """
 
 from __future__ import annotations
@@ -65,8 +63,9 @@ def _coefficient_contributions(
 
     Notes
     -----
-    First order ([1]_).  The surface of [2]_ is linear in its responses, and so is what they share.
-    What is random from run to run is in the scatter about the surface already and is not here.
+    First order ([1]_, 5.2).  The surface of [2]_ is linear in its responses, and so is what they
+    share. What is random from run to run is in the scatter about the surface already and is not
+    here.
 
     Examples
     --------
@@ -168,10 +167,10 @@ def with_shared_at_points(
 
     Notes
     -----
-    [3]_ with the degrees of freedom of scatter and discrepancy for their parts
+    [1]_, 5.2.2, G.4.1 with the degrees of freedom of scatter and discrepancy for their parts
     (`reduction.experiments.surface_discrepancy.discrepancy_of`).  The next run has the instruments
     of the others, and a point where the surface misses what it misses here: both are in its
-    interval in full.  Everywhere at once, as [4]_, with the
+    interval in full.  Everywhere at once, as [3]_, with the
     same uncertainty and degrees of freedom: an error of the coefficients is one of them all.  Ends
     of intervals are brought back from the scale of the fit; an uncertainty is half of what lies
     between the two ends of one standard uncertainty.

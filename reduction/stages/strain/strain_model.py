@@ -12,11 +12,8 @@ How the coefficients of each method are found from tape readings is in
 References
 ----------
 .. [1] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
-   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
-   MA, Tech. Rep. WHOI-2005-10, Dec. 2005.
-.. [2] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
-   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
-   MA, Tech. Rep. WHOI-2005-10, Dec. 2005, sec. 4.1, Table 3.
+   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole, MA,
+   Tech. Rep. WHOI-2005-10, Dec. 2005, sec. 4.1, Table 3.
 """
 
 from __future__ import annotations
@@ -796,7 +793,7 @@ def position_by_model(model: StrainModel, *, strain: ArrayLike, tension: ArrayLi
 
     Examples
     --------
-    Table 3 of [2]_, used tether: 103.2 % of the free length is 6.629 m from thimble to thimble.
+    Table 3 of [1]_, used tether: 103.2 % of the free length is 6.629 m from thimble to thimble.
 
     >>> line = StrainModel("used", "marks", {"free_length_intercept": -0.83512,
     ...     "free_length_slope": 0.90527, "relaxed_free_length": 2.542})
@@ -858,7 +855,7 @@ def with_free_length(model: StrainModel, free_length: float) -> StrainModel:
     Notes
     -----
     A line through the marks, and a constant fraction, hold for the length that was tested: the
-    share of the splices is another in a longer tether ([2]_, Table 3: a third of 12 ft at rest).
+    share of the splices is another in a longer tether ([1]_, Table 3: a third of 12 ft at rest).
 
     Examples
     --------

@@ -56,7 +56,7 @@ error of H, twice that of the amplitude, and K_0/A times that of K_0.
 
 There is one root with K_1 and x positive where E'' < K_ap and E' > K_0, and none elsewhere.
 
-As printed, and as computed.  [5]_ solves its eqs. 1 and 4 at once; eq. 4 is taken with pi
+As printed, and as computed.  [1]_ solves its eqs. 1 and 4 at once; eq. 4 is taken with pi
 and the square on K_0 (see the forward model).  Eq. 4 alone has two roots, x and
 [K_0/(K_0 + K_1)]^2/x; eq. 1 decides between them, and the printed values are the higher.
 
@@ -69,14 +69,10 @@ gives a tau that falls as 1/f.  With one intercept a load,
 References
 ----------
 .. [1] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
-   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, eqs. 1-4, Tables 3-19.
+   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, eqs. 1-4, Tables 3-19; sec. 4.3 and A-3 (the
+   simultaneous solution), Tables 3-19; Tables 11 and 17 and sec. 4.4.5 ("a major departure from the
+   theory represented in equation (4)").
 .. [2] CG-D-39-80, eqs. 1 and 4 (the equations that are differentiated).
-.. [5] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
-   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.3 and A-3 (the simultaneous solution),
-   Tables 3-19.
-.. [6] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
-   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, Tables 11 and 17 and sec. 4.4.5 ("a major
-   departure from the theory represented in equation (4)").
 """
 
 from __future__ import annotations
@@ -636,7 +632,7 @@ def identify_by_amplitude(
 
     Notes
     -----
-    Source: [5]_, eqs. 1 and 4 solved at once; as computed, see the module.  Holds for
+    Source: [1]_, eqs. 1 and 4 solved at once; as computed, see the module.  Holds for
     sinusoidal cycles, whose loop is an ellipse.  A triangular cycle has fundamentals of
     8/pi^2 of its amplitudes: E'' by H and amplitudes is then a third too low
     (`identify_by_fundamental` is free of that).  All uncertainties are of one loop; the
@@ -644,7 +640,7 @@ def identify_by_amplitude(
 
     Examples
     --------
-    Polyester, 8-strand plaited, 1/2 in, centre point of Tables 3 and 11 of [5]_, in lb;
+    Polyester, 8-strand plaited, 1/2 in, centre point of Tables 3 and 11 of [1]_, in lb;
     Tables 14 and 17 print 4.353e4 lb and 4.007 s.
 
     >>> line = identify_by_amplitude(apparent_spring_constant=63170.0, hysteresis_energy=1.392,
@@ -716,7 +712,7 @@ def identify_by_fundamental(
 
     Notes
     -----
-    Eqs. 1 and 4 of [5]_ in E' and E''; exact for any waveform of a linear line.  E' and E''
+    Eqs. 1 and 4 of [1]_ in E' and E''; exact for any waveform of a linear line.  E' and E''
     of a fit over a cycle have independent errors of one size.
 
     Examples
@@ -830,7 +826,7 @@ def _power_of_frequency(
 
     Notes
     -----
-    The check that [6]_ did not make on its runs.  Runs count alike: from the third run on,
+    The check that [1]_ did not make on its runs.  Runs count alike: from the third run on,
     their scatter about the line is the uncertainty, lack of fit included.
 
     Examples
@@ -930,7 +926,7 @@ def check_single_time(
 
     Notes
     -----
-    Source: Table 17 of [6]_ prints tau with terms of frequency as large as its mean: at the
+    Source: Table 17 of [1]_ prints tau with terms of frequency as large as its mean: at the
     centre loads tau(0.1 Hz)/tau(0.5 Hz) is 2.85 to 14, where 1/f gives 5.  A fifteen-run
     design has four pairs of extreme frequencies at equal loads; with its centre runs in a
     group of their own that is 8 runs, 4 factors and 3 degrees of freedom.

@@ -7,13 +7,9 @@ is the laboratory's; nothing here is taken from a standard.
 References
 ----------
 .. [1] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
-   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.3 (break-in and levels).
-.. [3] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
-   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 5 (cycles to failure under snap loads,
-   against the peak as a share of the break strength).
-.. [4] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
-   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 6, Tables 10 and 21 (tensile strength
-   and strain at failure of each pull).
+   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.3 (break-in and levels); sec. 5 (cycles to
+   failure under snap loads, against the peak as a share of the break strength); sec. 6, Tables 10
+   and 21 (tensile strength and strain at failure of each pull).
 """
 
 from __future__ import annotations
@@ -147,9 +143,9 @@ def summarise_bedding_in(
     -----
     The permanent strain is between the feet (v) of the first and the last loop, brought to
     one tension along the last secant; the elongation of the first rise, before the first
-    valley, is not in it.  [1]_ leaves break-in cycles out and prints none.  The first secant is
-    that of the first way up, from begin to peak: what a new rope gains on it is its answer, where
-    loops leave out the drift of steady cycles.
+    valley, is not in it.  [1]_, sec. 4.3 leaves break-in cycles out and prints none.  The first
+    secant is that of the first way up, from begin to peak: what a new rope gains on it is its
+    answer, where loops leave out the drift of steady cycles.
 
     Examples
     --------
@@ -243,7 +239,7 @@ def dynamic_stiffness(
     Notes
     -----
     A drift that is large against its uncertainty says that the level has not settled; the
-    standard error then holds the drift too.  The dynamic stiffness is K_ap of [1]_, force
+    standard error then holds the drift too.  The dynamic stiffness is K_ap of [1]_, sec. 4.3, force
     per unit strain, which the field calls dynamic EA.
 
     Examples
@@ -387,7 +383,7 @@ def cycles_to_failure(
     A rope that parts within a cycle leaves that cycle incomplete, so the last whole cycle
     looks sound: the loops alone cannot tell it from a run-out, and the text says so.  A cycle
     in which it parted is not one that it lasted, whatever its peak; ``parted_in`` says so.
-    Source of the record: [3]_, sec. 5, cycles against the peak as a share of the strength.
+    Source of the record: [1]_, sec. 5, cycles against the peak as a share of the strength.
 
     Examples
     --------
@@ -534,7 +530,7 @@ def parting_sample(
     Notes
     -----
     A line that is unloaded is slack because the crosshead went back, a line that has parted
-    though it did not; [4]_ gives no rule, since a person stood by.
+    though it did not; [1]_, sec. 6, Tables 10 and 21 gives no rule, since a person stood by.
 
     Examples
     --------
@@ -588,10 +584,10 @@ def tensile_pull(
     -----
     A break: after its greatest the tension falls below half of it while the crosshead has
     gone back by less than a twentieth of its travel, for three readings.  A pull that was
-    stopped gives a lower bound.  [4]_ prints strength and strain at failure of each pull and
-    no uncertainty.  The greatest of readings with noise reads high: by less than the noise of
-    one reading where the record rises by more than that from reading to reading, and by up to
-    two and a half times the noise where thousands are nearly as great.
+    stopped gives a lower bound.  [1]_, sec. 6, Tables 10 and 21 prints strength and strain at
+    failure of each pull and no uncertainty.  The greatest of readings with noise reads high: by
+    less than the noise of one reading where the record rises by more than that from reading to
+    reading, and by up to two and a half times the noise where thousands are nearly as great.
 
     Examples
     --------

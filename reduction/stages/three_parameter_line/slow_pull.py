@@ -4,7 +4,7 @@ r"""Slow pulls: load-strain curve, its cubic, and quasi-static spring constant.
 
 .. math:: \varepsilon = A + B T + C T^2 + D T^3, \qquad K_0 = 1 / (B + 2 C T + 3 D T^2)
 
-As printed, and as computed.  [5]_ prints two forms that do not quite agree: cubics of strain
+As printed, and as computed.  [1]_ prints two forms that do not quite agree: cubics of strain
 (Tables 8 and 9) and cubics of K_0 (Tables 6 and 7).  Here both forms are given beside K_0, which
 is the local slope of the readings: a cubic spline of as many pieces as the readings ask for.  The
 cubic of K_0 is fitted to that slope, with its greatest distance from it.  Table 6 heads its form
@@ -16,17 +16,10 @@ all.
 References
 ----------
 .. [1] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
-   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.4.2 ("a slow uni-directional
-   loading").
-.. [2] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
-   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.4.3.
-.. [4] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
-   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.4.2, 4.4.3, Tables 6-9.
-.. [5] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
-   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.4.2, 4.4.3, Tables 6-9, App. D.
-.. [6] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
-   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.4.2, 4.4.3 and App. D.
-.. [7] C. de Boor, "A Practical Guide to Splines," Springer, 1978, ch. XII (the slope of a cubic
+   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.4.2 ("a slow uni-directional loading");
+   sec. 4.4.3; sec. 4.4.2, 4.4.3, Tables 6-9; sec. 4.4.2, 4.4.3, Tables 6-9, App. D; sec. 4.4.2,
+   4.4.3 and App. D.
+.. [2] C. de Boor, "A Practical Guide to Splines," Springer, 1978, ch. XII (the slope of a cubic
    spline is off by the third power of the distance of its knots).
 """
 
@@ -91,8 +84,8 @@ def _find_loading(
     return to it are left out.  The start without a reference tension is the lowest reading
     before the peak plus six standard deviations of a reading, or plus half a percent of
     the rise where that is more.  What follows the peak (unloading, failure) is left out;
-    [1]_ pulls to failure.  The greatest reading of a hold at the peak lies anywhere in it: where
-    strain goes on while tension stands, the pull ends as it reaches the hold.
+    [1]_, sec. 4.4.2 pulls to failure.  The greatest reading of a hold at the peak lies anywhere in
+    it: where strain goes on while tension stands, the pull ends as it reaches the hold.
 
     Examples
     --------
@@ -166,7 +159,7 @@ def tension_grid(pulls: Sequence[SlowPull | None]) -> Floats:
 
     Notes
     -----
-    [2]_ draws each pull over its own range; one grid makes pulls of a test comparable.
+    [1]_, sec. 4.4.3 draws each pull over its own range; one grid makes pulls of a test comparable.
 
     Examples
     --------
@@ -552,11 +545,11 @@ def slope_of_cubic(tension: ArrayLike, coefficient: ArrayLike) -> Floats:
 
     Notes
     -----
-    Source: [4]_, sec. 4.4.2, and Tables 8 and 9 for the cubic.
+    Source: [1]_, sec. 4.4.2, and Tables 8 and 9 for the cubic.
 
     Examples
     --------
-    Nylon double braid, 1/2 in, Table 8 of [4]_, at the mean loads of Table 1, in 1e4 lb:
+    Nylon double braid, 1/2 in, Table 8 of [1]_, at the mean loads of Table 1, in 1e4 lb:
 
     >>> slope = slope_of_cubic([768.0, 1344.0, 1920.0], [-4.13e-4, 1.389e-4, -3.906e-8, 3.795e-12])
     >>> print((slope / 1e4).round(3))
@@ -580,7 +573,7 @@ def _rising_range(curve: _PulledCurve) -> tuple[float, float]:
 
     Notes
     -----
-    A slope that is not positive has no quasi-static spring constant ([4]_, sec. 4.4.2); one that
+    A slope that is not positive has no quasi-static spring constant ([1]_, sec. 4.4.2); one that
     noise alone makes negative, where a line is stiff, leaves the rest of the pull what it is.
 
     Examples
@@ -612,7 +605,7 @@ def _printed_form(
 
     Notes
     -----
-    The form of Table 7 of [4]_.  Shares of K_0 count alike, since it spans a factor of
+    The form of Table 7 of [1]_.  Shares of K_0 count alike, since it spans a factor of
     several over the range.
 
     Examples
@@ -734,14 +727,14 @@ def fit_pull(
 
     Notes
     -----
-    Source: [5]_, sec. 4.4.2 and 4.4.3.  Readings are first averaged over a hundredth of the
+    Source: [1]_, sec. 4.4.2 and 4.4.3.  Readings are first averaged over a hundredth of the
     tension range each, and the residuals of those means carry the uncertainty, widened by
     their likeness to their neighbours: thousands of readings would hide in a root of their
     number what a fit leaves.  A curve that is no cubic has another slope than its cubic, so K_0
     is the slope of a cubic spline, and strain is that of the same spline, each with what the spline
     misses there.  The standard uncertainty holds these and no calibration.
 
-    App. D of [5]_ finds 4.22, 6.33 and 7.71e4 lb for K_0 of one line: at 0.071 per minute
+    App. D of [1]_ finds 4.22, 6.33 and 7.71e4 lb for K_0 of one line: at 0.071 per minute
     a day after the dynamic test, at 0.23 per minute a day after, and at 0.23 per minute at
     once, that is a factor of 1.5 to 1.8.  The rate and the waiting time stay with the
     number for that reason, and it enters K_1 and tau in full.
@@ -903,7 +896,7 @@ def quasi_static_spring_constant(pull: SlowPull, tension: ArrayLike) -> tuple[Fl
 
     Notes
     -----
-    Source: [6]_, sec. 4.4.2: it "must be calculated at the mean load level of interest and
+    Source: [1]_, sec. 4.4.2: it "must be calculated at the mean load level of interest and
     used for small perturbations around that mean load".  The slope is that of the cubic spline
     through the readings, and the uncertainty of this fit, with what it misses there.
 
@@ -958,7 +951,7 @@ def strain_at_tension(pull: SlowPull, tension: ArrayLike) -> tuple[Floats, Float
 
     Notes
     -----
-    Source: [6]_, sec. 4.4.3.
+    Source: [1]_, sec. 4.4.3.
 
     Examples
     --------
@@ -1003,7 +996,7 @@ def strain_at_break_share(
 
     Notes
     -----
-    Source: [6]_, sec. 4.4.3 ("at 30% of rated breaking strength, nylon double-braided line
+    Source: [1]_, sec. 4.4.3 ("at 30% of rated breaking strength, nylon double-braided line
     and plaited line stretches approximately 15% and 25%").
 
     Examples
@@ -1043,7 +1036,7 @@ def spring_constant_ratio(
 
     Notes
     -----
-    Source: [6]_, Table D-1, where it is 1.50 for the rate, 1.22 for the waiting time and
+    Source: [1]_, Table D-1, where it is 1.50 for the rate, 1.22 for the waiting time and
     1.83 for both.
 
     Examples
@@ -1094,10 +1087,10 @@ def error_of_pull_rate(
 
     Notes
     -----
-    No correction: the tau of real lines grows with the period ([6]_), and loops do not show it at
-    the rate of a pull.  An uncertainty of a pull that is short beside it (`is_short_pull`); K_0 of
-    longer ones is that of their stated rate, and this is told.  K_1 and tau hold the error that
-    they are to tell.
+    No correction: the tau of real lines grows with the period ([1]_, sec. 4.4.2, 4.4.3 and App. D),
+    and loops do not show it at the rate of a pull.  An uncertainty of a pull that is short beside
+    it (`is_short_pull`); K_0 of longer ones is that of their stated rate, and this is told.  K_1
+    and tau hold the error that they are to tell.
 
     Examples
     --------
@@ -1203,13 +1196,14 @@ def quasi_static_of_run(
 
     Notes
     -----
-    Source: [6]_, sec. 4.4.2.  One K_0 a run, so that all its cycles share its error.
+    Source: [1]_, sec. 4.4.2.  One K_0 a run, so that all its cycles share its error.
 
-    [6]_ means small cycles.  The slow spring of a large one is bent, and its slope over the cycle
-    is not that of the pull at the mean tension: 1 % in K_0, at a twentieth of a hertz, is 8 % in
-    K_1 and 10 % in tau.  Where the loops themselves are bent, by more than K_0 is uncertain, K_0
-    is the chord of the pull about the tension of their midline (`spring_of_wave`), or its slope
-    there where the pull does not reach the ends; straight loops keep the slope at the mean.
+    [1]_, sec. 4.4.2, 4.4.3 and App. D means small cycles.  The slow spring of a large one is bent,
+    and its slope over the cycle is not that of the pull at the mean tension: 1 % in K_0, at a
+    twentieth of a hertz, is 8 % in K_1 and 10 % in tau.  Where the loops themselves are bent, by
+    more than K_0 is uncertain, K_0 is the chord of the pull about the tension of their midline
+    (`spring_of_wave`), or its slope there where the pull does not reach the ends; straight loops
+    keep the slope at the mean.
 
     Examples
     --------
