@@ -3,8 +3,8 @@ r"""What a quadratic surface may miss between its runs.
 Three levels of a factor carry a slope and a curvature; what the response does between them they
 do not say.  A power of the frequency with the exponent -0.9, quadratic in the frequency on the
 scale of its logarithm, is met at 0.1, 0.3 and 0.5 Hz and is off by 6 % at 0.2 Hz, with residuals
-of nil.  The terms of third and fourth order that the surface does without are drawn from what
-the lower ones say of their size,
+of nil.  The terms of higher order that the surface does without (of one factor up to the
+eighth, of several up to the fourth) are drawn from what the lower ones say of their size,
 
 .. math::
 
@@ -33,6 +33,7 @@ References
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import product
 from typing import NamedTuple
@@ -45,15 +46,18 @@ from reduction.experiments.fit_results import ResponseSurfaces
 from reduction.experiments.response_matrix import block_contrasts
 from reduction.experiments.response_transform import back_transform
 from reduction.quantities.names import response_of_surface
-from reduction.record.measurement import Floats, Integers, read_only_arrays
+from reduction.record.measurement import Bools, Floats, Integers, read_only_arrays
 
 _ORDERS = (3, 4)
 
 _NO_ZERO = 0.5
 """Fall of the terms from order to order of a factor that may be zero or less."""
 
-_LARGEST = 2 / 3
-"""Of a factor whose range reaches near zero: no series falls more slowly within three levels."""
+_ALONE = range(5, 9)
+"""Further orders along one factor: of a logarithm over levels of 1 to 25, 2 % is left beyond."""
+
+_NO_LEVEL = 1e-6
+"""Share of the centre below which a coded level beyond the range stands for none."""
 
 _ALONG = np.linspace(-1.0, 1.0, 41)
 """Coded levels at which a response along one factor is drawn."""
@@ -79,7 +83,7 @@ class SurfaceDiscrepancy:
     Parameters
     ----------
     exponents : ndarray of int, shape (n_all, n_factors)
-        Terms of the surface, then those of third and fourth order.
+        Terms of the surface, then those of third and fourth order, then more of one factor.
     moment : ndarray, shape (n_responses, n_all, n_all)
         Expected products of the coefficients of the difference between response and surface; NaN
         for a response without a surface. [unit of the fitted response, squared]
@@ -170,30 +174,36 @@ def discrepancy_of(surfaces: ResponseSurfaces) -> SurfaceDiscrepancy:
     n_terms, n_more = len(surfaces.exponents), len(more)
     moment = np.full((len(surfaces.response_names), n_terms + n_more, n_terms + n_more), np.nan)
     freedom = np.full(len(surfaces.response_names), np.nan)
-    loss = _loss_of(surfaces, ratio)
-    # of responses that miss the same runs the matrices are the same
-    of_runs: dict[bytes, tuple[Floats, Floats]] = {}
+    # responses that miss the same runs share their matrices
+    of_pattern = [_runs_of(surfaces, is_used) for is_used in surfaces.is_used]
+    aliases = [_aliases(surfaces, runs, more) for runs in of_pattern]
+    loss = _loss_of(surfaces, ratio, of_pattern)
     for row, pattern in enumerate(surfaces.pattern.tolist()):
-        used = surfaces.is_used[pattern] & np.isfinite(surfaces.coded).all(axis=1)
         if not np.isfinite(surfaces.coefficient[row]).all():
             continue
-        key = used.tobytes()
-        if key not in of_runs:
-            of_runs[key] = _aliases(surfaces, used, more)
-        change, seen = of_runs[key]
+        change, seen = aliases[pattern]
         size = np.diag(_of_several_factors(surfaces, row, more, ratio, seen))
         for factor in range(n_factors):
             own = np.flatnonzero(np.delete(more, factor, axis=1).sum(axis=1) == 0)
-            size[np.ix_(own, own)] = _of_one_factor(surfaces, row, factor, ratio, loss)
+            size[np.ix_(own, own)] = _of_one_factor(
+                surfaces, row, factor, ratio, loss, of_pattern[pattern]
+            )
         moment[row] = change @ size @ change.T
         freedom[row] = 2.0 * n_factors
     return SurfaceDiscrepancy(np.concatenate([surfaces.exponents, more]), moment, freedom)
 
 
 def _higher_orders(n_factors: int) -> Integers:
-    """Powers of each factor in every term of third and fourth order."""
+    """Powers of each factor in every term of third and fourth order, and those of one factor."""
     every = product(range(max(_ORDERS) + 1), repeat=n_factors)
-    return np.array([one for one in every if sum(one) in _ORDERS], dtype=np.int64)
+    crossed = np.array([one for one in every if sum(one) in _ORDERS], dtype=np.int64)
+    alone = np.kron(np.array(_ALONE)[:, None], np.eye(n_factors, dtype=np.int64))
+    return np.concatenate([crossed, alone])
+
+
+def _logarithm_of(ratio: float) -> Callable[[Floats], Floats]:
+    """Logarithm of a level over that of the centre, by coded level; none of a level of zero."""
+    return lambda coded: np.asarray(np.log(np.maximum(1 + ratio * coded, _NO_LEVEL)))
 
 
 def _falls(low: Floats, high: Floats) -> Floats:
@@ -208,20 +218,33 @@ def _falls(low: Floats, high: Floats) -> Floats:
     """
     centre = (high + low) / 2
     share = np.divide(high - low, 2 * centre, out=np.full(low.shape, _NO_ZERO), where=low > 0)
-    return np.asarray(np.minimum(share, _LARGEST))
+    return np.asarray(share)
 
 
-def _aliases(surfaces: ResponseSurfaces, used: np.ndarray, more: Integers) -> tuple[Floats, Floats]:
-    """Coefficients of what a surface misses of each term, and how much of it the residuals see."""
-    terms = model_matrix(surfaces.coded[used], surfaces.exponents)
-    higher = model_matrix(surfaces.coded[used], more)
-    matrix = terms
+class _Runs(NamedTuple):
+    """Coded levels of the runs of a response, their model matrix and its inverse, with blocks."""
+
+    coded: Floats
+    matrix: Floats
+    inverse: Floats
+
+
+def _runs_of(surfaces: ResponseSurfaces, is_used: Bools) -> _Runs:
+    """Runs that have a value and levels."""
+    used = is_used & np.isfinite(surfaces.coded).all(axis=1)
+    matrix = model_matrix(surfaces.coded[used], surfaces.exponents)
     if surfaces.blocks is not None:
         effects = block_contrasts(surfaces.blocks.index[used])
-        matrix = np.hstack([terms, effects - effects.mean(axis=0)])
-    inverse = np.linalg.pinv(matrix)
-    change = np.vstack([-(inverse @ higher)[: terms.shape[1]], np.eye(len(more))])
-    left = higher - matrix @ (inverse @ higher)
+        matrix = np.hstack([matrix, effects - effects.mean(axis=0)])
+    return _Runs(surfaces.coded[used], matrix, np.asarray(np.linalg.pinv(matrix)))
+
+
+def _aliases(surfaces: ResponseSurfaces, runs: _Runs, more: Integers) -> tuple[Floats, Floats]:
+    """Coefficients of what a surface misses of each term, and how much of it the residuals see."""
+    higher = model_matrix(runs.coded, more)
+    solved = runs.inverse @ higher
+    change = np.vstack([-solved[: len(surfaces.exponents)], np.eye(len(more))])
+    left = higher - runs.matrix @ solved
     return change, np.sum(left**2, axis=0)
 
 
@@ -244,7 +267,7 @@ def _storage_kernel(distance: Floats) -> Floats:
 
 
 class _OneFactor(NamedTuple):
-    """What slope and curvature along a factor say of the terms of third and fourth order.
+    """What slope and curvature along a factor say of the terms of higher order.
 
     ``unlikely`` is one over the likelihood of both, of whatever size the process is.
     """
@@ -259,7 +282,7 @@ class _OneFactor(NamedTuple):
     unlikely: float
 
     def moment(self, size: float) -> Floats:
-        """Mean products of the coefficients of third and fourth order, for a process of a size."""
+        """Mean products of the coefficients of higher order, for a process of a size."""
         return np.asarray(self.gain @ self.products @ self.gain.T + size * self.left)
 
     def chance(self, size: float) -> float:
@@ -276,27 +299,33 @@ class _OneFactor(NamedTuple):
 
 
 def _drawn(
-    surfaces: ResponseSurfaces, row: int, factor: int, shift: Floats, *, is_storage: bool = False
+    surfaces: ResponseSurfaces,
+    row: int,
+    factor: int,
+    along: Callable[[Floats], Floats],
+    runs: _Runs,
+    *,
+    is_storage: bool = False,
 ) -> _OneFactor:
     """Terms of a process along a factor, by the slope and curvature of a response.
 
-    Drawn at levels, carried through the parabola of three of them, and what that misses through
-    the cubic and quartic that are nil at these three.
+    Drawn at the levels of the runs and between them, carried through the parabola that the runs
+    make of it, and what that misses through the terms of higher order, less their own parabolas.
     """
+    place = np.concatenate([_ALONG, runs.coded[:, factor]])
+    shift = along(place)
     distance = shift[:, None] - shift
     covariance = _storage_kernel(distance) if is_storage else _loss_kernel(distance)
-    powers = _ALONG[:, None] ** np.arange(5)
-    levels = np.array([0, _ALONG.size // 2, _ALONG.size - 1])
-    parabola = np.zeros((3, _ALONG.size))
-    parabola[:, levels] = np.linalg.inv(powers[levels, :3])
-    missed = np.eye(_ALONG.size) - powers[:, :3] @ parabola
-    beyond = np.linalg.pinv(powers[:, 3:] - powers[:, 1:3]) @ missed
+    own = np.eye(len(surfaces.factor_names), dtype=int)[factor]
+    three = [np.flatnonzero((surfaces.exponents == n * own).all(axis=1))[0] for n in range(3)]
+    parabola = np.zeros((3, place.size))
+    parabola[:, _ALONG.size :] = runs.inverse[three]
+    powers = place[:, None] ** np.arange(_ALONE.stop)
+    missed = (np.eye(place.size) - powers[:, :3] @ parabola)[: _ALONG.size]
+    beyond = np.linalg.pinv(missed @ powers[:, 3:]) @ missed
     every = np.vstack([parabola[1:], beyond])
     joint = every @ covariance @ every.T
-    own = np.eye(len(surfaces.factor_names), dtype=int)[factor]
-    terms = np.array(
-        [np.flatnonzero((surfaces.exponents == n * own).all(axis=1))[0] for n in (1, 2)]
-    )
+    terms = np.array(three[1:])
     slopes = surfaces.coefficient[row, terms]
     factor_of = surfaces.covariance_factor[surfaces.pattern[row]][np.ix_(terms, terms)]
     scatter = np.nan_to_num(surfaces.sigma[row]) ** 2 * factor_of
@@ -317,7 +346,9 @@ class _Loss(NamedTuple):
     share: float
 
 
-def _loss_of(surfaces: ResponseSurfaces, ratio: Floats) -> _Loss | None:
+def _loss_of(
+    surfaces: ResponseSurfaces, ratio: Floats, of_pattern: Sequence[_Runs]
+) -> _Loss | None:
     """Loss along the frequency, from the surfaces of H; None where they do not say.
 
     The size is relative to the loss; the share is that of the loss in K_ap at the centre, H K_ap /
@@ -332,7 +363,8 @@ def _loss_of(surfaces: ResponseSurfaces, ratio: Floats) -> _Loss | None:
     row = known["hysteresis_energy"]
     relative = _centre(surfaces, row) ** surfaces.transform_exponent[row]
     place = surfaces.factor_names.index("frequency")
-    size = _drawn(surfaces, row, place, np.log1p(ratio[place] * _ALONG)).size / relative**2
+    runs = of_pattern[surfaces.pattern[row]]
+    size = _drawn(surfaces, row, place, _logarithm_of(ratio[place]), runs).size / relative**2
     share = spring = 0.0
     if "tension_amplitude" in surfaces.factor_names and "apparent_spring_constant" in known:
         place = surfaces.factor_names.index("tension_amplitude")
@@ -350,21 +382,30 @@ def _centre(surfaces: ResponseSurfaces, row: int) -> float:
 
 
 def _of_one_factor(
-    surfaces: ResponseSurfaces, row: int, factor: int, ratio: Floats, loss: _Loss | None
+    surfaces: ResponseSurfaces,
+    row: int,
+    factor: int,
+    ratio: Floats,
+    loss: _Loss | None,
+    runs: _Runs,
 ) -> Floats:
-    """Mean products of the coefficients of third and fourth order along one factor."""
-    level = ratio[factor] * _ALONG
+    """Mean products of the coefficients of the higher orders along one factor."""
+
+    def level(coded: Floats) -> Floats:
+        return np.asarray(ratio[factor] * coded)
+
+    logarithm = _logarithm_of(ratio[factor])
     if surfaces.low[factor] <= 0:
-        drawn = _drawn(surfaces, row, factor, level)
+        drawn = _drawn(surfaces, row, factor, level, runs)
         return drawn.moment(drawn.size)
     if surfaces.factor_names[factor] != "frequency":
-        one, other = (_drawn(surfaces, row, factor, shift) for shift in (level, np.log1p(level)))
+        one, other = (_drawn(surfaces, row, factor, each, runs) for each in (level, logarithm))
         both = one.unlikely + other.unlikely
         share = other.unlikely / both if both > 0 else 0.5
         return share * one.moment(one.size) + (1 - share) * other.moment(other.size)
     name = response_of_surface(surfaces.response_names[row])
     is_storage = name in _STORING
-    drawn = _drawn(surfaces, row, factor, np.log1p(level), is_storage=is_storage)
+    drawn = _drawn(surfaces, row, factor, logarithm, runs, is_storage=is_storage)
     size = drawn.size
     if loss is not None and (is_storage or name in _FROM_LOSS):
         centre = _centre(surfaces, row)
