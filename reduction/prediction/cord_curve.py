@@ -29,6 +29,8 @@ from numpy.typing import ArrayLike, NDArray
 from reduction.record.errors import SettingsError
 from reduction.record.measurement import Floats, read_only_arrays
 
+_ROUNDING = 1e-12
+
 
 @dataclass(frozen=True)
 @read_only_arrays
@@ -130,8 +132,10 @@ def pieces_of(curve: CordCurve, *, order: Literal[0, 1, -1] = 0) -> CordPieces:
         case _:
             coefficient = cubic.c
     edge = np.ones((len(coefficient), 1))
+    # the strain of a hose at the break of its cords, taken back to the cord, is a rounding off
+    knot = np.append(curve.strain[:-1], curve.break_strain * (1 + _ROUNDING))
     return CordPieces(
-        knot=curve.strain,
+        knot=knot,
         origin=np.concatenate([[0.0], curve.strain[:-1], [0.0]]),
         coefficient=np.hstack([0 * edge, coefficient, np.nan * edge]),
     )

@@ -29,13 +29,12 @@ QUANTITIES = [item.name for item in fields(HoseEvent)]
 
 
 @pytest.mark.parametrize("name", NAMES)
-@pytest.mark.parametrize("angle", [50.0, 64.0, 68.0])
+@pytest.mark.parametrize("angle", [50.0, 52.0, 60.0, 64.0, 68.0])
 @pytest.mark.parametrize("law", ["neo-hookean", "linear", "linear-current", "hencky"])
 def test_an_event_is_a_point_of_the_predicted_curve(name, angle, law):
     design = replace(HOSE, wrap_angle=np.radians(angle), rubber_law=law)
     event = getattr(find_events(design), name)
-    # a hair before it, for at the break itself rounding decides
-    curve = predict_hose(design, [max(float(event.strain) - 1e-12, 0.0)])
+    curve = predict_hose(design, [float(event.strain)])
     for quantity in QUANTITIES[1:]:
         scale = {"tension": 1e4, "fill_pressure": 1e6, "cord_tension": 1e2, "cord_strain": 0.1}
         np.testing.assert_allclose(
