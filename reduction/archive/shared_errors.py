@@ -202,11 +202,10 @@ _CURVES = (
     ("branch_tension_first_loading", "tangent_modulus_first_loading", "first_loading_strain_bin"),
 )
 
-_OF_ALL_SAMPLES = (
-    "tension_gain", "tension_offset", "position_gain", "position_offset", "lag", "strain_gain",
-    "stiffness", "attached_mass", "linear_density", "machine_compliance",
+_OF_CURVE_ALONE = (
+    "position_offset", "lag", "stiffness", "attached_mass", "linear_density", "machine_compliance",
 )  # fmt: skip
-"""What may be stated of a test that is in its curve: not the noise of a reading."""
+"""What may be stated of a test that only its curve carries: no scale, no zero of the load."""
 
 
 def curve_errors_of(archive: xr.Dataset, place: int) -> tuple[SharedErrors, tuple[Note, ...]]:
@@ -222,12 +221,9 @@ def curve_errors_of(archive: xr.Dataset, place: int) -> tuple[SharedErrors, tupl
         if there.any():
             return _errors(archive, archive[axis].values, tension, of_error, slope, there), ()
     stated = stated_errors_of(archive)
-    has_curve = any(
-        curve in archive and np.isfinite(archive[curve].values[place]).any()
-        for curve, *_ in _CURVES
-    )
-    is_left_out = not has_curve and any(getattr(stated, name) for name in _OF_ALL_SAMPLES)
-    return _of_length(archive, place), (note("no-curve-of-errors"),) if is_left_out else ()
+    is_left_out = any(getattr(stated, name) for name in _OF_CURVE_ALONE)
+    left_out = (note("no-curve-of-errors"),) if is_left_out else ()
+    return _scales_and_zero(archive, place, stated), left_out
 
 
 def _errors(
@@ -257,11 +253,20 @@ def _errors(
     )
 
 
-def _of_length(archive: xr.Dataset, place: int) -> SharedErrors:
-    """A gauge length scales every strain; nothing where strain is not over one."""
+def _scales_and_zero(archive: xr.Dataset, place: int, stated: StatedErrors) -> SharedErrors:
+    """Scales of load and strain and zero of the load, which need no curve to be known.
+
+    A gauge length and the scale of the position it is compared with scale every strain; nothing
+    where strain is not over one.
+    """
     gauge = _number(archive, "strain_gauge_length", place)
     spread = _number(archive, "strain_gauge_length_standard_uncertainty", place)
-    return constant_errors(strain_gain=spread / gauge if gauge > 0 and spread > 0 else 0.0)
+    of_length = (np.nan_to_num(spread) / gauge, stated.position_gain) if gauge > 0 else ()
+    return constant_errors(
+        tension_gain=stated.tension_gain,
+        tension_offset=stated.tension_offset,
+        strain_gain=float(np.linalg.norm((stated.strain_gain, *of_length))),
+    )
 
 
 def _number(archive: xr.Dataset, name: str, place: int) -> float:

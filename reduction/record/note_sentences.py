@@ -1541,7 +1541,8 @@ _OF_HOSES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "no-curve-of-errors": (
         "note",
         "the archive of the test has no curve with instrument errors (none exists without a"
-        " diameter): stated errors of load and crosshead are not in the comparison",
+        " diameter): of the stated errors only the scales of load and strain and the zero of the"
+        " load are in the comparison",
     ),
 }  # fmt: skip
 
