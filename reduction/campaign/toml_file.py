@@ -7,10 +7,11 @@ import hashlib
 import re
 import reprlib
 import tomllib
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -141,10 +142,12 @@ class _Fault:
     place: str
     needed: str
     found: str
+    hint: str = ""
 
     def __str__(self) -> str:
         """``place: what is needed; found ...``."""
-        return f"{self.place}: {self.needed}" + (f"; found {self.found}" if self.found else "")
+        found = f"; found {self.found}" if self.found else ""
+        return f"{self.place}: {self.needed}{found}{self.hint}"
 
 
 def in_toml(path: Path, problem: str, **kwargs: Any) -> SettingsError:
@@ -214,8 +217,53 @@ def _place(
     return tuple(place)
 
 
-def faults_of(error: ValidationError, table: object) -> list[_Fault]:
+def _known_keys(
+    schema: Mapping[str, Any], definitions: Mapping[str, Any], at: tuple[str, ...] = ()
+) -> Iterator[tuple[str, ...]]:
+    """Keys of a JSON schema with the tables they stand in; ``NAME`` is a name of the user's own."""
+    if len(at) > _DEEPEST:
+        return
+    if "$ref" in schema:
+        schema = definitions[schema["$ref"].rpartition("/")[2]]
+    for name, entry in schema.get("properties", {}).items():
+        yield (*at, name)
+        yield from _known_keys(entry, definitions, (*at, name))
+    for entry in schema.get("patternProperties", {}).values():
+        yield from _known_keys(entry, definitions, (*at, "NAME"))
+    for entry in (*schema.get("anyOf", ()), *([schema["items"]] if "items" in schema else ())):
+        yield from _known_keys(entry, definitions, at)
+
+
+def _meant_by(place: tuple[str, ...], model: type[BaseModel]) -> str:
+    """What a key that is not known may have been meant for: one like it, or another table."""
+    schema = model.model_json_schema()
+    known = dict.fromkeys(_known_keys(schema, schema.get("$defs", {})))
+    *table, key = place
+    tables = {one[:-1] for one in known}
+    here = next(
+        (
+            one
+            for one in sorted(tables, key=lambda one: one.count("NAME"))
+            if len(one) == len(table)
+            and all(a in ("NAME", b) for a, b in zip(one, table, strict=True))
+        ),
+        None,
+    )
+    elsewhere = [f"[{'.'.join(one[:-1])}]" for one in known if one[-1] == key and len(one) > 1]
+    if 0 < len(elsewhere) <= _MOST_PLACES:
+        return f". It belongs in {' or '.join(elsewhere)}"
+    near = get_close_matches(key, [one[-1] for one in known if one[:-1] == here], n=1, cutoff=0.75)
+    return f". Did you mean {near[0]!r}?" if near else ""
+
+
+_MOST_PLACES = 3  # of a key that is known in other tables
+
+
+def faults_of(
+    error: ValidationError, table: object, model: type[BaseModel] | None = None
+) -> list[_Fault]:
     """Every fault once; of a value that no choice allows what is wrong with its number."""
+    unknown: set[tuple[str, ...]] = set()
     found: dict[tuple[str, ...], list[tuple[str, str]]] = {}
     values: dict[tuple[str, ...], list[tuple[str, str]]] = {}
     for entry in error.errors():
@@ -226,6 +274,8 @@ def faults_of(error: ValidationError, table: object) -> list[_Fault]:
             place += (str(cause.facts["key"]),) if "key" in cause.facts else ()
             values[place] = [(str(cause), "")]
         needed = _WORDS.get(entry["type"], entry["msg"].removeprefix("Value error, "))
+        if entry["type"] == "extra_forbidden":
+            unknown.add(place)
         shown = "" if is_missing else _shown(entry["input"])
         found.setdefault(place, []).append((needed, shown))
     found |= values
@@ -239,7 +289,8 @@ def faults_of(error: ValidationError, table: object) -> list[_Fault]:
             text if number == 0 else text.removeprefix("Input should be ")
             for number, text in enumerate(dict.fromkeys(text for text, _ in told))
         )
-        faults.append(_Fault(".".join(place), needed, told[0][1]))
+        hint = _meant_by(place, model) if model is not None and place in unknown else ""
+        faults.append(_Fault(".".join(place), needed, told[0][1], hint))
     return faults
 
 
@@ -359,7 +410,7 @@ def read_toml(
     try:
         return model.model_validate(table)
     except ValidationError as error:
-        faults = faults_of(error, table)
+        faults = faults_of(error, table, model)
         count = f"{len(faults)} settings" if len(faults) > 1 else "1 setting"
         headline = f"{count} cannot be used, first '{faults[0].place}' ({keys})"
         raise in_toml(path, listed(headline, faults)) from error
