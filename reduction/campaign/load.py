@@ -8,6 +8,7 @@ import tomllib
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
+from decimal import Decimal
 from pathlib import Path, PureWindowsPath
 from typing import Any
 
@@ -226,8 +227,8 @@ _LENGTHS = ("near_toe", "far_toe", "far_thimble")
 
 _SUFFIXES = {"ft": "ft", "in": "inch", "m": "m", "mm": "mm", "cm": "cm"}
 
-# as a person reads a tape: the digits behind the point say how finely
-_NUMBER = re.compile(r"[-+]?([0-9]{1,9}(\.[0-9]{0,9})?|\.[0-9]{1,9})")
+# as a person reads a tape, whose digits say how finely; or as a spreadsheet converts it, to twenty
+_NUMBER = re.compile(r"[-+]?([0-9]{1,9}(\.[0-9]{0,20})?|\.[0-9]{1,20})([eE][-+]?[0-9]{1,2})?")
 
 _HOLDS = ("slack", "min", "centre", "max")
 
@@ -304,8 +305,7 @@ def _read_marks(path: Path, name: str = "") -> dict[str, SpliceMarks]:
             index, factor = columns[length]
             cell = cells[index].strip()
             values.append(factor * _reading(path, number, header[index], cell))
-            decimals = len(cell.partition(".")[2])
-            entry.decimals.append(factor * 10.0**-decimals)
+            entry.decimals.append(factor * 10.0 ** int(Decimal(cell).as_tuple().exponent))
         entry.lengths.append((values[0], values[1], values[2]))
         entry.place.append(MarkPlace(name or path.name, number, far_thimble))
     if not rows:

@@ -467,6 +467,15 @@ def test_sixteenths_of_an_inch_in_decimal_feet_are_not_read_to_their_last_digit(
     assert _read_marks(path)["a"].reading_uncertainty == 0.0005
 
 
+def test_marks_with_the_digits_of_a_spreadsheet_are_read(tmp_path):
+    path = tmp_path / "marks.csv"
+    path.write_text(MARKS.replace("2,10,12", "2.0416666666666665,1.0437499999999998e1,12.10"))
+    marks = _read_marks(path)["a"]
+    assert marks.near_toe == pytest.approx([24.5 * 0.0254])
+    assert marks.free_length == pytest.approx([(10.4375 - 24.5 / 12) * 0.3048])
+    assert marks.reading_uncertainty == 0.0005
+
+
 def test_a_mark_on_the_way_down_is_known_by_its_hold(tmp_path):
     path = tmp_path / "marks.csv"
     path.write_text(MARKS.replace("slack", "75 % down"))
