@@ -1,5 +1,7 @@
 """Loops: areas and moduli of exact ellipses and straight-sided loops, noise, missing readings."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -1092,6 +1094,40 @@ def test_few_missing_readings_are_bridged_and_many_make_the_cycle_nan():
     assert energy[0] == pytest.approx(np.pi * LOSS * AMPLITUDE**2, rel=1e-3)
     assert energy[1] == pytest.approx(np.pi * LOSS * AMPLITUDE**2, rel=0.05)
     assert np.isnan(energy[2]) and np.isnan(loops.peak_tension[0, 2])
+
+
+@pytest.mark.parametrize("lost", [56, 48, 60])  # valley, crest and flank of the fourth cycle
+def test_a_sine_that_lacks_a_reading_keeps_its_amplitude(lost):
+    t, tension, strain = ellipse(16, 6)
+    tension[lost] = strain[lost] = np.nan
+    loops = close_loops(
+        t, tension[None], strain[None], cycles_of(16, 6, t.size), waveform="sinusoidal"
+    )
+    # a straight line over the crest would take .9 % off
+    assert loops.strain_amplitude[0] == pytest.approx(AMPLITUDE, rel=1e-3)
+    expected = AMPLITUDE * np.hypot(STORAGE, LOSS)
+    assert loops.tension_amplitude[0] == pytest.approx(expected, rel=1e-3)
+
+
+def test_a_cycle_that_begins_at_a_lost_valley_says_so():
+    place = np.arange(6 * 60 + 1) / 60
+    strain = 0.2 * (1 - np.abs(2 * (place % 1) - 1))
+    rng = np.random.default_rng(4)
+    strain, tension = (
+        strain + rng.normal(0, 2e-5, place.size), 900 * strain + rng.normal(0, 0.02, place.size)
+    )  # fmt: skip
+    kept = np.arange(place.size) != 180  # the valley between the third and the fourth cycle
+    first = np.array([0, 60, 120, 179, 239, 299])
+    last = np.append(first[1:], 359)
+    peak = np.array([30, 90, 150, 209, 269, 329])
+    ends = np.column_stack([first, peak]), np.column_stack([peak, last])
+    cycles = replace(
+        cycles_of(60, 6, 360), first=first, last=last, branch_first=ends[0], branch_last=ends[1]
+    )
+    loops = close_loops(10 * place[kept], tension[kept][None], strain[kept][None], cycles)
+    error, u = loops.foot_strain[0], loops.uncertainty["foot_strain"][0]
+    assert np.abs(error[3]) < 3 * u[3]
+    assert u[3] > 5 * np.median(u)
 
 
 def test_a_tenth_of_the_readings_may_be_missing():

@@ -55,18 +55,31 @@ def sums_over_cycles(values: Floats, first: Integers, last: Integers) -> Floats:
 _MISSING_SHARE = 0.1
 
 
-def bridge_gaps(values: Floats, first: Integers, last: Integers) -> tuple[Floats, Bools]:
+def bridge_gaps(
+    values: Floats, first: Integers, last: Integers, *, is_smooth: bool = False
+) -> tuple[Floats, Bools]:
     """Series with missing readings bridged, and the cycles that lack too many of them.
 
     Notes
     -----
-    Over a tenth of a cycle a straight line is off by up to 5 % of its amplitude at a turn.
+    Over a tenth of a cycle a straight line is off by up to 5 % of its amplitude at a turn.  Of a
+    series that ``is_smooth`` it is a cubic through the readings beside the gap, and through those
+    one length of the gap away from them: of a sine, off by 0.4 % there.
 
     Examples
     --------
     >>> bridged, lacks = bridge_gaps(np.array([0.0, np.nan, 2.0]), np.array([0]), np.array([2]))
     >>> print(bridged, lacks)
     [0. 1. 2.] [ True]
+
+    The crest of a sine of 16 readings:
+
+    >>> wave = np.cos(2 * np.pi * np.arange(-8, 9) / 16)
+    >>> gap = np.where(np.arange(17) == 8, np.nan, wave)
+    >>> for smooth in (False, True):
+    ...     print(bridge_gaps(gap, np.array([0]), np.array([16]), is_smooth=smooth)[0][8].round(3))
+    0.924
+    0.996
     """
     missing = np.isnan(values)
     if not missing.any():
@@ -79,6 +92,28 @@ def bridge_gaps(values: Floats, first: Integers, last: Integers) -> tuple[Floats
     bridged = values.copy()
     gaps = np.flatnonzero(missing)
     bridged[gaps] = np.interp(gaps, present, values[present])
+    if is_smooth:
+        after = np.searchsorted(present, gaps)
+        inside = (after > 0) & (after < present.size)
+        gaps, after = gaps[inside], after[inside]
+        length = present[after] - present[after - 1] - 1
+        places = after[:, None] + np.stack(
+            [-1 - length, 0 * length - 1, 0 * length, length], axis=1
+        )
+        known = (places[:, 0] >= 0) & (places[:, 3] < present.size)
+        gaps, nodes = gaps[known], present[places[known]].astype(np.float64)
+        bridged[gaps] = sum(
+            values[nodes[:, one].astype(np.intp)]
+            * np.prod(
+                [
+                    (gaps - nodes[:, other]) / (nodes[:, one] - nodes[:, other])
+                    for other in range(4)
+                    if other != one
+                ],
+                axis=0,
+            )
+            for one in range(4)
+        )
     return bridged, too_many
 
 
@@ -426,7 +461,7 @@ def sine_period(
         low, high = int(cycles.first[block.start]), int(cycles.last[block.stop - 1]) + 1
         first, last = cycles.first[block] - low, cycles.last[block] - low
         basis = cycle_basis(time[low:high], first, last, period=period[block])
-        level, _ = bridge_gaps(driven[low:high], first, last)
+        level, _ = bridge_gaps(driven[low:high], first, last, is_smooth=True)
         cosine, sine, _ = fundamental(level, basis)
         amplitude[block] = np.hypot(cosine, sine)
         phased[block] = _phase_turns(cosine, sine, basis, time[low:high])

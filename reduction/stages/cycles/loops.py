@@ -367,6 +367,8 @@ def _shape_of_wave(
     return _Shape(half[-1], (high[-1] + low[-1]) / 2, missed)
 
 
+_FAR_MORE = 4.0  # times what cycles miss in the median, where a reading is lost
+
 _IRREGULAR = 0.03  # change of amplitude from one cycle to the next, median
 
 
@@ -462,6 +464,12 @@ def _quantities_of_cycles(
             row["force_missed"] = np.hypot(row["force_missed"], of_shape)
     else:
         begin = row["strain_begin"]
+        for name in ("force", "strain"):  # a cycle begins with the valley that the last one missed
+            missed = row[f"{name}_missed"]
+            before = np.where(follows, np.roll(missed, 1), 0.0)
+            known = missed[np.isfinite(missed)]
+            is_lost = before > _FAR_MORE * (np.median(known) if known.size else np.inf)
+            row[f"{name}_missed"] = np.where(is_lost, np.fmax(before, missed), missed)
         if is_parted:  # all of it may take place on one way between the turns
             for name, drift in (("force", force_drift), ("strain", strain_drift)):
                 row[f"{name}_missed"] = np.hypot(
@@ -674,8 +682,9 @@ def _measure(
 ) -> Floats:
     """What only the samples tell, one row a quantity of `MEASURED`, one column a cycle."""
     first, last = basis.first, basis.last
-    force, lost_force = bridge_gaps(tension, first, last)
-    stretch, lost_stretch = bridge_gaps(strain, first, last)
+    is_smooth = waveform == "sinusoidal"
+    force, lost_force = bridge_gaps(tension, first, last, is_smooth=is_smooth)
+    stretch, lost_stretch = bridge_gaps(strain, first, last, is_smooth=is_smooth)
     moved = force if control == "load" else stretch
     at_turns = (
         (np.zeros(first.size),) * 8
