@@ -9,7 +9,9 @@ from dataclasses import dataclass
 from reduction.campaign.plan import Campaign, StepPlan, TestPlan
 from reduction.pipeline.located_test import Located
 from reduction.record.errors import DataError
+from reduction.record.measurement import Floats
 from reduction.record.notes import Note, note
+from reduction.stages.cycles.cycle_product import Cycles
 from reduction.stages.cycles.cycle_search import control_channel
 from reduction.stages.cycles.levels import Level, are_unlike, find_levels, spread_of_cycles
 from reduction.stages.standstills import median_step
@@ -50,10 +52,23 @@ def find_steps(plan: TestPlan, located: Located | None, campaign: Campaign) -> _
         left_out = cycles.n_cycles - sum(one.last - one.first + 1 for one in levels)
         found = note("levels-found", n_levels=len(levels), steps=steps, n_left_out=left_out)
         return _FoundSteps(_as_steps(plan, ranges), found)
-    mean, ratio = spread_of_cycles(time, control, cycles)
-    if levels or are_unlike(mean, ratio):
-        return _FoundSteps(remark=note("cycles-unlike", mean=mean, ratio=ratio, steps=steps))
-    return _FoundSteps()
+    return _FoundSteps(remark=_on_spread(time, control, cycles, steps))
+
+
+def remark_on_cycles(plan: TestPlan, located: Located) -> Note | None:
+    """What is to be said of a stated step whose cycles are unlike each other."""
+    if located.cycles is None or plan.kind not in _LOOKED_AT:
+        return None
+    control = control_channel(located.position, located.tension, plan.settings.cycles)
+    return _on_spread(located.record.time, control, located.cycles)
+
+
+def _on_spread(time: Floats, control: Floats, cycles: Cycles, steps: str = "") -> Note | None:
+    spread = spread_of_cycles(time, control, cycles)
+    if not steps and not are_unlike(*spread):
+        return None
+    mean, ratio, of_periods = spread
+    return note("cycles-unlike", mean=mean, ratio=ratio, of_periods=of_periods, steps=steps)
 
 
 def _refuse_one_name(

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from reduction.batch.campaign_status import Progress, Silent, Status, TestStatus
-from reduction.batch.found_steps import FOUND, find_steps
+from reduction.batch.found_steps import FOUND, find_steps, remark_on_cycles
 from reduction.batch.run_lock import RunLock
 from reduction.batch.workers import Task, Workers, work_on
 from reduction.campaign.plan import Campaign, StepPlan, TestPlan, cycles_of_kind
@@ -253,8 +253,13 @@ def _read_test(campaign: Campaign, plan: TestPlan, *, reader: Reader = read_reco
                 earlier=[told for when, told in slipped if when < begin],
             )  # fmt: skip
             slipped += _slips_of_step(located, part)
+            remark = remark_on_cycles(part, located) if found is None else found.remark
+            remarks = () if remark is None else (remark,)
+            if found is None:
+                told = replace(located.record, notes=(*located.record.notes, *remarks))
+                located = replace(located, record=told)
             survey = _located(part, located, sources)
-            survey.remarks = () if found is None or found.remark is None else (found.remark,)
+            survey.remarks = remarks
         except ReductionError as error:
             survey = Survey(part, sources, n_rows=record.n_samples, error=error)
         _find_zero_strain(survey, whole, campaign, plan)

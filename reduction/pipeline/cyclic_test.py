@@ -162,9 +162,9 @@ def _curves_of_cycles(
     )
 
 
-# cycles on each side of a jump of which the stiffness is compared, and what is another one: a slip
-# leaves the amplitudes as they are
-_BESIDE, _OTHER_STIFFNESS = 10, 0.05
+# cycles on each side of a jump of which stiffness and amplitudes are compared, and what is another
+# one: a slip leaves the amplitudes as they are
+_BESIDE, _OTHER_STIFFNESS, _OTHER_AMPLITUDE = 10, 0.05, 0.05
 
 
 def notes_on_jumps(
@@ -192,8 +192,17 @@ def notes_on_jumps(
         ):
             if jump is not None:
                 place, size = jump
-                beside = slope[max(place - _BESIDE, 0) : place], slope[place : place + _BESIDE]
-                change = float(np.nanmedian(beside[1]) / np.nanmedian(beside[0]) - 1)
+                change, *larger = (
+                    float(
+                        np.nanmedian(one[place : place + _BESIDE])
+                        / np.nanmedian(one[max(place - _BESIDE, 0) : place])
+                    )
+                    - 1
+                    for one in (slope, of_strain, of_tension)
+                )
+                # the machine went to another amplitude, about which a bent curve has another mean
+                if min(larger) > _OTHER_AMPLITUDE or max(larger) < -_OTHER_AMPLITUDE:
+                    continue
                 place += break_in
                 if abs(change) > _OTHER_STIFFNESS:
                     found.append(

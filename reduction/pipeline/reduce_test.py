@@ -69,6 +69,7 @@ from reduction.stages.cycles.loop_sense import (
     unlike_neighbours,
     waveform_of_log,
 )
+from reduction.stages.cycles.periods import change_of_period
 from reduction.stages.holds.relaxation_and_creep import HoldResult, reduce_holds
 from reduction.stages.moduli.modulus_product import ModulusCurves
 from reduction.stages.moduli.slack_length import slack_crossings, slack_strain_at_unloading
@@ -927,15 +928,26 @@ def _no_hold(standstills: Standstills, settings: ReductionSettings) -> Note:
     )  # fmt: skip
 
 
-def _with_waveform_of_log(settings: ReductionSettings, located: Located) -> ReductionSettings:
-    """Take a wave that is neither a triangle nor a sine as what it is, whatever is stated."""
+def _with_waveform_of_log(
+    settings: ReductionSettings, located: Located
+) -> tuple[ReductionSettings, tuple[Note, ...]]:
+    """Take a wave that is neither a triangle nor a sine as what it is, whatever is stated.
+
+    So is a sine whose period changes on the way: its cycles have no common wave.
+    """
     cycles = located.cycles
     if cycles is None or not cycles.n_cycles:
-        return settings
+        return settings, ()
+    time = located.record.time
     driven = control_channel(located.position, located.tension, settings.cycles)
-    if waveform_of_log(located.record.time, driven, cycles) != "other":
-        return settings
-    return replace(settings, cycles=replace(settings.cycles, waveform="other"))
+    as_other = replace(settings, cycles=replace(settings.cycles, waveform="other"))
+    if waveform_of_log(time, driven, cycles) == "other":
+        return as_other, ()
+    is_sine = settings.cycles.waveform == "sinusoidal"
+    change = change_of_period(time, driven, cycles) if is_sine else 0.0
+    if not change:
+        return settings, ()
+    return as_other, (note("period-changes", share=change),)
 
 
 def reduce_test(
@@ -994,7 +1006,7 @@ def reduce_test(
     """
     record, standstills, cycles = located.record, located.standstills, located.cycles
     position, tension = located.position, located.tension
-    settings = _with_waveform_of_log(settings, located)
+    settings, of_wave = _with_waveform_of_log(settings, located)
     driven = control_channel(position, tension, settings.cycles)
     unlike = 0.0 if cycles is None else unlike_neighbours(record.time, driven, cycles, standstills)
     phase = label_phases(record.time, standstills=standstills, cycles=cycles)
@@ -1050,6 +1062,7 @@ def reduce_test(
     )
     loop_notes = (
         (
+            *of_wave,
             *([note("wave-not-periodic", share=unlike, is_open=unlike > OPEN)] if unlike else []),
             *notes_of_loops(
                 cycle_parts["loops"], names=record.specimens, time_step=median_step(record.time),

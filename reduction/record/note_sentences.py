@@ -241,11 +241,11 @@ _OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "cycles-unlike": (
         "warning",
-        lambda mean, ratio, steps: (
+        lambda mean, ratio, of_periods, steps: (
             f"the cycles differ (90 % of their mean levels lie within {100 * mean:.0f} % of the"
-            f" range of a cycle, and 90 % of their ranges within a factor of {ratio:.2f}): a mean"
-            " over the test represents none of them"
-            + (f". Its levels are {steps}" if steps else "")
+            f" range of a cycle, 90 % of their ranges within a factor of {ratio:.2f}, and 90 % of"
+            f" their periods within a factor of {of_periods:.2f}): a mean over them represents"
+            " none of them" + (f". Its levels are {steps}" if steps else "")
         ),
     ),
     "held-load-repeats": (
@@ -662,6 +662,14 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
                 " parts; check sign and zero of both channels"
             )
             + ". Stiffness, loop energy and loss are not given"
+        ),
+    ),
+    "period-changes": (
+        "note",
+        lambda share: (
+            f"the period changes by {100 * share:+.2g} % from cycle to cycle, as in a sweep of"
+            ' frequency: the loops are reduced as those of waveform = "other", since the cycles'
+            " have no sine in common"
         ),
     ),
     "wave-not-periodic": (

@@ -2,9 +2,14 @@
 
 import re
 import tomllib
+from dataclasses import replace
 
 import pytest
 from strangers import make
+
+from reduction.batch.survey import survey_campaign
+from reduction.campaign.load import load_campaign
+from reduction.campaign.plan import StepPlan
 
 LAW = "rope-creep-levels"
 
@@ -72,6 +77,17 @@ def test_steps_that_are_pasted_give_the_same_numbers(command, raw, tmp_path):
         "verify", tmp_path / "p" / f"{LAW}-3", "--campaign", raw / "campaign.toml"
     )  # fmt: skip
     assert verified.returncode == 0, verified.stdout + verified.stderr
+
+
+def test_a_stated_step_that_holds_several_levels_is_told(raw):
+    campaign = load_campaign(raw / "campaign.toml")
+    (name,) = campaign.tests
+    plan = campaign.tests[name]
+    whole = StepPlan("all", plan.kind, (0.0, 1e6), None, None)
+    campaign.tests[name] = replace(plan, steps=(whole,))
+    (survey,) = survey_campaign(campaign).surveys
+    assert [one.code for one in survey.remarks] == ["cycles-unlike"]
+    assert "cycles-unlike" in [one.code for one in survey.notes]
 
 
 def test_one_level_can_be_asked_for(command, raw, tmp_path):

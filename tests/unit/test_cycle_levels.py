@@ -7,7 +7,7 @@ import pytest
 
 from reduction.record.settings import CycleSettings, PhaseSettings
 from reduction.stages.cycles.cycle_search import find_cycles
-from reduction.stages.cycles.levels import find_levels
+from reduction.stages.cycles.levels import are_unlike, find_levels, spread_of_cycles
 from reduction.stages.standstills import find_standstills
 
 PER = 40  # samples a cycle
@@ -115,3 +115,13 @@ def test_a_programme_of_growing_cycles_is_no_level_beside_its_steady_beginning()
     strokes = [one + (other - one) * share for one, other in pairwise(turns)]
     *_, levels = levels_of(*strokes, noise=0.002)
     assert levels == ()
+
+
+@pytest.mark.parametrize(("other", "unlike"), [(PER, False), (int(0.8 * PER), False), (10, True)])
+def test_cycles_of_two_periods_are_unlike(other, unlike):
+    control = np.concatenate([wave(10, 2, 20), wave(10, 2, 20, per=other)])
+    time, cycles, _ = levels_of(control)
+    mean, ratio, of_periods = spread = spread_of_cycles(time, control, cycles)
+    assert (mean, ratio) == pytest.approx((0, 1), abs=0.05)
+    assert of_periods == pytest.approx(PER / other, rel=0.1)
+    assert are_unlike(*spread) == unlike

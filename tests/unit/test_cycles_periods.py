@@ -1,10 +1,17 @@
 """Periods from flank to flank where rests part some cycles and not others."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
+from reduction.pipeline.reduce_test import _with_waveform_of_log
+from reduction.record.settings import CycleSettings, PhaseSettings, ReductionSettings
 from reduction.stages.cycles.cycle_product import Cycles
-from reduction.stages.cycles.periods import own_periods
+from reduction.stages.cycles.cycle_search import find_cycles
+from reduction.stages.cycles.loops import close_loops
+from reduction.stages.cycles.periods import change_of_period, own_periods
+from reduction.stages.standstills import find_standstills
 
 
 def test_a_dwell_that_is_a_rest_behind_some_cycles_alone_is_part_of_all_periods():
@@ -27,3 +34,57 @@ def test_a_dwell_that_is_a_rest_behind_some_cycles_alone_is_part_of_all_periods(
     time = step * np.arange(turn.size)
     period, _ = own_periods(time, wave, cycles, time[end] - time[begin], noise=1e-6)
     assert period[:-1] == pytest.approx(np.full(n_cycles - 1, per * step), rel=1e-3)
+
+
+SINES = CycleSettings(waveform="sinusoidal")
+
+
+def cycles_of(time, wave):
+    stands = find_standstills(time, wave, wave[None], settings=PhaseSettings())
+    return find_cycles(time, wave, wave[None], stands, settings=SINES)
+
+
+def sweep(share, *, n_cycles=60, step=0.2, seed=0, noise=1e-3):
+    """A sine of 10 s at first, every cycle longer than the first by so much of it than the last."""
+    turns = np.arange(0, 10 * (n_cycles + share * n_cycles**2 / 2), step)
+    cycle = (np.sqrt(1 + 2 * share * turns / 10) - 1) / share if share else turns / 10
+    wave = -np.cos(2 * np.pi * cycle)
+    return turns, wave + noise * np.random.default_rng(seed).standard_normal(turns.size)
+
+
+@pytest.mark.parametrize("share", [0.003, 0.02, -0.005])
+def test_a_period_that_changes_is_found_with_its_change(share):
+    time, wave = sweep(share)
+    found = change_of_period(time, wave, cycles_of(time, wave))
+    # the period of the n-th cycle is 1 + share n of the first
+    low, high = sorted([share, share / (1 + 60 * share)])
+    assert low < found < high
+
+
+@pytest.mark.parametrize("step", [0.1, 0.8])
+@pytest.mark.parametrize("noise", [1e-4, 0.02])
+def test_noise_sampling_and_one_cycle_that_waits_are_no_change_of_period(step, noise):
+    for n_cycles in (5, 12, 200):
+        time, wave = sweep(0.0, n_cycles=n_cycles, step=step, noise=noise)
+        assert change_of_period(time, wave, cycles_of(time, wave)) == 0
+    late = np.where(time > 800, time - 1.5, np.minimum(time, 798.5))
+    wave = np.interp(late, time, wave)
+    assert change_of_period(time, wave, cycles_of(time, wave)) == 0
+
+
+def test_amplitudes_of_a_sweep_are_those_of_its_cycles():
+    time, wave = sweep(-0.01, step=0.1)
+    cycles = cycles_of(time, wave)
+    located = SimpleNamespace(
+        cycles=cycles, record=SimpleNamespace(time=time), position=wave, tension=wave[None]
+    )
+    stated = ReductionSettings(cycles=SINES)
+    settings, (told,) = _with_waveform_of_log(stated, located)
+    assert told.code == "period-changes"
+    loops = close_loops(
+        time, 100 * wave[None], wave[None], cycles, waveform=settings.cycles.waveform
+    )
+    assert loops.strain_amplitude[0, :-1] == pytest.approx(1, abs=0.01)
+    steady = located.__dict__ | {"position": sweep(0.0, step=0.1)[1][: time.size]}
+    steady["cycles"] = cycles_of(time, steady["position"])
+    assert _with_waveform_of_log(stated, SimpleNamespace(**steady)) == (stated, ())

@@ -1,4 +1,5 @@
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -6,7 +7,7 @@ import pytest
 from reduction.record.errors import DataError
 from reduction.stages.cycles.cycle_product import Cycles, Loops
 from reduction.stages.cycles.loops import close_loops
-from reduction.stages.moduli.secant_modulus import summarise_amplitude
+from reduction.stages.moduli.secant_modulus import _mean_frequency, summarise_amplitude
 from reduction.stages.three_parameter_line.line_model import (
     _storage_and_loss,
     apparent_spring_constant,
@@ -267,3 +268,17 @@ def test_loops_of_nothing_give_reasons_only():
     loops = Loops(**fields, uncertainty={name: np.full(shape, np.nan) for name in fields})
     assert identify_cycles(loops, **K0).reason.tolist() == [[3, 3, 3]]
     assert identify_run(loops, **K0).reason.tolist() == [3]
+
+
+def test_the_frequency_of_slow_and_fast_cycles_is_their_number_over_their_time():
+    period = np.repeat([40.0, 4.0], [30, 60])
+    loops = SimpleNamespace(
+        frequency=1 / period[None],
+        cycle_start_time=np.cumsum(period)[None],
+        uncertainty={"frequency": 0.02 / period[None] ** 2},  # of a turn, in all alike
+        **{name: np.ones((1, 90)) for name in (
+            "strain_amplitude", "tension_amplitude", "storage_over_time", "loss_over_time",
+        )},
+    )  # fmt: skip
+    (mean,), _ = _mean_frequency(loops, 0)
+    assert mean == pytest.approx(90 / (30 * 40 + 60 * 4))

@@ -34,3 +34,13 @@ def test_a_slip_leaves_the_stiffness_and_a_strand_takes_some_of_it(left, code):
     assert found.code == code and found.numbers["number"] == 40
     if left < 1:
         assert found.numbers["change"] == pytest.approx(left - 1)
+
+
+@pytest.mark.parametrize("larger", [1.5, 0.6])
+def test_another_amplitude_is_no_slip(larger):
+    is_after = np.arange(N_CYCLES) >= 40
+    loops = loops_of(0.1 - 0.002 * is_after, np.full(N_CYCLES, 5000.0))
+    assert notes_on_jumps(loops, ["line"], break_in=0)
+    for one in (loops.strain_amplitude, loops.tension_amplitude):
+        one[0, is_after] *= larger
+    assert not notes_on_jumps(loops, ["line"], break_in=0)

@@ -35,7 +35,7 @@ _BESIDE = 5  # cycles on either side of a step that say how steady its levels ar
 
 _MOST = 20  # levels; a record with more is a spectrum
 
-_UNLIKE = 0.5  # of the range of a cycle; of the ratio of ranges, less one
+_UNLIKE = 0.5  # of the range of a cycle; of the ratio of ranges or periods, less one
 
 _SAME_PERIOD = 0.25  # by which the first cycle after a ramp may differ from the next
 
@@ -201,8 +201,10 @@ def _start(
     return float(time[earliest + passes[-1]] if is_reached_from_below else time[begin])
 
 
-def spread_of_cycles(time: Floats, control: Floats, cycles: Cycles) -> tuple[float, float]:
-    """Range of the means of nine tenths of the cycles over a cycle's range; ratio of their ranges.
+def spread_of_cycles(time: Floats, control: Floats, cycles: Cycles) -> tuple[float, float, float]:
+    """Range of the means of nine tenths of the cycles over a cycle's range; ratios of the others.
+
+    Those of their ranges and of their periods.
 
     Examples
     --------
@@ -216,22 +218,22 @@ def spread_of_cycles(time: Floats, control: Floats, cycles: Cycles) -> tuple[flo
     ...     at, at + 4, ends, ends + 2, np.ones((40, 2)), np.zeros(161, np.int32),
     ...     np.zeros(161, np.int8), np.zeros(161, bool), 0.2,
     ... )
-    >>> mean, ratio = spread_of_cycles(time, control, cycles)
-    >>> print(round(mean, 3), round(ratio, 3))
-    0.0 2.0
+    >>> print(*(round(one, 3) for one in spread_of_cycles(time, control, cycles)))
+    0.0 2.0 1.0
     """
     return _spread(_of_cycles(time, control, cycles))
 
 
-def are_unlike(mean: float, ratio: float) -> bool:
+def are_unlike(mean: float, ratio: float, of_periods: float) -> bool:
     """Whether a mean over cycles of such a spread represents none of them."""
-    return mean > _UNLIKE or ratio > 1 + _UNLIKE
+    return mean > _UNLIKE or max(ratio, of_periods) > 1 + _UNLIKE
 
 
-def _spread(read: Floats) -> tuple[float, float]:
-    low, high = np.quantile(read[:2], [0.05, 0.95], axis=1)
+def _spread(read: Floats) -> tuple[float, float, float]:
+    low, high = np.quantile(read, [0.05, 0.95], axis=1)
     of_range = 2 * np.exp(np.median(read[1]))
-    return float((high[0] - low[0]) / of_range), float(np.exp(high[1] - low[1]))
+    ratio, of_periods = np.exp(high[1:] - low[1:]).tolist()
+    return float((high[0] - low[0]) / of_range), ratio, of_periods
 
 
 def _of_cycles(time: Floats, values: Floats, cycles: Cycles) -> Floats:

@@ -435,3 +435,59 @@ def _half_way(driven: Floats, begin: Integers, end: Integers) -> Integers:
         branch = driven[first : last + 1] - (driven[first] + driven[last]) / 2
         found[row] += int(np.argmax(branch * np.sign(branch[-1]) >= 0))
     return found
+
+
+_REACH = 10  # cycles to either side, over which the period of a sine is taken as one
+
+_STEADY = 1e-3  # of the period, from one cycle to the next
+
+_PLACES = 40  # that are looked at, spread over the test
+
+_ODD = 0.05  # of the places
+
+
+def change_of_period(time: Floats, driven: Floats, cycles: Cycles) -> float:
+    r"""Change of the period from one cycle to the next, as a share of it, where it goes on.
+
+    The median of what is found where it is beyond a thousandth and the sampling, as in a sweep of
+    frequency; 0 where that is, with one sign, in less than a twentieth of the places looked at.
+
+    Notes
+    -----
+    Of the times :math:`t` at which a rise is half way up, ten cycles before a cycle and ten after
+    it (fewer in a short test): :math:`t_{k+m} - 2 t_k + t_{k-m} = m^2 \dot P`.  Each is known to
+    a sample.
+
+    Examples
+    --------
+    >>> from reduction.record.settings import CycleSettings, PhaseSettings
+    >>> from reduction.stages.cycles.cycle_search import find_cycles
+    >>> from reduction.stages.standstills import find_standstills
+    >>> time = np.arange(0, 400, 0.1)
+    >>> def changes(wave):
+    ...     stands = find_standstills(time, wave, wave[None], settings=PhaseSettings())
+    ...     cycles = find_cycles(time, wave, wave[None], stands, settings=CycleSettings())
+    ...     return round(change_of_period(time, wave, cycles), 3)
+    >>> print(changes(np.cos(time)), changes(np.cos(500 * np.expm1(time / 500))))
+    0.0 -0.009
+    """
+    reach = min(_REACH, (cycles.n_cycles - 1) // 2)
+    if reach < 1:
+        return 0.0
+    parted = np.cumsum(~touching(cycles))
+    middle = np.arange(reach, cycles.n_cycles - reach)
+    middle = middle[parted[middle + reach] == parted[middle - reach]]
+    if not middle.size:
+        return 0.0
+    some = np.unique(np.linspace(0, middle.size - 1, min(middle.size, _PLACES)).astype(int))
+    rows = middle[some] + reach * np.array([[-1], [0], [1]])
+    rise = (cycles.branch_first[:, 0], cycles.branch_last[:, 0])
+    at = _half_way(driven, *(one[rows.ravel()] for one in rise)).reshape(rows.shape)
+    before, half_way, after = take_samples(time, at)
+    period = (after - before) / (2 * reach)
+    change = (after - 2 * half_way + before) / (reach**2 * period)
+    step = (take_samples(time, at) - take_samples(time, np.maximum(at - 1, 0))).max(axis=0)
+    goes_on = np.abs(change) > _STEADY + 2 * step / (reach**2 * period)
+    # a cycle that waits is met from before and from behind, with either sign
+    share = abs(np.sum(np.sign(change[goes_on]))) / goes_on.size
+    return float(np.median(change[goes_on])) if share > _ODD else 0.0

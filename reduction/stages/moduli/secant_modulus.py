@@ -314,7 +314,8 @@ def _mean_frequency(loops: Loops, break_in_cycles: int) -> tuple[Floats, Floats]
         if not n:
             continue
         # the last of a row may have no end of its own, and add twice what its beginning is off by
-        while n > 2 and own[row, known][-1] > _IMPRECISE * np.median(own[row, known]):
+        of_turn = own[row] / frequency[row] ** 2
+        while n > 2 and of_turn[known][-1] > _IMPRECISE * np.median(of_turn[known]):
             known[np.flatnonzero(known)[-1]] = False
             n -= 1
         period = 1 / frequency[row, known]
