@@ -150,6 +150,27 @@ def test_a_first_cycle_that_creeps_behind_its_ramp_loses_no_more_than_the_others
     assert found["position"].hysteresis_energy[0, 0] > 1.2 * expected
 
 
+@pytest.mark.parametrize(
+    ("waveform", "n_cycles", "within"),
+    [("triangular", 8, [0.004, 0.002]), ("sinusoidal", 4, [0.005, 9e-4])],
+)
+def test_creep_that_dies_away_behind_a_ramp_is_no_part_of_the_amplitude(waveform, n_cycles, within):
+    # by the logarithm of time, a tenth of the amplitude in the first cycle
+    turns = np.arange(n_cycles * 80 + 1) / 80
+    wave = -np.cos(2 * np.pi * turns)
+    if waveform == "triangular":
+        wave = 2 * np.abs(2 * (turns % 1) - 1) * -1 + 1
+    strain = 1 + AMPLITUDE * (wave + 0.1 * np.log1p(2 * turns))
+    loops = close_loops(
+        turns, 1000 + 180 * wave[None], strain[None], cycles_of(80, n_cycles, turns.size),
+        waveform=waveform, control="load",
+    )  # fmt: skip
+    off = np.abs(loops.strain_amplitude[0] / AMPLITUDE - 1)
+    assert off[0] < within[0] and off[1:].max() < within[1]
+    stated = loops.uncertainty["apparent_spring_constant"] / loops.apparent_spring_constant
+    assert off[0] < 2 * stated[0, 0] < 4 * within[0]
+
+
 @pytest.mark.parametrize("per_cycle", [12.3, 13.0, 19.7, 50.0])
 def test_a_slow_log_of_a_sine_has_the_stiffness_of_the_sine(per_cycle):
     # the turn of the strain lags that of the tension and neither is logged: by extremes K_ap is

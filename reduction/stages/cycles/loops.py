@@ -301,6 +301,8 @@ def _shape_of_wave(
     known = known[np.abs(amplitude[known] - middle) < _OF_ONE_WAVE * middle]
     if known.size > _FEWEST_INSIDE:
         known = known[1:-1]  # what stands beside cycles of another amplitude may hold part of them
+    elif known.size > 2:
+        known = known[1:]  # behind a ramp the drift dies away within the cycle, as harmonics do not
     if not known.size:
         return _Shape()
     some = known[
@@ -438,6 +440,11 @@ def _quantities_of_cycles(
     if gap is not None and not is_parted:
         is_own = np.abs(gap) > np.abs(strain_drift)
         strain_drift = np.where(is_own, gap, strain_drift)
+    # of the creep behind a ramp the way down has no more than its part of the cycle, and no less
+    # than that part of the next one
+    falls = 1 - rise_shares[1]
+    on_fall = np.where(is_own, falls * (strain_drift + of_neighbours) / 2, np.nan)
+    of_ramp = np.where(is_own, falls * np.abs(strain_drift - of_neighbours) / 2, 0.0)
     # drift of more than the range is that of a jump among the neighbours: no steady cycle is left
     force_drift[np.abs(force_drift) > peak - valley] = np.nan
     for drift in (strain_drift, of_neighbours):
@@ -487,13 +494,15 @@ def _quantities_of_cycles(
                 drift,
                 rise_share,
                 follows & ~ends_alone,
+                way_down,
             )
-            for name, drift, rise_share in (
-                ("force", force_drift, rise_shares[0]),
+            for name, drift, rise_share, way_down in (
+                ("force", force_drift, rise_shares[0], np.full_like(on_fall, np.nan)),
                 # what a first cycle lets out beyond its neighbours is no part of its wave
-                ("strain", of_neighbours, rise_shares[1]),
+                ("strain", of_neighbours, rise_shares[1], on_fall),
             )
         )
+    row["strain_missed"] = np.hypot(row["strain_missed"], of_ramp)
     energy = without_drift(
         row["energy"],
         end_tension=row["force_end"],
@@ -546,6 +555,10 @@ def _quantities_of_cycles(
             u_loss = np.abs(loss) * np.hypot(
                 u_energy / energy, np.sqrt(2) * strain_noise / strain_amplitude
             )
+        u_ramp = of_ramp / np.sqrt(12)
+        u_apparent = np.hypot(u_apparent, apparent * u_ramp / strain_amplitude)
+        if waveform == "sinusoidal":
+            u_strain = np.hypot(u_strain, u_ramp)
         factor = loss / storage
         # where in its cycle the drift takes place is not known
         not_placed = drift_not_placed(energy, row["energy"], amplitude * strain_amplitude)
@@ -605,20 +618,23 @@ def _mean_and_amplitude(
     drift: Floats,
     rise_share: Floats | float,
     follows: Bools,
+    on_fall: Floats,
 ) -> tuple[Floats, Floats]:
     """Mean of peak and valley and half of what lies between, without a steady drift.
 
     Of the valleys on either side, at the time of the peak.  Where no cycle comes before, the first
     valley is that of an approach or a hold, and no line through both is a drift: the one farther
-    from the peak is taken, and of the range what drifts on the way from it to the peak.
+    from the peak is taken, and of the range what drifts on the way from it to the peak.  Where the
+    cycle drifts more than its neighbours, the range is that of the way down, on which ``on_fall``
+    drifts; NaN elsewhere.
 
     Examples
     --------
     A range of 20 that grows by 2 a cycle, the first after a hold at its valley:
 
-    >>> one = np.array([-1.0, 1.0]), np.array([1.0, 3.0])
+    >>> one, none = (np.array([-1.0, 1.0]), np.array([1.0, 3.0])), np.full(2, np.nan)
     >>> _mean_and_amplitude(
-    ...     np.array([20.0, 22.0]), *one, np.array([2.0, 2.0]), 0.5, np.array([False, True]))
+    ...     np.array([20.0, 22.0]), *one, np.array([2.0, 2.0]), 0.5, np.array([False, True]), none)
     (array([ 9.5, 12. ]), array([10., 10.]))
     """
     # of a channel of the wrong sign the top is the lower one
@@ -626,6 +642,7 @@ def _mean_and_amplitude(
     foot = np.where(follows, (1 - rise_share) * begin + rise_share * end, far)
     way = np.where(far == begin, rise_share, 1 - rise_share)
     amplitude = np.abs(top - foot) / 2 - np.where(follows, 0.0, way * np.abs(drift) / 2)
+    amplitude = np.where(np.isfinite(on_fall), np.abs(top - end + on_fall) / 2, amplitude)
     return (top + foot) / 2, np.where(np.isnan(drift), np.nan, amplitude)
 
 
