@@ -325,3 +325,21 @@ class TestCreep:
     def test_a_break_strength_must_be_positive(self):
         with pytest.raises(DataError, match="rated break strength are not positive"):
             creep_of_hold(hold(), rated_break_strength=-1.0)
+
+
+def test_the_first_secant_of_a_bedding_in_has_none_of_what_creep_leaves_open_of_the_wave():
+    one = {name: np.full((1, 3), 100.0) for name in Loops.__dataclass_fields__}
+    one |= {
+        "peak_tension": np.full((1, 3), 300.0),
+        "apparent_spring_constant": np.array([[1000.0, 1000, 1000]]),
+        "mean_strain": np.array([[0.2, 0.35, 0.35]]),
+        "foot_strain": np.array([[0.075, 0.25, 0.25]]),
+    }
+    errors = {name: np.full((1, 3), 0.01) for name in one}
+    errors["apparent_spring_constant"] = np.array([[80.0, 5, 5]])
+    bedding = summarise_bedding_in(
+        Loops(**(one | {"uncertainty": errors})), rated_break_strength=500.0
+    )
+    # 200 N over twice .125 of strain
+    assert bedding.first_stiffness == pytest.approx(800)
+    assert bedding.first_stiffness_standard_uncertainty == pytest.approx(800 * 5 / 1000)

@@ -502,7 +502,6 @@ def _quantities_of_cycles(
                 ("strain", of_neighbours, rise_shares[1], on_fall),
             )
         )
-    row["strain_missed"] = np.hypot(row["strain_missed"], of_ramp)
     energy = without_drift(
         row["energy"],
         end_tension=row["force_end"],
@@ -555,10 +554,11 @@ def _quantities_of_cycles(
             u_loss = np.abs(loss) * np.hypot(
                 u_energy / energy, np.sqrt(2) * strain_noise / strain_amplitude
             )
-        u_ramp = of_ramp / np.sqrt(12)
+        u_ramp, u_foot = of_ramp / np.sqrt(12), np.sqrt(2) * u_strain
         u_apparent = np.hypot(u_apparent, apparent * u_ramp / strain_amplitude)
-        if waveform == "sinusoidal":
-            u_strain = np.hypot(u_strain, u_ramp)
+        u_strain = np.hypot(u_strain, u_ramp)
+        if waveform == "sinusoidal":  # whose foot is its mean less its amplitude
+            u_foot = np.sqrt(2) * u_strain
         factor = loss / storage
         # where in its cycle the drift takes place is not known
         not_placed = drift_not_placed(energy, row["energy"], amplitude * strain_amplitude)
@@ -585,7 +585,7 @@ def _quantities_of_cycles(
             "storage_over_time": over_time,
             "loss_over_time": lost_over_time,
             "tension_turn_missed": row["force_missed"],
-            "strain_turn_missed": row["strain_missed"],
+            "strain_turn_missed": np.hypot(row["strain_missed"], of_ramp),
             "energy_turn_missed": row["energy_missed"],
             "foot_strain": begin,
         }
@@ -606,7 +606,7 @@ def _quantities_of_cycles(
             "closed_loop_energy": u_energy,
             "storage_over_time": u_over_time,
             "loss_over_time": u_over_time_lost,
-            "foot_strain": np.sqrt(2) * u_strain,
+            "foot_strain": u_foot,
         }
     return values, uncertainty
 

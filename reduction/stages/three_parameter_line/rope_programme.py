@@ -166,7 +166,10 @@ def summarise_bedding_in(
     with np.errstate(divide="ignore", invalid="ignore"):
         of_way_up = (loops.peak_tension[:, 0] - foot_tension) / way_up
     secant[:, 0] = np.where(np.isfinite(secant[:, 0]) & (of_way_up > 0), of_way_up, secant[:, 0])
-    u_secant = loops.uncertainty["apparent_spring_constant"][:, [0, -1]]
+    u_secant = loops.uncertainty["apparent_spring_constant"][:, [0, -1]].copy()
+    # by its foot, what creep leaves open of the wave is not in it: the noise is that of the others
+    by_noise = secant[:, 0] * u_secant[:, 1] / secant[:, 1]
+    u_secant[:, 0] = np.fmin(u_secant[:, 0], by_noise)
     foot = loops.foot_strain[:, [0, -1]]
     u_foot = loops.uncertainty["foot_strain"]
     valley = loops.valley_tension[:, [0, -1]]
