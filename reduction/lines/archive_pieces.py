@@ -215,10 +215,17 @@ def source_of_tests(
                 f"{test}: the splices slipped {slips} times, and the strain includes the slip"
             )
     if not pieces:
+        has_cycles = any("cycle" in one.sizes for one in own)
+        has_area = np.isfinite(_one_number(own, specimen, "area"))
         raise DataError(
             f"no test of '{specimen}' gives a {branch} curve of tension over strain",
             found=", ".join(f"{_id(one)} ({one.attrs.get('test_kind', '')})" for one in own),
-            needed="cycles, a first rise, weights or a slow pull",
+            needed="a first rise, weights or a slow pull, or cycles of a specimen whose diameter"
+            " or area is stated",
+            hint=f"The branches of cycles are curves of stress: state the diameter of '{specimen}'"
+            " in campaign.toml and run again."
+            if has_cycles and not has_area
+            else None,
         )
     models = [strain_model_of(one, specimens_of(one).index(specimen)) for one in own]
     known = [model for model in models if model is not None]

@@ -1126,7 +1126,7 @@ def reduce_test(
     )
     whole = with_weighed_notes(with_line_spread(with_shared_ratios(shared), settings.cycles))
     of_friction = splice_friction_notes(whole, instruments)
-    weighed = (*splice_slip_notes(whole), *load_train_notes(whole), *of_friction)
+    weighed = (*splice_slip_notes(whole), *load_train_notes(whole, instruments), *of_friction)
     return replace(whole, notes=(*whole.notes, *weighed))
 
 

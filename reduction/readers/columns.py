@@ -208,6 +208,8 @@ class DeclaredColumn:
     dimension: Dimension
     is_compared: bool = True
     """Whether a unit that the file states must agree: not for a clock, nor for a voltage."""
+    has_factor: bool = False
+    """Whether a factor is stated, be it 1: the file may then be in another quantity."""
 
 
 def declared_columns(layout: Layout) -> tuple[DeclaredColumn, ...]:
@@ -216,7 +218,10 @@ def declared_columns(layout: Layout) -> tuple[DeclaredColumn, ...]:
     for key, channel in layout.channels.items():
         is_compared = channel.unit != CLOCK and channel.factor == 1
         dimension = Layout.dimension(key)
-        wanted.append(DeclaredColumn(key, channel.column, channel.unit, dimension, is_compared))
+        has_factor = "factor" in channel.model_fields_set
+        wanted.append(
+            DeclaredColumn(key, channel.column, channel.unit, dimension, is_compared, has_factor)
+        )
         if channel.time_column is not None:
             wanted.append(
                 DeclaredColumn(f"{key}.time", channel.time_column, channel.time_unit, "time")
@@ -321,6 +326,8 @@ def check_unit(path: Path, wanted: DeclaredColumn, found: str, *, row: int | Non
     try:
         stated = stated_scale(text, wanted.dimension)
     except SettingsError as error:
+        if wanted.has_factor:
+            return
         problem = error.problem
     else:
         declared = scale_to_si(wanted.unit, wanted.dimension)
@@ -334,6 +341,8 @@ def check_unit(path: Path, wanted: DeclaredColumn, found: str, *, row: int | Non
         channel=str(wanted.column),
         found=f"'{found.strip()}'",
         needed=f"'{wanted.unit}', as the layout declares",
+        hint=f"Declare the unit of the file, or, of a column in another quantity, such as % of the "
+        f"break strength or stress, state factor: what 1 of it is in {wanted.unit}.",
     )
 
 
@@ -439,7 +448,7 @@ def check_units(
 def _check_dimension_in_name(path: Path, want: DeclaredColumn, stated: str) -> None:
     """Refuse a column whose name ends in the unit of something else than it is declared to be."""
     known = {dimension for dimension, units in _UNIT_WORDS.items() if stated in units}
-    if want.dimension not in _UNIT_WORDS or want.dimension in known:
+    if want.has_factor or want.dimension not in _UNIT_WORDS or want.dimension in known:
         return
     (of,) = known
     raise LogError(

@@ -33,7 +33,7 @@ _NAME = "apparent_spring_constant"
 _SMALL = 1e-3  # step of strain for a slope
 
 
-def load_train_notes(test: ReducedTest) -> Iterator[Note]:
+def load_train_notes(test: ReducedTest, instruments: Sequence[InstrumentErrors]) -> Iterator[Note]:
     """Say at what size each term that is not stated moves K_ap by its standard uncertainty."""
     summary, record = test.amplitude, test.record
     if summary is None or record is None:
@@ -65,7 +65,9 @@ def load_train_notes(test: ReducedTest) -> Iterator[Note]:
                 at_fixed=6 * spread / of_mass,
             )  # fmt: skip
         is_crosshead = test.strain_models[index].method != "extensometer"
-        if train.machine_compliance is None and is_crosshead:
+        # the uncertainty of a compliance of zero is in the interval
+        is_stated = index < len(instruments) and instruments[index].machine_compliance > 0
+        if train.machine_compliance is None and is_crosshead and not is_stated:
             # the machine gives by the tensions of all specimens, taken to be alike
             effect = constant * len(test.specimens) / length
             yield note(

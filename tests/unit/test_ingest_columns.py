@@ -122,6 +122,19 @@ def test_a_unit_is_not_compared_where_the_file_has_volts():
         check_unit(PATH, LOAD, "V")
 
 
+def test_a_factor_of_one_that_is_stated_is_of_a_column_in_another_quantity():
+    load = replace(LOAD, has_factor=True)
+    for stated in ("%MBL", "MPa", "V"):
+        check_unit(PATH, load, stated)
+    with pytest.raises(LogError, match="found 'N'; needed 'kN'"):
+        check_unit(PATH, load, "N")
+    with pytest.raises(LogError, match="% of the break strength or stress, state factor"):
+        check_unit(PATH, LOAD, "%MBL")
+    channels = {"tension.1": {"column": "Load", "unit": "kN", "factor": 1}}
+    (declared,) = declared_columns(Layout(format="delimited", channels=channels))
+    assert declared.has_factor and declared.is_compared
+
+
 def test_columns_of_one_length_have_that_many_rows():
     assert check_lengths(PATH, {"time": np.zeros(3), "tension.1": np.ones(3)}) == 3
 

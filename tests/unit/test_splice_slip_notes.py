@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from reduction.record.contributions import Component, Contributions
+from reduction.record.measurement import LoadTrain
 from reduction.stages.strain.strain_model import StrainModel
-from reduction.uncertainty.effects_on_answers import splice_slip_notes
+from reduction.uncertainty.effects_on_answers import load_train_notes, splice_slip_notes
 
 GAUGE_LENGTH = 2.5  # m
 # strain is 40 % of the position in metres: one metre of stroke over 2.5 m
@@ -99,3 +100,16 @@ def test_a_hold_after_a_slip_has_the_same_excess():
     (found,) = splice_slip_notes(test)
     assert found.severity == "warning"
     assert "4.0 percentage points too large (2.5% of the mean strain)" in str(found)
+
+
+@pytest.mark.parametrize("stated", [0.0, 1e-12])
+def test_a_compliance_whose_uncertainty_is_stated_is_not_asked_for(stated):
+    test = reduced(spread=0.004)
+    test.amplitude.apparent_spring_constant = np.array([4e5])
+    test.amplitude.frequency = np.array([0.1])
+    test.specimens[0].linear_density = None
+    test.amplitude.uncertainty["apparent_spring_constant"] = np.array([4.0])
+    test.record = SimpleNamespace(load_train=LoadTrain())
+    errors = SimpleNamespace(machine_compliance=stated)
+    codes = [one.code for one in load_train_notes(test, [errors])]
+    assert ("compliance-matters" in codes) == (stated == 0)
