@@ -292,6 +292,8 @@ class LoadTrain:
         Mass whose inertia has been taken off the tension; empty where none has been. [kg]
     end_mass_by_density : tuple of float, length n_specimens
         Length that the linear density counts with in it. [m]
+    force_left_at_turns : tuple of float, length n_specimens
+        Inertia at the turns that the window of the acceleration smooths away. [N]
     """
 
     load_cell_at: Literal["fixed", "moving"] | None = None
@@ -299,6 +301,7 @@ class LoadTrain:
     machine_compliance: float | None = None
     end_mass: tuple[float, ...] = ()
     end_mass_by_density: tuple[float, ...] = ()
+    force_left_at_turns: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)

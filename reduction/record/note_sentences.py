@@ -772,6 +772,23 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "attached-mass-unknown": ("note", _unknown_mass),
     "attached-mass-matters": ("warning", _unknown_mass),
+    "inertia-left-at-turns": (
+        "warning",
+        lambda force, effect: (
+            f"at the turns, the inertia that is not taken off is {force:.3g} N, {effect:.1%} of the"
+            " tension amplitude: the machine turns faster than the log resolves. EA, energy and the"
+            " moduli near the turns may be off by this share. Test with a sine, or with a load cell"
+            " at the fixed end, or log faster"
+        ),
+    ),
+    "specimen-near-resonance": (
+        "warning",
+        lambda share, effect: (
+            f"the test ran at {share:.2g} of the resonance frequency of the specimen (by its stated"
+            " mass), and faster at sharp turns: waves run along it, and after the correction for"
+            f" its mass EA and energy may be off by {effect:.1%}. Test more slowly, or with a sine"
+        ),
+    ),
     "own-mass-unknown": (
         "note",
         "the inertia of the specimen itself is not corrected (this needs load_cell_at and"

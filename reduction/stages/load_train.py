@@ -46,6 +46,10 @@ _OF_CELL_NOISE = 1 / 3  # what the correction may add to the noise of a load cel
 
 _FEWEST_A_CYCLE = 16
 
+_REACHES = 32  # of a difference, in the longest of them
+
+_SURE = 3  # standard errors that a mean acceleration has to exceed
+
 _FITS = 4096  # at a time
 
 
@@ -162,6 +166,75 @@ def acceleration(time: ArrayLike, position: ArrayLike, *, half_width: float) -> 
             1 + step / (2 * half_width),
         )
     return np.asarray(np.interp(all_times, t, found) / half_width**2)
+
+
+def turn_acceleration(
+    time: Floats, position: Floats, cycles: Cycles, *, found: Floats | None = None
+) -> float:
+    """Size of the acceleration at the turns, by second differences of the readings there.
+
+    Parameters
+    ----------
+    time, position : ndarray, shape (n_samples,)
+        NaN where not known. [s], [m]
+    cycles : Cycles
+        Whose turns.
+    found : ndarray, shape (n_samples,), or None
+        What is known of the acceleration already, and is taken off. [m s-2]
+
+    Returns
+    -------
+    acceleration : float
+        Mean over peaks and valleys; zero where noise hides it. [m s-2]
+
+    Raises
+    ------
+    ValueError
+        Never by itself.
+
+    Notes
+    -----
+    At the corner between two ramps a machine turns in a time that nobody states: a difference
+    over few steps shows the most of it and the most noise.  Of differences over 1, 2, 4, ... steps,
+    at most a sixteenth of a cycle, and as far to either side of the turns, that counts whose mean
+    over the turns is the greatest, three standard errors taken off.
+
+    Examples
+    --------
+    A sine of 0.1 m and 2 Hz, logged 64 times a cycle, has 15.8 m/s2:
+
+    >>> t = np.arange(257) / 128
+    >>> first = np.array([0, 64, 128, 192])
+    >>> branch = np.stack([first, first + 32], axis=1)
+    >>> none = np.zeros(257)
+    >>> cycles = Cycles(first, first + 64, branch, branch + 32, np.ones((4, 2)), none.astype(int),
+    ...     none.astype(int), none > 0, 0.01)
+    >>> round(turn_acceleration(t, -0.1 * np.cos(4 * np.pi * t), cycles), 1)
+    15.8
+    """
+    longest = max(int(np.median(cycles.last - cycles.first)) // 16, 1)
+    sizes = []
+    for turns in (cycles.first, cycles.branch_first[:, 1]):
+        size, reach = 0.0, max(longest // _REACHES, 1)
+        while reach <= longest:
+            # beside a sharp turn, a smooth acceleration is too large
+            for away in range(-longest, longest + 1, reach):
+                here = turns + away
+                here = here[(here >= reach) & (here < position.size - reach)]
+                before, after = time[here] - time[here - reach], time[here + reach] - time[here]
+                bend = (
+                    (position[here + reach] - position[here]) / after
+                    - (position[here] - position[here - reach]) / before
+                ) / (0.5 * (before + after))
+                if found is not None:
+                    bend = bend - found[here]
+                bend = bend[np.isfinite(bend)]
+                if bend.size >= _TO_A_SIDE:
+                    error = float(np.std(bend, ddof=1)) / np.sqrt(bend.size)
+                    size = max(size, abs(float(np.mean(bend))) - _SURE * error)
+            reach *= 2
+        sizes.append(size)
+    return float(np.mean(sizes))
 
 
 def _bend(away: Floats, moved: Floats, reach: float) -> Floats:
@@ -328,6 +401,8 @@ def without_load_train(
             inertia = mass[:, None] * np.where(cycling, found, np.nan_to_num(found))
             given = compliance * (tension - inertia).sum(axis=0)
         tension, raw = _less(tension, inertia), _less(raw, np.nan_to_num(inertia))
+        left = turn_acceleration(np.asarray(record.time), position - given, cycles, found=found)
+        train = replace(train, force_left_at_turns=tuple((np.abs(mass) * left).tolist()))
         for place_of, one in enumerate(specimens):
             force = inertia[place_of][cycling]
             notes.append(

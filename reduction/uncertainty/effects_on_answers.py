@@ -20,6 +20,7 @@ import numpy as np
 
 from reduction.record.contributions import InstrumentErrors
 from reduction.record.notes import Note, note
+from reduction.stages.load_train import turn_acceleration
 from reduction.stages.moduli.modulus_product import AmplitudeSummary
 from reduction.stages.reduced_test import ReducedTest
 from reduction.stages.strain.strain_model import position_by_model
@@ -46,6 +47,12 @@ def load_train_notes(test: ReducedTest, instruments: Sequence[InstrumentErrors])
         if not (spread > 0 and length > 0 and square > 0 and np.isfinite(constant)):
             continue
         train, of_mass = record.load_train, square * length
+        if test.cycles is not None:
+            # what a mass does to the extremes of ramps it does while the machine turns
+            turn = turn_acceleration(record.time, record.crosshead_position, test.cycles)
+            of_mass = max(of_mass, turn / float(summary.strain_amplitude[index]))
+            if train.end_mass:
+                yield from _inertia_left(test, summary, index, turn)
         if train.load_cell_at is None or (
             train.load_cell_at == "moving" and train.attached_mass is None
         ):
@@ -79,6 +86,52 @@ def load_train_notes(test: ReducedTest, instruments: Sequence[InstrumentErrors])
                 usual=_USUAL_COMPLIANCE,
                 effect=_USUAL_COMPLIANCE * effect,
             )
+
+
+def _inertia_left(
+    test: ReducedTest, summary: AmplitudeSummary, index: int, turn: float
+) -> Iterator[Note]:
+    """Say where the correction for stated masses leaves more in K_ap than its interval holds.
+
+    The turns of ramps are taken for parts of a sine whose ratio of acceleration to rate they have.
+    """
+    record, specimen = test.record, test.specimens[index]
+    constant = float(summary.apparent_spring_constant[index])
+    half = _EXPANDED * _standard_uncertainty(test, summary, _NAME, index) / constant
+    if record is None or not half > 0:
+        return
+    train = record.load_train
+    force = train.force_left_at_turns[index] if train.force_left_at_turns else 0.0
+    share = force / float(summary.tension_amplitude[index])
+    if share > half:
+        yield note("inertia-left-at-turns", specimen.name, force=force, effect=share)
+    is_moving = train.load_cell_at == "moving"
+    mass = abs(train.end_mass_by_density[index]) * (3 if is_moving else 6)
+    mass *= specimen.linear_density or 0.0
+    length = _length_of_strain(test, summary, index)
+    rate = 2 * np.pi * float(summary.frequency[index])
+    sharper = max(turn / (rate**2 * length * float(summary.strain_amplitude[index])), 1.0)
+    angle = rate * np.sqrt(mass * length / constant)
+    error = _wave_left(min(angle * sharper, _NEAR_RESONANCE), is_moving=is_moving) / sharper
+    if abs(error) > half:
+        yield note("specimen-near-resonance", specimen.name, effect=abs(error), share=angle / np.pi)
+
+
+_NEAR_RESONANCE = 2.5  # of pi: beyond it damping decides
+
+
+def _wave_left(angle: float, *, is_moving: bool) -> float:
+    r"""Share of K_ap that the mass of the specimen still moves after its inertia is taken off.
+
+    An elastic line held at one end, its other end moving by a sine, has the tensions
+    :math:`k x_a\, \beta \cot\beta` at the moving end and :math:`k x_a\, \beta / \sin\beta` at the
+    fixed one; the mean along it is :math:`k x_a`.  The square of beta is what is taken off.
+    """
+    if angle < 1e-3:
+        return 0.0
+    if is_moving:
+        return float(angle / np.tan(angle) + angle**2 / 3 - 1)
+    return float(angle / np.sin(angle) - angle**2 / 6 - 1)
 
 
 _POSSIBLE_FRICTION = 0.10  # of the extension of splices: a judgement, no measurement is known

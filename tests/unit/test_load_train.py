@@ -3,13 +3,16 @@
 import numpy as np
 import pytest
 from pydantic import ValidationError
+from scipy.linalg import solve_banded
 
 from reduction.pipeline.located_test import locate
 from reduction.readers.layout import Channel, Layout
 from reduction.record.errors import DataError
 from reduction.record.measurement import LoadTrain, Record, Specimen
 from reduction.record.settings import CycleSettings, ReductionSettings
-from reduction.stages.load_train import acceleration, end_mass
+from reduction.stages.cycles.cycle_product import Cycles
+from reduction.stages.load_train import acceleration, end_mass, turn_acceleration
+from reduction.uncertainty.effects_on_answers import _wave_left
 
 SETTINGS = ReductionSettings(cycles=CycleSettings(waveform="sinusoidal"))
 
@@ -121,3 +124,69 @@ def test_a_layout_states_its_load_train_in_any_unit():
 def test_what_is_no_load_train_is_refused(keys, message):
     with pytest.raises(ValidationError, match=message):
         layout(**keys)
+
+
+def turning(*, period=1.0, turn=0.05, amplitude=0.1, step=0.005, n_cycles=12):
+    """Straight ramps joined by parabolas that last so long; valleys at whole periods."""
+    t = np.arange(round(n_cycles * period / step) + 1) * step
+    rate = 2 * amplitude / (period / 2 - turn / 2)
+    away = (t + period / 4) % period - period / 4  # from the nearest valley behind
+    x = np.zeros(t.shape)
+    for centre, way in ((0.0, 1.0), (period / 2, -1.0)):
+        here = np.abs(away - centre) <= period / 4
+        near = np.abs(away[here] - centre)
+        rise = np.where(near < turn / 2, near**2 * rate / turn, (near - turn / 4) * rate)
+        x[here] = -way * amplitude + way * rise
+    first = np.round(np.arange(n_cycles) * period / step).astype(int)
+    half = round(period / 2 / step)
+    branch = np.stack([first, first + half], axis=1)
+    none = np.zeros(t.size, int)
+    cycles = Cycles(
+        first, first + 2 * half, branch, branch + half, np.full((n_cycles, 2), rate), none,
+        none, none > 0, 0.01,
+    )  # fmt: skip
+    return t, x, cycles, 2 * rate / turn
+
+
+def test_a_turn_between_ramps_has_twice_the_rate_over_its_duration():
+    t, x, cycles, want = turning()
+    assert turn_acceleration(t, x, cycles) == pytest.approx(want, rel=0.01)
+    noise = np.random.default_rng(1).normal(0.0, 2e-5, t.size)
+    assert turn_acceleration(t, x + noise, cycles) == pytest.approx(want, rel=0.15)
+
+
+def test_noise_alone_is_no_acceleration():
+    t, _, cycles, _ = turning()
+    noise = np.random.default_rng(2).normal(0.0, 1e-3, t.size)
+    assert turn_acceleration(t, noise, cycles) < 2e-3 / 0.005**2
+
+
+def test_a_window_longer_than_the_turn_leaves_inertia_and_of_a_sine_none():
+    t, x, cycles, want = turning()
+    found = acceleration(t, x, half_width=0.15)
+    left = turn_acceleration(t, x, cycles, found=found)
+    around = np.abs(t - 5.0) < 0.05
+    true = np.where(np.abs(t - 5.0) < 0.025, want, 0.0)
+    assert left == pytest.approx(np.abs(true - found)[around].max(), rel=0.3)
+    wave = -0.1 * np.cos(2 * np.pi * t)
+    found = acceleration(t, wave, half_width=0.15)
+    assert turn_acceleration(t, wave, cycles, found=found) < 0.01 * 0.1 * (2 * np.pi) ** 2
+
+
+@pytest.mark.parametrize("is_moving", [True, False])
+@pytest.mark.parametrize("angle", [0.5, 1.2, 2.0])
+def test_what_the_mass_of_a_line_leaves_is_that_of_a_chain_of_many_masses(angle, is_moving):
+    n = 2000  # springs of stiffness n between masses of 1/n: a line of unit stiffness and mass
+    diagonal = np.full(n - 1, 2.0 * n - angle**2 / n)
+    beside = np.full(n - 2, -float(n))
+    force = np.zeros(n - 1)
+    force[-1] = n
+    banded = np.stack([np.append(0.0, beside), diagonal, np.append(beside, 0.0)])
+    place = np.concatenate([[0.0], solve_banded((1, 1), banded, force), [1.0]])
+    tension = n * np.diff(place)
+    assert tension.mean() == pytest.approx(1.0)
+    taken_off = angle**2 * (1 / 3 if is_moving else -1 / 6)
+    felt = tension[-1] - angle**2 / (2 * n) if is_moving else tension[0]
+    assert _wave_left(angle, is_moving=is_moving) == pytest.approx(
+        felt + taken_off - 1, abs=2e-3 * max(angle, 1.0)
+    )
