@@ -310,8 +310,25 @@ def _without_repeats(
         else:
             remarks.append(
                 f"guess: column {_label(column)} repeats column {_label(same)}, and is not used"
+                + _disagreement(column, same, unit)
             )
     return kept, remarks
+
+
+_DISAGREE = 0.01  # of a range: what two readings of one signal differ by without a word
+
+
+def _disagreement(column: SeenColumn, same: SeenColumn, unit: str) -> str:
+    """By what two columns of one signal differ, where they have one unit."""
+    is_known = np.isfinite(column.values) & np.isfinite(same.values)
+    if unit == UNKNOWN or column.unit != same.unit:
+        return ""
+    one, other = same.values[is_known], column.values[is_known]
+    factor, away = np.polyfit(one, other, 1)
+    said = [f"is {factor:.4g} times as great"] if abs(factor - 1) > _DISAGREE else []
+    if abs(away) > _DISAGREE * np.ptp(one):
+        said.append(f"reads {away:.4g} {unit} where that reads 0")
+    return f": it {' and '.join(said)}, so find out which one is right" if said else ""
 
 
 def _are_one_signal(one: SeenColumn, other: SeenColumn) -> bool:
@@ -460,11 +477,15 @@ class _Start:
 
     @classmethod
     def of(cls, chosen: dict[str, tuple[SeenColumn, str]]) -> _Start | None:
-        """The first rest of position and loads; None where nothing moves or a value is missing."""
+        """The first rest of position and loads; None where nothing moves or a channel is empty."""
         if "crosshead_position" not in chosen:
             return None
-        position = chosen["crosshead_position"][0].values
-        loads = {key: one.values for key, (one, _) in chosen.items() if key.startswith("tension.")}
+        position = _without_blanks(chosen["crosshead_position"][0].values)
+        loads = {
+            key: _without_blanks(one.values)
+            for key, (one, _) in chosen.items()
+            if key.startswith("tension.")
+        }
         channels = np.array([position, *loads.values()])
         if not np.isfinite(channels).all() or not _has_moved(position):
             return None
@@ -541,6 +562,15 @@ class _Start:
             f"unknown: zero: {at_rest}: that is the zero if the specimen was slack there, and"
             f' "0 {unit}" if it was under load'
         ]
+
+
+def _without_blanks(values: Floats) -> Floats:
+    """Values with straight lines across those that are missing; as given where most are."""
+    known = np.isfinite(values)
+    if known.all() or np.count_nonzero(known) < max(_MANY_VALUES, values.size / 10):
+        return values
+    rows = np.arange(values.size)
+    return np.interp(rows, rows[known], values[known])
 
 
 def _still_samples(channels: Floats, n_samples: int) -> int:

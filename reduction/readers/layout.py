@@ -125,7 +125,7 @@ class Layout(BaseModel):
     delimiter: str = ","
     """One character; a blank stands for any run of blanks and tabs."""
     decimal: Literal[".", ","] = "."
-    thousands: Literal["", ",", ".", " ", "'"] = ""
+    thousands: Literal["", ",", ".", " ", "'", "\u00a0", "\u202f", "\u2019"] = ""
     encoding: str = "utf-8"
     """A byte-order mark at the start of a file is always accepted."""
     comment: str = ""

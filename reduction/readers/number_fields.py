@@ -234,6 +234,11 @@ _GROUPS = {
 }
 
 
+_BY_BLANKS = re.compile(
+    r"[+-]?[1-9]\d{0,2}(?P<mark>[ '\u00a0\u202f\u2019])\d{3}(?:(?P=mark)\d{3})*(?:[.,]\d*)?"
+)
+
+
 def _is_unit(text: str, dimension: Dimension) -> bool:
     """Whether a field is a unit in which its column could be."""
     try:
@@ -254,6 +259,11 @@ def _what_to_set(found: str, want: DeclaredColumn, layout: Layout) -> str:
         )
     if is_parted:
         return f'Set thousands = "{parted}" where it parts groups of three digits.'
+    by_blanks = None if layout.thousands else _BY_BLANKS.fullmatch(found)
+    if by_blanks:
+        mark = by_blanks["mark"]
+        written = mark if mark.isascii() else f"\\u{ord(mark):04x}"
+        return f'Set thousands = "{written}" where it parts groups of three digits.'
     if has_comma:
         no_groups = ' and thousands = ""' if layout.thousands == "," else ""
         return f'Set decimal = ","{no_groups} where the comma is a decimal mark.'

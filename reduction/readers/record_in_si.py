@@ -247,6 +247,7 @@ def _to_piece(log: RawLog, layout: Layout, *, gap_factor: float) -> _Piece:
     }
     shared, of_hour = _on_one_time_of_day(_shared_time(log, layout), log, layout)
     shared, of_clock = _between_ticks(shared, values)
+    _stamp_rows_with_readings(shared, values, own)
     common = _on_common_time(shared, values, own, gap_factor=gap_factor)
     notes = [*log.notes, *of_hour, *of_clock, *common.notes]
     if unused:
@@ -254,6 +255,54 @@ def _to_piece(log: RawLog, layout: Layout, *, gap_factor: float) -> _Piece:
     piece = _Piece(log, layout, common.time, common.values, scale, common.resampled, tuple(notes))
     _check_restart(piece)
     return piece
+
+
+_BLANK = 1 / 3  # of the rows, at least, of a channel that is read less often than rows are written
+
+_FEWEST_READ = 50
+
+_IN_STEP = 0.98  # of the readings follow each other by at most so many of the usual interval:
+
+_INTERVALS = 3
+
+
+def _stamp_rows_with_readings(
+    shared: Floats | None, values: dict[str, Floats], own: dict[str, Floats]
+) -> None:
+    """Give a channel that is blank in most rows the times of its readings, in place.
+
+    A logger of several rates writes a row whenever any channel is read.  Where all channels are
+    blank in the same rows they stay as they are.
+
+    Examples
+    --------
+    >>> load = np.where(np.arange(200) % 2, np.nan, 1.0)
+    >>> values, own = {"crosshead_position": np.ones(200), "tension.1": load}, {}
+    >>> _stamp_rows_with_readings(np.arange(200.0), values, own)
+    >>> print(own["tension.1"][:3], values["tension.1"].size)
+    [0. 2. 4.] 100
+    """
+    if shared is None or own or not np.isfinite(shared[:_LOOKED_AT]).all():
+        return
+    if not any(map(_is_mostly_blank, values.values())):
+        return
+    read = {key: np.isfinite(one) for key, one in values.items()}
+    first, *others = read.values()
+    if all(np.array_equal(first, one) for one in others):
+        return
+    for key, rows in read.items():
+        if not rows.all():
+            own[key], values[key] = shared[rows], values[key][rows]
+
+
+def _is_mostly_blank(series: Floats) -> bool:
+    """Whether readings and blanks take turns in its first rows."""
+    looked = np.isfinite(series[: 16 * _LOOKED_AT])
+    place = np.flatnonzero(looked)
+    if place.size < _FEWEST_READ or place.size > (1 - _BLANK) * looked.size:
+        return False
+    gaps = np.diff(place)
+    return bool(np.mean(gaps <= _INTERVALS * np.median(gaps)) >= _IN_STEP)
 
 
 def _declared(layout: Layout, key: str) -> str:

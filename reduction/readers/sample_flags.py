@@ -795,6 +795,66 @@ def _without_breaks(rows: Integers, n_samples: int) -> Integers:
     return np.unique(np.concatenate([found, np.arange(rows[-1], n_samples, every)]))
 
 
+_NO_BEND = 0.02  # of the larger bends of a channel: a straight line
+
+_STRAIGHT = 0.1  # of the rows that move, at least, on straight lines
+
+_LEVELS = 0.5  # of fifty levels of bends: a coarse converter has fewer
+
+_FEWEST_BENDS = 500
+
+_BLOCK, _OF_BLOCK = 64, 4  # rows; of those that all move, so many on lines and so many not
+
+
+def _is_interpolated(values: Floats) -> bool:
+    """Whether a channel was interpolated linearly before it was logged.
+
+    Between two of its readings the rows lie on a line, to the last digit; at the readings it bends
+    by their noise.  Of white noise few second differences are as small, or many are little greater.
+
+    Examples
+    --------
+    >>> own = np.sin(0.1 * np.arange(1000)) + 0.01 * np.cos(700.0 * np.arange(1000) ** 2)
+    >>> rows = np.interp(np.arange(0, 999, 0.3), np.arange(1000), own)
+    >>> print(_is_interpolated(own), _is_interpolated(rows))
+    False True
+    """
+    looked = values[:_LOOKED_AT]
+    bend, step = np.abs(np.diff(looked, 2)), np.diff(looked)
+    moves = (step[1:] != 0) & (step[:-1] != 0) & np.isfinite(bend)
+    if np.count_nonzero(moves) < _FEWEST_BENDS:
+        return False
+    large = float(np.quantile(bend[moves], 0.95))
+    is_line = moves & (bend <= _NO_BEND * large)
+    is_bent = moves & ~is_line
+    n_lines = np.count_nonzero(is_line)
+    if (
+        n_lines < _STRAIGHT * np.count_nonzero(moves)
+        or np.count_nonzero(is_bent & (bend <= 4 * _NO_BEND * large)) > n_lines / 2
+    ):
+        return False
+    n_levels = round(1 / _NO_BEND)
+    levels = np.unique((bend[is_bent & (bend < large)] / large * n_levels).astype(int))
+    if levels.size < _LEVELS * n_levels:
+        return False
+    whole = bend.size // _BLOCK * _BLOCK
+    lines, bends = (one[:whole].reshape(-1, _BLOCK).sum(axis=1) for one in (is_line, is_bent))
+    full = lines + bends == _BLOCK
+    mixed = (lines >= _OF_BLOCK) & (bends >= _OF_BLOCK)
+    return bool(full.any()) and bool(np.mean(mixed[full]) >= _REGULAR)
+
+
+def _interpolation_notes(record: Record, resampled: Sequence[str]) -> list[Note]:
+    """Say which channels somebody has interpolated before they were logged."""
+    series = {"crosshead_position": record.crosshead_position}
+    series |= {f"tension.{index + 1}": one for index, one in enumerate(record.tension)}
+    return [
+        note("interpolated-by-logger", channel=name)
+        for name, one in series.items()
+        if name not in resampled and _is_interpolated(one)
+    ]
+
+
 def _alike(one: Integers, other: Integers) -> bool:
     """Whether nearly all rows are those of both."""
     return np.intersect1d(one, other).size > _REGULAR * max(one.size, other.size)
@@ -829,6 +889,7 @@ def flag_record(
                 (index, int(np.searchsorted(rows, start)), int(np.searchsorted(rows, stop))): limits
                 for (index, start, stop), limits in verified.items()
             }
+    record = replace(record, notes=(*record.notes, *_interpolation_notes(record, resampled)))
     position_flag: _Flags = zeros_like(record.time, dtype=np.uint16)
     tension_flag: _Flags = zeros_like(record.tension, dtype=np.uint16)
     position = record.crosshead_position

@@ -197,8 +197,11 @@ _MTS = "MTS793|"
 _LEAST_SHARE = (0.5, 0.8)  # of the fields are numbers; more where blanks part them
 
 _THOUSANDS = {
-    ".": re.compile(r"[+-]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?"),
-    ",": re.compile(r"[+-]?[1-9]\d{0,2}(\.\d{3})+(,\d*)?"),
+    decimal: re.compile(
+        rf"[+-]?[1-9]\d{{0,2}}(?P<mark>[{parted} '\u00a0\u202f\u2019])\d{{3}}"
+        rf"(?:(?P=mark)\d{{3}})*(?:{re.escape(decimal)}\d*)?"
+    )
+    for decimal, parted in ((".", ","), (",", "."))
 }
 
 _MARKED = (
@@ -308,6 +311,9 @@ def _best_of(
     return best
 
 
+_NAMED_MARK = {"\u00a0": "a no-break space", "\u202f": "a narrow no-break space"}
+
+
 def _number_settings(
     table: _TableShape, delimiter: str, decimal: str
 ) -> tuple[dict[str, object], list[str]]:
@@ -323,17 +329,18 @@ def _number_settings(
         remarks.append(f"sure: decimal mark '{decimal}'")
     settings: dict[str, object] = {}
     odd: list[str] = []
-    is_parted = False
+    found: Counter[str] = Counter()
     for place in range(table.n_fields):
         texts = [row[place] for row in table.rows if row[place]]
         strange = [text for text in texts if not _is_number(text, decimal)]
-        parted = [text for text in strange if _THOUSANDS[decimal].fullmatch(text)]
+        parted = [one["mark"] for one in map(_THOUSANDS[decimal].fullmatch, strange) if one]
         if 2 * (len(strange) - len(parted)) < len(texts):
             odd += strange
-            is_parted |= bool(parted)
-    if is_parted:
-        settings["thousands"] = "," if decimal == "." else "."
-        remarks.append(f"guess: thousands mark '{settings['thousands']}'")
+            found.update(parted)
+    if found:
+        mark = found.most_common(1)[0][0]
+        settings["thousands"] = mark
+        remarks.append(f"guess: thousands mark {_NAMED_MARK.get(mark, repr(mark))}")
     marks = list(dict.fromkeys(text for text in odd if not _THOUSANDS[decimal].fullmatch(text)))
     marks = [mark for mark in marks if mark not in ("NaN", "nan")]
     if marks:

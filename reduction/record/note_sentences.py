@@ -113,6 +113,12 @@ _OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "{channels}: resampled from {rate:.4g} Hz to the {base_rate:.4g} Hz of {base} by linear"
         " interpolation",
     ),
+    "interpolated-by-logger": (
+        "warning",
+        "{channel} lies on straight lines from every few rows to the next: it was read less often"
+        " than it was logged, and interpolated. That cuts its peaks off, and noise looks less than"
+        " it is, so that intervals are too narrow: log at the channel's own rate",
+    ),
     "read-less-often": (
         "warning",
         "{channel} has a new reading every {interval:.3g} s, which the log repeats in {every:.0f}"

@@ -433,3 +433,26 @@ def test_ticks_of_a_clock_become_seconds():
     declared = channels(time={"unit": "ms", "factor": 20.0})
     record = convert((log({"time": np.arange(TIME.size)}), layout(declared)))
     np.testing.assert_allclose(record.time, 0.02 * np.arange(TIME.size), rtol=1e-15)
+
+
+def test_rows_of_a_logger_of_two_rates_are_readings_of_one_channel_each():
+    time = np.arange(0, 40, 0.1)
+    place, load = 19 + 0.1 * time, 50 + 2 * time
+    turn = np.arange(time.size) % 4
+    columns = {
+        "time": time,
+        "crosshead_position": np.where(turn == 1, place, np.nan),
+        "tension.1": np.where(turn != 1, load, np.nan),
+        "tension.2": np.where(turn != 1, 2 * load, np.nan),
+    }
+    record = convert((log(columns), layout()))
+    assert record.n_samples == 100
+    np.testing.assert_allclose(record.time, time[1::4])
+    np.testing.assert_allclose(record.crosshead_position, place[1::4] * FOOT)
+    np.testing.assert_allclose(record.tension[0], load[1::4] * POUND)
+    assert np.all(record.quality_flag & Quality.RESAMPLED)
+    # what is blank in the same rows is as it was
+    blank = {key: np.where(turn % 2, one, np.nan) for key, one in columns.items() if key != "time"}
+    blank |= {"time": time, "crosshead_position": np.where(turn % 2, place, np.nan)}
+    blank |= {f"tension.{k}": np.where(turn % 2, k * load, np.nan) for k in (1, 2)}
+    assert convert((log(blank), layout())).n_samples == time.size

@@ -267,3 +267,19 @@ def test_a_dip_of_less_than_a_ten_thousandth_of_the_range_is_no_spike(dip, spike
     load[600] -= dip
     one = flagged(record(position=6 + 1e-3 * np.arange(TIME.size), load=load))
     assert where(one.quality_flag[0], Quality.SPIKE) == spikes
+
+
+@pytest.mark.parametrize("ratio", [2.0, 2.94, 5.0])
+def test_a_channel_that_was_interpolated_before_it_was_logged_is_told(ratio):
+    own = np.arange(0, 200, 0.1 * ratio)
+    read = 4 + 0.5 * np.sin(0.7 * own) + RANDOM.normal(0, 1e-3, own.size)
+    time = TIME[own[-1] > TIME]
+    rows = np.round(np.interp(time, own, read), 7)
+    load = 200 + 100 * np.sin(0.7 * time) + RANDOM.normal(0, 0.3, time.size)
+    codes = [one.code for one in flagged(record(time=time, position=rows, load=load)).notes]
+    assert codes.count("interpolated-by-logger") == 1
+    # neither white noise nor coarse codes nor a wave without noise is
+    for noise, step in ((1e-3, 1e-7), (1e-3, 1e-3), (1e-4, 1e-3), (2e-3, 1e-3), (0.0, 1e-7)):
+        plain = 4 + 0.5 * np.sin(0.7 * time) + RANDOM.normal(0, noise, time.size)
+        found = flagged(record(time=time, position=np.round(plain / step) * step, load=load))
+        assert "interpolated-by-logger" not in [one.code for one in found.notes]

@@ -542,3 +542,36 @@ def test_what_a_preamble_says_of_the_rate_is_quoted_where_no_column_is_time(tmp_
     (tmp_path / "a.ddf").write_text(head + rows)
     said = [one for one in sniff_layout(tmp_path / "a.ddf").remarks if "the log says" in one]
     assert said == ["unknown: the log says of it: Sample Frequency (Hz): 10000"]
+
+
+def test_some_blanks_hide_neither_datum_nor_zero(tmp_path):
+    time = np.arange(400) / 10
+    stroke = np.where(time < 5, 0.0, 20 - 20 * np.cos(time - 5)) + 1e-3 * np.sin(700 * time)
+    rows = [f"{t:.1f},{x:.3f},{9 * x - 14:.2f}" for t, x in zip(time, stroke, strict=True)]
+    for k in (7, 30, 90, 170):
+        rows[k] = f"{rows[k].rsplit(',', 1)[0]},n/a"
+    channels = proposed(write(tmp_path, "Time (s),Stroke (mm),Load (N)\n" + "\n".join(rows)))
+    position = channels["channels"]["crosshead_position"]
+    assert (position["datum"], position["reference_length"]) == ("displacement", "?")
+    assert channels["channels"]["tension"]["1"]["zero"].split()[0][:3] == "-14"
+
+
+def test_two_columns_of_one_signal_that_disagree_are_told_apart_by_how_much(tmp_path):
+    load = 500 + 400 * np.sin(np.arange(200) / 9)
+    rows = [f"{k / 10:.1f},{k % 70},{f:.2f},{1.12 * f + 60:.2f}" for k, f in enumerate(load)]
+    path = write(tmp_path, "Time (s),Stroke (mm),Load A (N),Load B (N)\n" + "\n".join(rows))
+    said = " ".join(sniff_layout(path).remarks)
+    assert '"Load B (N)" repeats column "Load A (N)", and is not used: it is 1.12 times' in said
+    assert "reads 60 N where that reads 0" in said
+
+
+@pytest.mark.parametrize("mark", [" ", "'", "\u00a0", "\u202f"])
+def test_blanks_and_apostrophes_that_part_thousands_are_drafted_and_read(tmp_path, mark):
+    rows = [f"{k / 10:.1f};{k % 70};{k % 70 * 50:,}".replace(",", mark) for k in range(200)]
+    path = write(tmp_path, "Time (s);Stroke (mm);Load (N)\n" + "\n".join(rows))
+    settings = proposed(path)
+    assert settings["thousands"] == mark
+    log = read_log(path, filled(settings), name="x")
+    assert log.columns["tension.1"].max() == 3450
+    with pytest.raises(LogError, match=r"Set thousands = "):
+        read_log(path, filled({**settings, "thousands": ""}), name="x")
