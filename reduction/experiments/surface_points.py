@@ -387,6 +387,25 @@ def evaluate_surfaces(
     )
 
 
+_MOST_POINTS = 20000
+
+
+def extremes_in_box(surfaces: ResponseSurfaces) -> tuple[Floats, Floats, Floats]:
+    """Return least and greatest value of each surface within the levels, and where it is least.
+
+    On a grid of up to 21 levels of each factor.
+    """
+    n_factors = surfaces.coded.shape[1]
+    n_side = max(3, min(21, int(_MOST_POINTS ** (1 / n_factors))))
+    points = np.array(list(product(np.linspace(-1, 1, n_side), repeat=n_factors)))
+    value = evaluate_surfaces(surfaces, points, units="coded").value
+    known = np.isfinite(value)
+    row = np.arange(len(value))
+    low = np.argmin(np.where(known, value, np.inf), axis=1)
+    high = np.argmax(np.where(known, value, -np.inf), axis=1)
+    return value[row, low], value[row, high], points[low]
+
+
 def _refuse(surfaces: ResponseSurfaces, coded: Floats, row: int, count: int) -> None:
     column = int(np.argmax(np.abs(coded[row])))
     level = engineering_from_coded(coded[row], low=surfaces.low, high=surfaces.high)[column]

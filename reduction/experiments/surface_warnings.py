@@ -18,7 +18,6 @@ References
 
 from __future__ import annotations
 
-from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -29,7 +28,7 @@ from reduction.experiments.fit_results import ResponseSurfaces
 from reduction.experiments.least_squares_fit import fit_least_squares, two_sided_p
 from reduction.experiments.response_matrix import block_contrasts
 from reduction.experiments.response_transform import back_transform
-from reduction.experiments.surface_points import evaluate_surfaces
+from reduction.experiments.surface_points import extremes_in_box
 from reduction.quantities.names import SCALES, response_of_surface
 from reduction.record.errors import DataError
 from reduction.record.measurement import Floats
@@ -152,9 +151,8 @@ def negative_surfaces(surfaces: ResponseSurfaces) -> tuple[Note, ...]:
 
     Notes
     -----
-    Looked for at every combination of low, middle and high level: the corners, where a
-    Box-Behnken design has no run, are the first to fall.  Of the quantities of [3]_ none can
-    be below zero.
+    In the corners a Box-Behnken design has no run, and between two levels a parabola may dip
+    below both.  Of the quantities of [3]_ none can be below zero.
 
     Examples
     --------
@@ -167,8 +165,7 @@ def negative_surfaces(surfaces: ResponseSurfaces) -> tuple[Note, ...]:
     >>> [str(one)[:48] for one in negative_surfaces(found)]
     ['the surface of energy falls below zero within th']
     """
-    grid = np.array(list(product((-1.0, 0.0, 1.0), repeat=surfaces.coded.shape[1])))
-    lowest = evaluate_surfaces(surfaces, grid, units="coded").value.min(axis=1)
+    lowest, _, _ = extremes_in_box(surfaces)
     measured = np.where(surfaces.transform_exponent == 1, 1.0, np.nan)[:, None] * (
         surfaces.fitted + surfaces.residual
     )

@@ -180,7 +180,7 @@ def _slope(strain: LineCurve) -> LineCurve:
         coefficient=np.array(strain.coefficient),
         is_inverse_slope=True,
         errata=strain.errata,
-        notes=(*strain.notes, "from the slope of load against strain: no printed cubic of K_0 can be used"),
+        notes=(*strain.notes, "slope of load against strain: no printed cubic of K_0 is usable"),
     )
     at = np.linspace(0.0, strain.high, _NODES)
     slope = polynomial.polyval(at, polynomial.polyder(strain.coefficient))

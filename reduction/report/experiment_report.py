@@ -31,6 +31,7 @@ from reduction.experiments.surface_points import (
     ABOVE_LEVERAGE,
     SurfaceValues,
     evaluate_surfaces,
+    extremes_in_box,
     greatest_leverage,
 )
 from reduction.quantities.names import QUANTITIES, RESPONSES, SCALES
@@ -95,7 +96,6 @@ HELD = (-1.0, 0.0, 1.0)
 
 """Coded levels of the held factor, one plane each. [1]"""
 
-_MOST_POINTS = 20000
 
 _NEAR = 0.5
 
@@ -148,22 +148,9 @@ def _runs_on_plane(view: ExperimentView, planes: _Planes, level: float) -> Bools
     return np.asarray(on_plane & (np.abs(coded[:, others]) < _NEAR).all(axis=1))
 
 
-def _extremes_in_box(surfaces: ResponseSurfaces) -> tuple[Floats, Floats, Floats]:
-    """Return least and greatest value of each surface within the levels, and where it is least."""
-    n_factors = surfaces.coded.shape[1]
-    n_side = max(2, min(21, int(_MOST_POINTS ** (1 / n_factors))))
-    points = np.array(list(product(np.linspace(-1, 1, n_side), repeat=n_factors)))
-    value = evaluate_surfaces(surfaces, points, units="coded").value
-    known = np.isfinite(value)
-    row = np.arange(len(value))
-    low = np.argmin(np.where(known, value, np.inf), axis=1)
-    high = np.argmax(np.where(known, value, -np.inf), axis=1)
-    return value[row, low], value[row, high], points[low]
-
-
 def negative_inside(surfaces: ResponseSurfaces) -> dict[str, tuple[float, Floats]]:
     """Return least value and its place of each surface that goes below zero and cannot be."""
-    least, _, place = _extremes_in_box(surfaces)
+    least, _, place = extremes_in_box(surfaces)
     return {
         name: (float(least[index]), place[index])
         for index, name in enumerate(surfaces.response_names)
@@ -1027,7 +1014,7 @@ def effect_table(view: ExperimentView, name: str) -> PageTable | None:
 
 def answer_table(view: ExperimentView, surfaces: ResponseSurfaces) -> PageTable | None:
     """Return each response in the middle of the tested range, and from where to where it goes."""
-    least, greatest, _ = _extremes_in_box(surfaces)
+    least, greatest, _ = extremes_in_box(surfaces)
     centre = np.zeros((1, len(view.factors)))
     middle = evaluate_surfaces(surfaces, centre, units="coded")
     lows, highs = _interval_of_surfaces(view, surfaces, centre)

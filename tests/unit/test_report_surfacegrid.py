@@ -5,9 +5,9 @@ import pytest
 from experiment_views import law_experiment, view_of
 from experiments import surface_experiment
 
+from reduction.experiments.surface_points import extremes_in_box
 from reduction.report.experiment_report import (
     HELD,
-    _extremes_in_box,
     _runs_on_plane,
     make_planes,
     negative_inside,
@@ -47,7 +47,7 @@ def test_four_runs_stand_on_each_outer_plane_and_seven_on_the_middle_one(view):
 
 
 def test_the_extremes_of_a_surface_are_those_of_the_law_within_the_levels(view):
-    least, greatest, place = _extremes_in_box(view.surfaces)
+    least, greatest, place = extremes_in_box(view.surfaces)
     # the slope in the mean tension, 200 + 80 x, has no zero between -1 and 1
     assert least[0] == pytest.approx(law(-1, -1, 1), rel=1e-6)
     assert greatest[0] == pytest.approx(law(1, 1, -1), rel=1e-6)

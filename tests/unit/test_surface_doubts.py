@@ -31,6 +31,13 @@ def test_a_surface_that_falls_below_zero_in_a_corner_is_named_and_its_logarithm_
     assert negative_surfaces(fitted(plane, transforms="log")) == ()
 
 
+def test_a_surface_that_dips_below_zero_between_two_levels_is_named():
+    # 50, 2 and 1 along f: 2 - 24.5 f + 23.5 f^2 is -4.4 at its least, at f of 0.52
+    time = 2 - 24.5 * CODED[:, 0] + 23.5 * CODED[:, 0] ** 2
+    (words,) = map(str, negative_surfaces(fitted(time)))
+    assert words.startswith("the surface of energy falls below zero")
+
+
 def test_a_surface_with_its_logarithm_beside_it_is_not_named():
     plane = 2.1 - CODED.sum(axis=1)
     both = fit_surfaces(
