@@ -31,6 +31,7 @@ from reduction.experiments.run_sheet import (
     expected_precision,
     find_cautions,
     make_run_sheet,
+    order_cautions,
     smallest_effect,
 )
 from reduction.experiments.screening import (
@@ -704,6 +705,10 @@ def notes_of_fit(runs: RunSeries, surfaces: ResponseSurfaces) -> tuple[str, ...]
         *map(str, negative_surfaces(surfaces)),
         *map(str, stray_runs(surfaces)),
         *map(str, drifting_responses(surfaces, drift)),
+        *(
+            f"{one.message}. {one.hint}"
+            for one in order_cautions(runs.coded, runs.run_order, runs.factor_names)
+        ),
     )
 
 

@@ -348,18 +348,32 @@ def _repeats(sheet: RunSheet, names: Mapping[int, str]) -> list[Caution]:
     return found
 
 
-def _order(sheet: RunSheet) -> list[Caution]:
-    place = np.arange(sheet.n_runs) - (sheet.n_runs - 1) / 2
-    levels = sheet.coded - sheet.coded.mean(axis=0)
+def order_cautions(coded: Floats, order: Floats, names: Sequence[str]) -> list[Caution]:
+    """Warn of factors, coded (n_runs, n_factors), that follow the order of the runs, where known.
+
+    Examples
+    --------
+    >>> coded = np.repeat([-1.0, 0.0, 1.0], 4)[:, None]
+    >>> [one.kind for one in order_cautions(coded, np.arange(12.0), ["mean_tension"])]
+    ['order-confounded']
+    >>> order_cautions(coded, np.tile(np.arange(4.0), 3), ["mean_tension"])
+    []
+    """
+    known = np.isfinite(order) & np.isfinite(coded).all(axis=1)
+    n_runs = int(known.sum())
+    if not n_runs:
+        return []
+    place = order[known] - order[known].mean()
+    levels = coded[known] - coded[known].mean(axis=0)
     size = np.linalg.norm(levels, axis=0) * np.linalg.norm(place)
     correlation: Floats = np.divide(place @ levels, size, out=np.zeros_like(size), where=size > 0)
     # of a random order the correlation of each factor has nearly Student's distribution
-    freedom = max(sheet.n_runs - 2, 1)
-    limit = scipy.special.stdtrit(freedom, 1 - _CONFOUNDED / (2 * len(sheet.names)))
+    freedom = max(n_runs - 2, 1)
+    limit = scipy.special.stdtrit(freedom, 1 - _CONFOUNDED / (2 * len(names)))
     strong = np.flatnonzero(np.abs(correlation) > limit / np.hypot(limit, np.sqrt(freedom)))
     if not strong.size:
         return []
-    listed = ", ".join(f"{sheet.names[i]} {correlation[i]:+.2f}" for i in strong)
+    listed = ", ".join(f"{names[i]} {correlation[i]:+.2f}" for i in strong)
     return [
         Caution(
             "order-confounded",
@@ -449,7 +463,8 @@ def find_cautions(
     else:
         loads = _slack(sheet, names, is_measured=is_measured)
         loads += _over(sheet, names, load_limit, peak_share_limit)
-    return tuple(loads + _repeats(sheet, names) + _order(sheet))
+    order = order_cautions(sheet.coded, np.arange(float(sheet.n_runs)), sheet.names)
+    return tuple(loads + _repeats(sheet, names) + order)
 
 
 ON_PLAN = 0.3
