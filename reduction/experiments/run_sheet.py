@@ -373,7 +373,7 @@ def order_cautions(coded: Floats, order: Floats, names: Sequence[str]) -> list[C
     strong = np.flatnonzero(np.abs(correlation) > limit / np.hypot(limit, np.sqrt(freedom)))
     if not strong.size:
         return []
-    listed = ", ".join(f"{names[i]} {correlation[i]:+.2f}" for i in strong)
+    listed = ", ".join(f"{names[i]} {correlation[i]:+.2f}" for i in strong.tolist())
     return [
         Caution(
             "order-confounded",
