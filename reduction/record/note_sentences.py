@@ -1539,8 +1539,8 @@ _OF_HOSES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "stretch-beside-reported": ("note", "{side} {words}"),
     "prediction-counts-as-exact": (
         "note",
-        "no uncertainty of the prediction is stated: it is treated as exact, and an error of the"
-        " angle or the cord curve counts as a model error",
+        "no uncertainty of the prediction is stated that acts at these strains: it is treated as"
+        " exact, and an error of the angle or the cord curve counts as a model error",
     ),
     "test-counts-as-unbiased": (
         "note", "no calibration uncertainty is stated: the test is treated as unbiased",
