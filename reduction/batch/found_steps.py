@@ -44,7 +44,7 @@ def find_steps(plan: TestPlan, located: Located | None, campaign: Campaign) -> _
         return _FoundSteps()
     time, cycles = located.record.time, located.cycles
     control = control_channel(located.position, located.tension, plan.settings.cycles)
-    levels = find_levels(time, control, cycles)
+    levels = find_levels(time, control, cycles, waveform=plan.settings.cycles.waveform)
     ranges = [_written(level, median_step(time)) for level in levels]
     steps = _in_toml(ranges)
     if levels and plan.kind in _CUT:

@@ -35,7 +35,7 @@ def levels_of(*pieces, noise=0.02, seed=1):
     settings = CycleSettings(control="load", waveform="sinusoidal")
     stand = find_standstills(time, control / 10, control[None], settings=PhaseSettings())
     cycles = find_cycles(time, control / 10, control[None], stand, settings=settings)
-    return time, cycles, find_levels(time, control, cycles)
+    return time, cycles, find_levels(time, control, cycles, waveform="sinusoidal")
 
 
 def test_levels_of_unequal_length_are_found_from_the_first_cycle_to_the_last():
@@ -125,3 +125,14 @@ def test_cycles_of_two_periods_are_unlike(other, unlike):
     assert (mean, ratio) == pytest.approx((0, 1), abs=0.05)
     assert of_periods == pytest.approx(PER / other, rel=0.1)
     assert are_unlike(*spread) == unlike
+
+
+@pytest.mark.parametrize("rate", [0.6, 1.0, 2.0])
+def test_a_level_of_sines_does_not_begin_on_the_ramp_to_their_mean(rate):
+    # the ramp goes on as a sine from its mean: about half a stroke of the first rise is no sine
+    n_ramp = int(10 / (rate * 2 * np.pi * 2 / PER))
+    begin = wave(10, 2, 30)[PER // 4 :]
+    control = [ramp(0, 10, n_ramp), begin, ramp(10, 20), wave(20, 2, 30)[PER // 4 :]]
+    *_, levels = levels_of(*control, noise=0.002)
+    valley = STEP * (n_ramp + PER * 0.75)
+    assert levels[0].start == pytest.approx(valley, abs=2 * STEP)

@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 from reduction.record.errors import DataError
 from reduction.record.measurement import Floats
 from reduction.record.samples import take_samples
+from reduction.record.settings import Waveform
 from reduction.stages.cycles.cycle_product import Cycles
 
 _STEP = 0.1  # of the range of a cycle: what makes a level, in the mean or in the range
@@ -56,7 +57,9 @@ class Level:
     frequency: float
 
 
-def find_levels(time: ArrayLike, control: ArrayLike, cycles: Cycles) -> tuple[Level, ...]:
+def find_levels(
+    time: ArrayLike, control: ArrayLike, cycles: Cycles, *, waveform: Waveform = "triangular"
+) -> tuple[Level, ...]:
     r"""Levels of the cycles of a record, in the order of time.
 
     Parameters
@@ -67,6 +70,8 @@ def find_levels(time: ArrayLike, control: ArrayLike, cycles: Cycles) -> tuple[Le
         The channel that the machine controls, on which the cycles were found. [m] or [N]
     cycles : Cycles
         From `reduction.stages.cycles.cycle_search.find_cycles`.
+    waveform : {"triangular", "sinusoidal", "other"}
+        Of the machine.
 
     Returns
     -------
@@ -94,7 +99,7 @@ def find_levels(time: ArrayLike, control: ArrayLike, cycles: Cycles) -> tuple[Le
     slips of a splice in position control, which change the other channel, make no level.
 
     Where a ramp leads into the first cycle without a turn, that cycle begins as the ramp
-    passes the valley, if it is then as long as those that follow.
+    passes the valley, if it is then as long as those that follow; and, of sines, rises as they do.
 
     Examples
     --------
@@ -143,7 +148,15 @@ def find_levels(time: ArrayLike, control: ArrayLike, cycles: Cycles) -> tuple[Le
         Level(
             first=first,
             last=last,
-            start=_start(times, values, cycles, first, after=stop, period=float(period[first])),
+            start=_start(
+                times,
+                values,
+                cycles,
+                first,
+                after=stop,
+                period=float(period[first]),
+                is_sine=waveform == "sinusoidal",
+            ),
             stop=float(times[cycles.last[last]]),
             mean=float(np.median(mean[first : last + 1])),
             amplitude=float(np.median(half[first : last + 1])),
@@ -184,7 +197,14 @@ def _is_step(read: Floats, change: Floats, noise: Floats, between: tuple[int, in
 
 
 def _start(
-    time: Floats, values: Floats, cycles: Cycles, first: int, *, after: int, period: float
+    time: Floats,
+    values: Floats,
+    cycles: Cycles,
+    first: int,
+    *,
+    after: int,
+    period: float,
+    is_sine: bool,
 ) -> float:
     """When the first cycle of a level begins, which may be that before the first that was found."""
     begin = int(cycles.first[first])
@@ -198,7 +218,34 @@ def _start(
     passes = np.flatnonzero((before[:-1] < valley) & (before[1:] >= valley))
     # a level that is reached from above has its valley found
     is_reached_from_below = passes.size and np.nanmin(values[after + 1 : earliest + 1]) < valley
-    return float(time[earliest + passes[-1]] if is_reached_from_below else time[begin])
+    if not is_reached_from_below:
+        return float(time[begin])
+    start = earliest + int(passes[-1])
+    begins, peak = (start, begin), int(cycles.branch_last[first, 0])
+    is_of_wave = not is_sine or _rises_alike(time, values, begins, peak)
+    return float(time[start if is_of_wave else begin])
+
+
+_ALIKE = 0.05  # of a stroke
+
+
+def _rises_alike(time: Floats, values: Floats, begins: tuple[int, int], peak: int) -> bool:
+    """Whether two rises, one before the other, are one to a twentieth, about their middles.
+
+    ``begins`` are their first samples, and ``peak`` is the end of the later one.
+    """
+    low, high = float(values[begins[1]]), float(values[peak])
+    level = (low + high) / 2
+    reach = (time[peak] - time[begins[1]]) / 2
+    about = np.linspace(-0.9 * reach, 0.9 * reach, 19)
+    rises = []
+    for begin in begins:
+        at = begin + 1 + int(np.argmax(values[begin + 1 : peak + 1] >= level))
+        below, above = values[at - 1], values[at]
+        share = (level - below) / (above - below) if above > below else 1.0
+        middle = time[at - 1] + share * (time[at] - time[at - 1])
+        rises.append(np.interp(middle + about, time, values))
+    return bool(np.nanmax(np.abs(rises[0] - rises[1])) < _ALIKE * (high - low))
 
 
 def spread_of_cycles(time: Floats, control: Floats, cycles: Cycles) -> tuple[float, float, float]:
