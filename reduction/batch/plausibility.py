@@ -15,7 +15,7 @@ from itertools import combinations
 import numpy as np
 
 from reduction.batch.survey import Survey
-from reduction.campaign.plan import Campaign, ExperimentPlan
+from reduction.campaign.plan import Campaign, ExperimentPlan, TestPlan
 from reduction.experiments.designs import engineering_levels
 from reduction.experiments.run_sheet import NOT_OF_PLAN
 from reduction.pipeline.reduce_test import greatest_strain
@@ -433,20 +433,35 @@ def load_columns(layout: Layout) -> tuple[str, ...]:
     return (str(layout.sheet), str(layout.group), str(layout.matrix), *columns)
 
 
+def _read_the_same(one: TestPlan, other: TestPlan) -> bool:
+    """Whether two tests take the same rows of a log, or of a copy of it, as their own.
+
+    A machine that goes from position to load control has a test for each, of steps of one file.
+    """
+    if one.log == other.log:
+        return False
+    if one.files != other.files or one.step_range is None or other.step_range is None:
+        return True
+    low, high = np.transpose([one.step_range, other.step_range])
+    return bool(low.max() < high.min())
+
+
 def _of_pairs(
     campaign: Campaign, surveys: Sequence[Survey], models: Models
 ) -> Iterator[tuple[str, Note]]:
     """Tests of one load, and tests of one specimen that pull unlike at one length."""
-    first: dict[tuple[tuple[str, ...], ...], str] = {}
+    read: dict[tuple[tuple[str, ...], ...], list[TestPlan]] = {}
     for survey in surveys:
         # several tests may stand side by side in one file
         logs = tuple(
             (source.sha256, *load_columns(campaign.layouts[layout]))
             for source, (_, layout) in zip(survey.sources, survey.plan.files, strict=False)
         )
-        known = first.setdefault(logs, survey.plan.log)
-        if known != survey.plan.log:
-            yield survey.plan.id, note("log-used-twice", other=known)
+        before = read.setdefault(logs, [])
+        twice = [one for one in before if _read_the_same(one, survey.plan)]
+        before.append(survey.plan)
+        if twice:
+            yield survey.plan.id, note("log-used-twice", other=twice[0].log)
     by_specimen: dict[str, list[Survey]] = {}
     for survey in surveys:
         if survey.levels is not None and not survey.plan.failed and not survey.plan.step_place:

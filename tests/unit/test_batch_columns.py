@@ -20,7 +20,7 @@ def layout(load, *, position="Position", time="Time", sheet=1):
 def survey(name, layout="log", specimen="b", digest="0" * 64):
     plan = SimpleNamespace(
         id=name, log=name, files=((None, layout),), specimens=(specimen,), failed=False,
-        step_place=None,
+        step_place=None, step_range=None,
     )  # fmt: skip
     return SimpleNamespace(plan=plan, sources=(SimpleNamespace(sha256=digest),), levels=None)
 
@@ -45,6 +45,18 @@ def test_two_sheets_of_a_workbook_are_two_logs_and_one_sheet_twice_is_one():
     assert list(_of_pairs(campaign, apart, {})) == []
     ((test, found),) = _of_pairs(campaign, [survey("T-1", "one"), survey("T-2", "one")], {})
     assert test == "T-2" and found.code == "log-used-twice"
+
+
+@pytest.mark.parametrize(
+    ("ranges", "n_notes"),
+    [([(0.0, 60.0), (60.0, 90.0)], 0), ([(0.0, 60.0), (50.0, 90.0)], 1), ([(0.0, 60.0), None], 1)],
+)
+def test_steps_of_one_file_in_two_tests_are_told_only_where_they_overlap(ranges, n_notes):
+    tests = [survey("T-1"), survey("T-2")]
+    for one, own in zip(tests, ranges, strict=True):
+        one.plan.step_range = own
+    campaign = SimpleNamespace(layouts={"log": layout("Force")})
+    assert len(list(_of_pairs(campaign, tests, {}))) == n_notes
 
 
 def pulled(order, strain, tension, kind="cyclic"):
