@@ -54,6 +54,23 @@ def test_curve_too_short_to_bend_has_no_blur():
     assert not blur.any()
 
 
+def test_the_bend_of_a_curve_shorter_than_two_windows_is_known_of_all_of_it():
+    centre, half_window = np.arange(-11.0, 12.0), 14  # eight readings of a branch, in step
+    slope = np.full(40, np.nan)
+    slope[8:31] = 3 * centre**2 + 29**2 / 40 * 6
+    blur, _ = window_blur(slope, half_window=half_window)
+    assert (slope - blur)[8:31] == pytest.approx(3 * centre**2)
+    # and not where in it that is: more than it, and far less than all that the slope changes by
+    known = slope[None]
+    _, _, missed = adapt_window([known], [0 * known], [blur[None]], half_windows=[half_window])
+    assert np.all(missed[0, 8:31] >= 2 * blur[8:31])
+    level = 1000 + centre + 1e-3 * centre**2
+    known[0, 8:31] = level
+    blur, _ = window_blur(known, half_window=half_window)
+    _, _, missed = adapt_window([known], [0 * known], [blur], half_windows=[half_window])
+    assert np.all(missed[0, 8:31] < 0.1 * np.ptp(level))
+
+
 def test_window_of_one_bin_is_refused():
     with pytest.raises(DataError, match="a window is a bin wide; found half_window 0"):
         window_blur([1.0, 2.0], half_window=0)

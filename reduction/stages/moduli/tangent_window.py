@@ -58,6 +58,12 @@ _UNSEEN = sqrt(2.0)
 # where one width alone is to be had: half of the second difference that its blur is a tenth of
 _UNSEEN_OF_BLUR = 5.0
 
+# of a curve shorter than two windows: deviations of what its bend adds to the slope
+# and, where its bend is none by chance, of the range of the slope
+_UNSEEN_OF_BEND, _UNSEEN_OF_RANGE = 2.0, 0.03
+
+_LEAST_STEP = 2  # bins of a second difference of such a curve
+
 # mean square of the range of ten normal numbers, as many as the second differences of the noise in
 # two windows are worth
 _SQUARE_OF_RANGE = 10.0
@@ -307,7 +313,8 @@ def window_blur(slope: ArrayLike, *, half_window: int) -> tuple[Floats, float]:
     Derivation: over samples spread evenly on :math:`[-W/2, W/2]` the regression slope
     of :math:`y = u^3` is :math:`\int u^4 / \int u^2 = 3 W^2 / 20`, and
     :math:`E'' = y''' = 6`. The step of the second difference is one bin more than
-    ``half_window``; nearer than that to the end of a curve the blur is that of the
+    ``half_window``, or half of a curve that is shorter than two windows, if that is half of
+    ``half_window`` or more; nearer than that to the end of a curve the blur is that of the
     nearest bin that has one. A jump of the modulus stays spread over the window.
 
     The gain is that of white noise under the combined kernel, about 1.2.
@@ -326,7 +333,12 @@ def window_blur(slope: ArrayLike, *, half_window: int) -> tuple[Floats, float]:
     if half_window < 1:
         raise DataError("a window is a bin wide", found=f"half_window {half_window}", needed="1")
     slopes = np.asarray(slope, dtype=np.float64)
-    step, n_window = half_window + 1, 2 * half_window + 1
+    n_window = 2 * half_window + 1
+    longest = int(np.isfinite(slopes).sum(axis=-1).max(initial=0))
+    # of a curve shorter than two windows the bend is that of all of it
+    step = min(half_window + 1, (longest - 1) // 2)
+    if step < max(half_window // 2, _LEAST_STEP):
+        step = half_window + 1
     share = (n_window / step) ** 2 / 40
     blur = np.zeros_like(slopes)
     n_bins = slopes.shape[-1]
@@ -560,6 +572,11 @@ def adapt_window(
     # of a curve shorter than two windows no blur is known: its modulus may change within one
     is_blind = [(one == 0).all(axis=-1, keepdims=True) for one in blur]
     missed += np.where(is_blind[0], _range(slope[0]) ** 2 / 3, 0.0)
+    # of one shorter than that by half, the bend of all of it is known, and not where in it that is
+    n_known = np.isfinite(slope[0]).sum(axis=-1, keepdims=True)
+    bend = _UNSEEN_OF_BEND * np.abs(blur[0]).max(axis=-1, keepdims=True)
+    bend = np.hypot(bend, _UNSEEN_OF_RANGE * _range(slope[0]))
+    missed = np.where(n_known <= 2 * (half_windows[0] + 1), np.maximum(missed, bend**2), missed)
     for wide, half in enumerate(half_windows[:-1]):
         squares = {n: (slope[wide] - slope[n]) ** 2 for n in range(wide + 1, last + 1)}
         # against the next one a blind window is not given the benefit of the noise
