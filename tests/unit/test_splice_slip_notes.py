@@ -108,6 +108,7 @@ def test_a_compliance_whose_uncertainty_is_stated_is_not_asked_for(stated):
     test.amplitude.apparent_spring_constant = np.array([4e5])
     test.amplitude.frequency = np.array([0.1])
     test.specimens[0].linear_density = None
+    test.cycles = None
     test.amplitude.uncertainty["apparent_spring_constant"] = np.array([4.0])
     test.record = SimpleNamespace(load_train=LoadTrain())
     errors = SimpleNamespace(machine_compliance=stated)
