@@ -12,6 +12,7 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
 from difflib import get_close_matches
+from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -234,10 +235,16 @@ def _known_keys(
         yield from _known_keys(entry, definitions, at)
 
 
+@cache
+def _keys_of(model: type[BaseModel]) -> tuple[tuple[str, ...], ...]:
+    """Every key that a file of this model may have, with the tables it stands in."""
+    schema = model.model_json_schema()
+    return tuple(dict.fromkeys(_known_keys(schema, schema.get("$defs", {}))))
+
+
 def _meant_by(place: tuple[str, ...], model: type[BaseModel]) -> str:
     """What a key that is not known may have been meant for: one like it, or another table."""
-    schema = model.model_json_schema()
-    known = dict.fromkeys(_known_keys(schema, schema.get("$defs", {})))
+    known = _keys_of(model)
     *table, key = place
     tables = {one[:-1] for one in known}
     here = next(
@@ -289,7 +296,8 @@ def faults_of(
             text if number == 0 else text.removeprefix("Input should be ")
             for number, text in enumerate(dict.fromkeys(text for text, _ in told))
         )
-        hint = _meant_by(place, model) if model is not None and place in unknown else ""
+        is_shown = len(faults) < _SHOWN
+        hint = _meant_by(place, model) if model and is_shown and place in unknown else ""
         faults.append(_Fault(".".join(place), needed, told[0][1], hint))
     return faults
 

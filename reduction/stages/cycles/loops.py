@@ -369,8 +369,6 @@ def _shape_of_wave(
     return _Shape(half[-1], (high[-1] + low[-1]) / 2, missed)
 
 
-_FAR_MORE = 4.0  # times what cycles miss in the median, where a reading is lost
-
 _IRREGULAR = 0.03  # change of amplitude from one cycle to the next, median
 
 
@@ -471,12 +469,6 @@ def _quantities_of_cycles(
             row["force_missed"] = np.hypot(row["force_missed"], of_shape)
     else:
         begin = row["strain_begin"]
-        for name in ("force", "strain"):  # a cycle begins with the valley that the last one missed
-            missed = row[f"{name}_missed"]
-            before = np.where(follows, np.roll(missed, 1), 0.0)
-            known = missed[np.isfinite(missed)]
-            is_lost = before > _FAR_MORE * (np.median(known) if known.size else np.inf)
-            row[f"{name}_missed"] = np.where(is_lost, np.fmax(before, missed), missed)
         if is_parted:  # all of it may take place on one way between the turns
             for name, drift in (("force", force_drift), ("strain", strain_drift)):
                 row[f"{name}_missed"] = np.hypot(

@@ -96,9 +96,8 @@ def peaks_and_valleys(
         at_top = _places(values, peak - on_rise, after_peak)
         at_last = _places(-values, np.maximum(end - on_fall, peak), np.where(goes_on, stop, end))
         last = np.fmin(last, values[at_last])
-        # lines count readings: where one is lost beside a turn they cross as much farther away
-        above = (level_of_turn(values, peak, top, sign=1) - top) * _steps_beside(time, at_top)
-        below = (last - level_of_turn(values, end, last, sign=-1)) * _steps_beside(time, at_last)
+        above = level_of_turn(values, peak, top, sign=1) - top
+        below = last - level_of_turn(values, end, last, sign=-1)
         noise = within_scatter(reading_noise(moved), moved[peak])
         own = within_scatter(reading_noise(values), values[peak])
         # a machine may rest at one of its turns alone
@@ -225,23 +224,6 @@ _LOW = 1.5  # noise below a plateau, where few of its readings lie, and those of
 
 
 _LEVEL, _CLEARLY = 0.25, 5.0  # noise and standard errors of the mean, within which it is level
-
-
-_LOST = 1.5  # steps from a reading to the next
-
-
-def _steps_beside(time: Floats, at: Integers) -> Floats:
-    """Steps of time that the longer of both beside a reading lasts; one, unless readings are lost.
-
-    Examples
-    --------
-    >>> _steps_beside(np.array([0.0, 1.0, 2.0, 4.0, 5.0, 6.1]), np.array([1, 2, 3, 4]))
-    array([1., 2., 2., 1.])
-    """
-    step = np.diff(time)
-    longer = np.fmax(step[np.maximum(at - 1, 0)], step[np.minimum(at, step.size - 1)])
-    longer = longer / np.median(step)
-    return np.where(longer > _LOST, longer, 1.0)
 
 
 def noise_of_corners(noise: float, turns: Floats) -> float:
