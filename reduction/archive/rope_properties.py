@@ -276,7 +276,7 @@ def _first_peak(dataset: xr.Dataset, row: int) -> float:
 def _bedding(read: _Reader) -> BeddingCycles | None:
     if "bedding_permanent_strain" not in read.dataset:
         return None
-    foot = read.value("mean_strain", read.row, 0) - read.value("strain_amplitude", read.row, 0)
+    foot = read.value("foot_strain", read.row, 0)
     valley = read.value("valley_tension", read.row, 0)
     return BeddingCycles(
         first_stiffness=read.number("bedding_first_stiffness"),

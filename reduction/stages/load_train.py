@@ -169,7 +169,12 @@ def acceleration(time: ArrayLike, position: ArrayLike, *, half_width: float) -> 
 
 
 def turn_acceleration(
-    time: Floats, position: Floats, cycles: Cycles, *, found: Floats | None = None
+    time: Floats,
+    position: Floats,
+    cycles: Cycles,
+    *,
+    found: Floats | None = None,
+    finest: int = 1,
 ) -> float:
     """Size of the acceleration at the turns, by second differences of the readings there.
 
@@ -181,6 +186,8 @@ def turn_acceleration(
         Whose turns.
     found : ndarray, shape (n_samples,), or None
         What is known of the acceleration already, and is taken off. [m s-2]
+    finest : int
+        Steps of the shortest differences. [-]
 
     Returns
     -------
@@ -215,7 +222,7 @@ def turn_acceleration(
     longest = max(int(np.median(cycles.last - cycles.first)) // 16, 1)
     sizes = []
     for turns in (cycles.first, cycles.branch_first[:, 1]):
-        size, reach = 0.0, max(longest // _REACHES, 1)
+        size, reach = 0.0, finest * max(longest // _REACHES, 1)
         while reach <= longest:
             # beside a sharp turn, a smooth acceleration is too large
             for away in range(-longest, longest + 1, reach):

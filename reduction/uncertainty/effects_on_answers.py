@@ -49,8 +49,11 @@ def load_train_notes(test: ReducedTest, instruments: Sequence[InstrumentErrors])
         train, of_mass = record.load_train, square * length
         if test.cycles is not None:
             # what a mass does to the extremes of ramps it does while the machine turns
-            turn = turn_acceleration(record.time, record.crosshead_position, test.cycles)
-            of_mass = max(of_mass, turn / float(summary.strain_amplitude[index]))
+            logged = record.time, record.crosshead_position, test.cycles
+            turn = turn_acceleration(*logged)
+            # of a corner between two readings a log tells no acceleration, and shows no inertia
+            if turn < _RESOLVED * turn_acceleration(*logged, finest=2):
+                of_mass = max(of_mass, turn / float(summary.strain_amplitude[index]))
             if train.end_mass:
                 yield from _inertia_left(test, summary, index, turn)
         if train.load_cell_at is None or (
@@ -116,6 +119,8 @@ def _inertia_left(
     if abs(error) > half:
         yield note("specimen-near-resonance", specimen.name, effect=abs(error), share=angle / np.pi)
 
+
+_RESOLVED = 1.5  # times what differences over twice the steps show; a corner shows twice that
 
 _NEAR_RESONANCE = 2.5  # of pi: beyond it damping decides
 

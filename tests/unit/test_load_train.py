@@ -190,3 +190,22 @@ def test_what_the_mass_of_a_line_leaves_is_that_of_a_chain_of_many_masses(angle,
     assert _wave_left(angle, is_moving=is_moving) == pytest.approx(
         felt + taken_off - 1, abs=2e-3 * max(angle, 1.0)
     )
+
+
+def test_a_corner_between_two_readings_has_no_acceleration_that_a_log_resolves():
+    t = np.arange(4 * 64 + 1) / 64
+    first = np.arange(0, 256, 64)
+    branch = np.stack([first, first + 32], axis=1)
+    none = np.zeros(t.size)
+    cycles = Cycles(
+        first, first + 64, branch, branch + 32, np.ones((4, 2)), none.astype(int),
+        none.astype(int), none > 0, 0.01,
+    )  # fmt: skip
+    corner, sine = np.abs(2 * (t % 1) - 1), 0.5 * np.cos(2 * np.pi * t)
+    ratio = [
+        turn_acceleration(t, x, cycles) / turn_acceleration(t, x, cycles, finest=2)
+        for x in (corner, sine)
+    ]
+    # 2 v / h over h at a corner, and a smooth second derivative over any h
+    assert ratio[0] == pytest.approx(2, rel=1e-6)
+    assert ratio[1] == pytest.approx(1, rel=0.01)
