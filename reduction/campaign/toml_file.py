@@ -286,7 +286,7 @@ def faults_of(
         shown = "" if is_missing else _shown(entry["input"])
         found.setdefault(place, []).append((needed, shown))
     found |= values
-    faults = []
+    faults: list[_Fault] = []
     above = {place[:length] for place in found for length in range(len(place))}
     for place, told in found.items():
         # a table is not a text either, but where its own keys have faults it was meant as a table
