@@ -275,7 +275,7 @@ def surfaces_between_runs(surfaces: ResponseSurfaces) -> BetweenRuns:
     ...     response_names=["stiffness"], low=[0.1], high=[0.5], units="coded")
     >>> between = surfaces_between_runs(found)
     >>> print(between.coded.ravel(), between.discrepancy.round(2))
-    [-0.5  0.   0.5] [[0.66 0.   0.39]]
+    [-0.5  0.   0.5] [[0.64 0.   0.38]]
     """
     n_factors = surfaces.coded.shape[1]
     steps = np.meshgrid(*[np.array([-0.5, 0.0, 0.5])] * n_factors, indexing="ij")

@@ -164,8 +164,7 @@ def test_the_first_rise_ends_where_the_first_cycle_turns(is_part):
 
 def test_bedding_in_has_the_foot_of_its_first_cycle_and_the_greatest_peak():
     of_cycles = {
-        "mean_strain": [0.05, 0.07],
-        "strain_amplitude": [0.02, 0.01],
+        "foot_strain": [0.03, 0.06],
         "valley_tension": [40.0, 41.0],
         "peak_tension": [75.0, 80.0],
     }
