@@ -104,7 +104,7 @@ def _equal_tethers(tether: _Tether, n_tethers: int) -> tuple[_Tether, ...]:
 
     Notes
     -----
-    Assemblies of [1]_, sec. 2.3.2 have one, four and six (sec. 2.3.2).
+    Assemblies of [1]_ have one, four and six (sec. 2.3.2).
 
     Examples
     --------
@@ -184,7 +184,7 @@ def stated_model(splices: StatedSplices, free_length: float, *, name: str) -> St
     Notes
     -----
     The two laws are those of the strain correction: a splice that strains by a share of what the
-    rubber does, or by its tension ([1]_, sec. 2.3, Table 3 has the first one from Table 3).
+    rubber does, or by its tension ([1]_ has the first one from Table 3).
 
     Examples
     --------

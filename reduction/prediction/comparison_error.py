@@ -345,7 +345,7 @@ def difference_of(
 
     Notes
     -----
-    Positive where the prediction is above the test [1]_, sec. 1-5.  The relative RMS is the RMS of
+    Positive where the prediction is above the test ([1]_, sec. 1-5). The relative RMS is the RMS of
     the error over the RMS of the measured tension, both at the same strains; unlike a mean of
     relative errors it is not ruled by the start of the curve, where tension goes to zero, and it is
     1 for a prediction of nothing.  Strains count alike: the axis is equally spaced.
@@ -559,7 +559,7 @@ def measured_pick_up(measured: MeasuredCurve) -> PickUp:
 
     Notes
     -----
-    Below the bend the rubber alone carries, above it the cords as well [4]_, sec. 1.2: the curve
+    Below the bend the rubber alone carries, above it the cords as well ([4]_, sec. 1.2): the curve
     has no jump and its slope has one, :math:`c_1`.  Every place of the bend is tried [5]_, read as
     the samples were, in the part of the curve from its beginning that shows it best.  Its
     uncertainty is the width over which the sum of squares stays within one variance of the
@@ -890,7 +890,7 @@ def verdict_words(
     Notes
     -----
     Agreement is one of every strain by itself; where the shape of the difference is one that the
-    stated errors make in less than 5 % of all cases [1]_, sec. 1-5 and 6, the sentence says so.
+    stated errors make in less than 5 % of all cases ([1]_, sec. 1-5 and 6), the sentence says so.
 
     Examples
     --------
@@ -1042,7 +1042,7 @@ def validate_curve(
     a right prediction is called wrong in 5 % of all cases however many strains there are: 1.96
     for strains that err as one, 3.3 for fifty that err each for itself.  U is that factor
     times u_val.  Agreement within U means that an error of the model cannot be seen; it does not
-    mean that there is none [1]_, sec. 1-5 and 6.
+    mean that there is none ([1]_, sec. 1-5 and 6).
 
     *Chi square* E' V^-1 E with the full covariance [6]_ sees a wrong shape that stays inside
     the band, and needs the uncertainties to be right in every direction; it does not make the

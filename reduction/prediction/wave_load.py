@@ -265,7 +265,7 @@ def _refuse(bad: Bools, problem: str, values: Floats, needed: str) -> None:
 
 SEAWATER_VISCOSITY = 1.1892e-6
 
-"""Kinematic, of standard seawater at 15 deg C ([2]_). [m2 s-1]"""
+"""Kinematic, of standard seawater at 15 deg C ([3]_). [m2 s-1]"""
 
 GREATEST_DIAMETER_TO_LENGTH = 0.2
 
@@ -339,7 +339,7 @@ def _keulegan_carpenter_number(
 
     Examples
     --------
-    The hose of [1]_, Table 2 and eq. 12 in its 6 m deep wave, 1.15 m/s: far in the region of drag,
+    The hose of [1]_ in its 6 m deep wave, 1.15 m/s: far in the region of drag,
     yet not steady.
 
     >>> print(_keulegan_carpenter_number(1.15, 3.57, 0.114).round(1))
@@ -803,7 +803,7 @@ def _cut(improved: Floats, classic: Floats) -> Floats:
 
 AIR_DENSITY = 1.225
 
-"""At sea level, 15 deg C ([1]_, Table 2 and eq. 12). [kg m-3]"""
+"""At sea level, 15 deg C ([4]_). [kg m-3]"""
 
 
 @dataclass(frozen=True)
@@ -830,7 +830,7 @@ def _wind_load(
 
     Notes
     -----
-    [1]_, eq. 4, Fig. 3 names the load in eq. (4) and gives no form; this is drag on D - h.  A wind
+    [1]_ names the load in eq. (4) and gives no form; this is drag on D - h.  A wind
     stated for a height of 10 m is larger than that at the hose.
 
     Examples
@@ -893,7 +893,7 @@ def _anchor_force(
 
     Examples
     --------
-    A current of 0.5 m/s and a wind of 10 m/s on 100 m of the hose of [1]_, eq. 4, Fig. 3.
+    A current of 0.5 m/s and a wind of 10 m/s on 100 m of the hose of [1]_.
 
     >>> from reduction.prediction.wave_theory import airy_wave
     >>> hose = ImmersedSection(np.array(0.114), np.array(0.0091), np.array(0.0951))

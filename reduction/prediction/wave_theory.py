@@ -342,7 +342,7 @@ def _refuse_breaking(*, wave_height: float, wave_number: float, water_depth: flo
 
     Examples
     --------
-    The wave of [1]_, Table 1 is well below breaking.
+    The wave of [1]_ is well below breaking.
 
     >>> _refuse_breaking(wave_height=1.25, wave_number=2 * np.pi / 20, water_depth=3.0)
     """
@@ -681,7 +681,7 @@ def high_stokes_wave(
 
     Examples
     --------
-    The steep wave of [1]_, eq. 13-17, by the linear theory 16.3 m long; raschii finds 17.42 m as
+    The steep wave of [1]_, by the linear theory 16.3 m long; raschii finds 17.42 m as
     well.
 
     >>> wave = high_stokes_wave(order=5, wave_height=1.25, wave_period=3.57, water_depth=3.0,
@@ -868,7 +868,7 @@ def stream_wave(
 
     Examples
     --------
-    The 3.57 s wave of [1]_, eq. 13-17 over 3 m of water: by the linear theory 16.3 m, with its
+    The 3.57 s wave of [1]_ over 3 m of water: by the linear theory 16.3 m, with its
     height 17.4 m.
 
     >>> wave = stream_wave(wave_height=1.25, wave_period=3.57, water_depth=3.0, elevation=0.0)
@@ -1050,7 +1050,7 @@ def _theory_by_depth(relative_depth: float) -> WaveTheoryName:
 
     Examples
     --------
-    The 20 m wave of [1]_, Table 1 and sec. 5 over 6 m, 3 m and 1.5 m of water.
+    The 20 m wave of [1]_ over 6 m, 3 m and 1.5 m of water.
 
     >>> [_theory_by_depth(depth / 20) for depth in (6.0, 3.0, 1.5)]
     ['airy', 'stokes', 'cnoidal']
@@ -1103,7 +1103,7 @@ class WaveTheory:
     Parameters
     ----------
     theory : {"airy", "stokes", "cnoidal", "beyond the table"}
-        By relative depth, as [1]_, Table 1 and sec. 5 itself reads its Table 1.
+        By relative depth, as [1]_ itself reads its Table 1.
     printed : {"airy", "stokes", "cnoidal or solitary", "none"}
         By both columns of Table 1, to the letter.
     wave_length : float
@@ -1170,7 +1170,7 @@ def describe_wave(
 
     Examples
     --------
-    The second example of [1]_, Table 1 and sec. 5 is at the edge of Stokes' second order.
+    The second example of [1]_ is at the edge of Stokes' second order.
 
     >>> wave = describe_wave(wave_height=1.25, wave_period=3.57, water_depth=3.0,
     ...                      wave_length=20.0)
@@ -1265,7 +1265,7 @@ def regular_wave(
 
     Examples
     --------
-    The second example of [1]_, Table 1 and sec. 5 has two harmonics.
+    The second example of [1]_ has two harmonics.
 
     >>> sea = dict(wave_height=1.25, wave_period=3.57, water_depth=3.0)
     >>> regular_wave(describe_wave(**sea), **sea, elevation=0.0).elevation.size

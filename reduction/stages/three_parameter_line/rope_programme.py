@@ -533,7 +533,7 @@ def parting_sample(
     Notes
     -----
     A line that is unloaded is slack because the crosshead went back, a line that has parted
-    though it did not; [1]_, sec. 6, Tables 10 and 21 gives no rule, since a person stood by.
+    though it did not; [1]_ gives no rule, since a person stood by.
 
     Examples
     --------
@@ -587,7 +587,7 @@ def tensile_pull(
     -----
     A break: after its greatest the tension falls below half of it while the crosshead has
     gone back by less than a twentieth of its travel, for three readings.  A pull that was
-    stopped gives a lower bound.  [1]_, sec. 6, Tables 10 and 21 prints strength and strain at
+    stopped gives a lower bound.  [1]_ (sec. 6, Tables 10 and 21) prints strength and strain at
     failure of each pull and no uncertainty.  The greatest of readings with noise reads high: by
     less than the noise of one reading where the record rises by more than that from reading to
     reading, and by up to two and a half times the noise where thousands are nearly as great.
