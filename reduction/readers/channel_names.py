@@ -30,7 +30,7 @@ from reduction.record.plain_text import toml_comment, toml_text
 
 _NOT_MEASURED = (
     r"sollwert|set ?point|command|cmd|target|maximum|minimum|max|min|rate|speed|velocity|"
-    r"geschwindigkeit|digital|consigne|peak|valley|目标|指令"
+    r"geschwindigkeit|consigne|peak|valley|目标|指令"
 )
 
 _ELONGATION = (  # a position where it is stated in a unit of length, else a strain
@@ -243,8 +243,9 @@ def _candidates(key: str, columns: Sequence[SeenColumn]) -> list[tuple[SeenColum
                 found.append((rank, column, unit))
     if any(unit != UNKNOWN for _, _, unit in found):  # what states something that is no unit
         found = [one for one in found if one[2] != UNKNOWN or not _stated_units(one[1])]
-    # a machine's own coordinate is far from any specimen, its travel begins with the test
-    found.sort(key=lambda one: "absol" in _plain(one[1].name))
+    # a machine's own coordinate is far from any specimen, its travel begins with the test; the
+    # counter of a position is that position again, and the only one in some logs
+    found.sort(key=lambda one: re.search("absol|digital", _plain(one[1].name)) is not None)
     best: dict[int, tuple[SeenColumn, str]] = {}
     for _, column, unit in found:
         best.setdefault(column.number, (column, unit))

@@ -85,6 +85,12 @@ TEXTS = {
         + table([TIME, TIME, np.ones(N), TRAVEL, TRAVEL, LOAD / 1e3], digits=7, end=",\n"),
         "utf-8-sig",
     ),
+    "WaveMatrix, digital position alone": (
+        '"Total Time (s)","Cycle Elapsed Time (s)","Total Cycles",'
+        '"Position(Linear:Digital Position) (mm)","Load(Linear:Load) (kN)",\n'
+        + table([TIME, TIME, np.ones(N), TRAVEL, LOAD / 1e3], digits=7, end=",\n"),
+        "utf-8-sig",
+    ),
     "LabVIEW LVM": (LVM + table([TIME, TRAVEL, LOAD], "\t"), "utf-8"),
     "DewesoftX": (
         "Data info\nFile name:\tTest_0001.dxd\nStart time:\t5/3/2024 10:00:00.000\n"
