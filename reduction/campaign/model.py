@@ -426,9 +426,13 @@ _LIMITS: dict[tuple[str, str], tuple[float, float]] = {
 
 _WORDS: dict[tuple[str, str], tuple[str, ...]] = {("archive", "samples"): get_args(StoredSamples)}
 
-# set elsewhere in campaign.toml, under their own names
-_ELSEWHERE = {("strain", "method"), ("cycles", "control"), ("cycles", "waveform"),
-              ("cycles", "expected_cycles")}  # fmt: skip
+_KEY_OF_TEST = {
+    ("strain", "method"): 'strain = { method = "..." }',
+    ("cycles", "control"): 'control = "..."',
+    ("cycles", "waveform"): 'waveform = "..."',
+    ("cycles", "expected_cycles"): "n_cycles = ...",
+}
+"""What the test itself states, and how; no setting of ``reduction``."""
 
 
 def dimension_of(group: str, name: str, *, control: str) -> Dimension | None:
@@ -502,15 +506,20 @@ def apply_numbers(
             )
         part = getattr(settings, group)
         names = {
-            item.name: item.default for item in fields(part) if (group, item.name) not in _ELSEWHERE
+            item.name: item.default
+            for item in fields(part)
+            if (group, item.name) not in _KEY_OF_TEST
         }
         changed = {}
         for name, value in numbers.items():
             if name not in names:
+                stated = _KEY_OF_TEST.get((group, name))
                 raise SettingsError(
                     f"reduction.{group}.{name} is not a setting",
                     found=f"'{name}'",
-                    needed="one of " + ", ".join(sorted(names)),
+                    needed=f"one of {', '.join(sorted(names))}"
+                    if stated is None
+                    else f"the key {stated} of the test",
                 )
             changed[name] = _value(group, name, value, names[name], control)
         settings = replace(settings, **{group: replace(part, **changed)})

@@ -242,8 +242,11 @@ def _keys_of(model: type[BaseModel]) -> tuple[tuple[str, ...], ...]:
     return tuple(dict.fromkeys(_known_keys(schema, schema.get("$defs", {}))))
 
 
-def _meant_by(place: tuple[str, ...], model: type[BaseModel]) -> str:
-    """What a key that is not known may have been meant for: one like it, or another table."""
+def _meant_by(place: tuple[str, ...], model: type[BaseModel], *, is_table: bool) -> str:
+    """What a key that is not known may have been meant for: one like it, or another table.
+
+    A table is meant for where a table may stand.
+    """
     known = _keys_of(model)
     *table, key = place
     tables = {one[:-1] for one in known}
@@ -256,7 +259,11 @@ def _meant_by(place: tuple[str, ...], model: type[BaseModel]) -> str:
         ),
         None,
     )
-    elsewhere = [f"[{'.'.join(one[:-1])}]" for one in known if one[-1] == key and len(one) > 1]
+    elsewhere = [
+        f"[{'.'.join(one[:-1])}]"
+        for one in known
+        if one[-1] == key and len(one) > 1 and (not is_table or one in tables)
+    ]
     if 0 < len(elsewhere) <= _MOST_PLACES:
         return f". It belongs in {' or '.join(elsewhere)}"
     near = get_close_matches(key, [one[-1] for one in known if one[:-1] == here], n=1, cutoff=0.75)
@@ -270,7 +277,7 @@ def faults_of(
     error: ValidationError, table: object, model: type[BaseModel] | None = None
 ) -> list[_Fault]:
     """Every fault once; of a value that no choice allows what is wrong with its number."""
-    unknown: set[tuple[str, ...]] = set()
+    unknown: dict[tuple[str, ...], bool] = {}  # with whether a table stands there
     found: dict[tuple[str, ...], list[tuple[str, str]]] = {}
     values: dict[tuple[str, ...], list[tuple[str, str]]] = {}
     for entry in error.errors():
@@ -282,7 +289,7 @@ def faults_of(
             values[place] = [(str(cause), "")]
         needed = _WORDS.get(entry["type"], entry["msg"].removeprefix("Value error, "))
         if entry["type"] == "extra_forbidden":
-            unknown.add(place)
+            unknown[place] = isinstance(entry["input"], dict)
         shown = "" if is_missing else _shown(entry["input"])
         found.setdefault(place, []).append((needed, shown))
     found |= values
@@ -297,7 +304,11 @@ def faults_of(
             for number, text in enumerate(dict.fromkeys(text for text, _ in told))
         )
         is_shown = len(faults) < _SHOWN
-        hint = _meant_by(place, model) if model and is_shown and place in unknown else ""
+        hint = (
+            _meant_by(place, model, is_table=unknown[place])
+            if model and is_shown and place in unknown
+            else ""
+        )
         faults.append(_Fault(".".join(place), needed, told[0][1], hint))
     return faults
 

@@ -302,6 +302,18 @@ def test_a_value_that_cannot_be_used_is_told_with_file_and_key(folder, old, new,
         (BASE + TEST + "[tests.T.reduction.cycle]\n", "reduction.cycle is not a group"),
         (BASE + TEST + "[tests.T.reduction.cycles]\nbnd = 1\n", "reduction.cycles.bnd is not a s"),
         (
+            BASE + TEST + "[tests.T.reduction.strain]\nmethod = 'mixed'\n",
+            r'needed the key strain = \{ method = "..." \} of the test$',
+        ),
+        (
+            BASE + TEST + "[tests.T.reduction.cycles]\nexpected_cycles = 3\n",
+            "needed the key n_cycles = ... of the test$",
+        ),
+        (
+            BASE + TEST + "[strain]\nmethod = 'gauge-length'\n",
+            r"It belongs in \[defaults\] or \[tests\.NAME\] or \[uncertainty\]$",
+        ),
+        (
             BASE + TEST + "[tests.T.reduction.cycles]\nband = '1 lbf'\n",
             "reduction.cycles.band: unit 'lbf' is not a unit of length",
         ),
