@@ -39,6 +39,12 @@ def load_train_notes(test: ReducedTest, instruments: Sequence[InstrumentErrors])
     summary, record = test.amplitude, test.record
     if summary is None or record is None:
         return
+    turn, is_resolved = 0.0, False
+    if test.cycles is not None:
+        logged = record.time, record.crosshead_position, test.cycles
+        turn = turn_acceleration(*logged)
+        # of a corner between two readings a log tells no acceleration, and shows no inertia
+        is_resolved = turn < _RESOLVED * turn_acceleration(*logged, finest=2)
     for index, specimen in enumerate(test.specimens):
         constant = float(summary.apparent_spring_constant[index])
         spread = _standard_uncertainty(test, summary, _NAME, index)
@@ -47,15 +53,10 @@ def load_train_notes(test: ReducedTest, instruments: Sequence[InstrumentErrors])
         if not (spread > 0 and length > 0 and square > 0 and np.isfinite(constant)):
             continue
         train, of_mass = record.load_train, square * length
-        if test.cycles is not None:
-            # what a mass does to the extremes of ramps it does while the machine turns
-            logged = record.time, record.crosshead_position, test.cycles
-            turn = turn_acceleration(*logged)
-            # of a corner between two readings a log tells no acceleration, and shows no inertia
-            if turn < _RESOLVED * turn_acceleration(*logged, finest=2):
-                of_mass = max(of_mass, turn / float(summary.strain_amplitude[index]))
-            if train.end_mass:
-                yield from _inertia_left(test, summary, index, turn)
+        if is_resolved:  # what a mass does to the extremes of ramps it does while the machine turns
+            of_mass = max(of_mass, turn / float(summary.strain_amplitude[index]))
+        if test.cycles is not None and train.end_mass:
+            yield from _inertia_left(test, summary, index, turn)
         if train.load_cell_at is None or (
             train.load_cell_at == "moving" and train.attached_mass is None
         ):
