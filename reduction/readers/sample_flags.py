@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from math import comb, sqrt
 from typing import Any
 
 import numpy as np
@@ -134,8 +135,6 @@ _SPIKE_TO_NEIGHBOURS = 3.0
 
 _MAD_TO_SIGMA = 1.4826
 
-_SECOND_DIFFERENCE = np.sqrt(6.0)  # sd of x[i-1] - 2 x[i] + x[i+1] over that of x
-
 _STEP = np.sqrt(12.0)  # one step of a quantised value over its standard deviation
 
 
@@ -227,16 +226,20 @@ def _usual_time_step(time: Floats, place: Integers) -> Floats:
     return usual
 
 
-def _noise_of(values: Floats) -> tuple[float, float]:
-    """Standard deviation of a series about its own course, and the step it is printed in."""
+def _noise_of(values: Floats, order: int = 2) -> tuple[float, float]:
+    """Standard deviation of a series about its own course, and the step it is printed in.
+
+    By differences of an order: those of the fourth leave less of the bend of a wave that has few
+    readings a cycle.
+    """
     windows = _sampled_windows(values)
-    changes = np.abs(np.diff(windows, axis=1))
-    changes = changes[changes > 0]
-    step = float(changes.min()) if changes.size else 0.0
-    second = np.abs(np.diff(windows, n=2, axis=1))
-    second = second[np.isfinite(second)]
-    spread = float(np.median(second)) if second.size else 0.0
-    return max(_MAD_TO_SIGMA * spread / _SECOND_DIFFERENCE, step / _STEP), step
+    levels = np.unique(windows[np.isfinite(windows)])  # between readings lie many codes of a ramp
+    step = float(np.diff(levels).min()) if levels.size > 1 else 0.0
+    bends = np.abs(np.diff(windows, n=order, axis=1))
+    bends = bends[np.isfinite(bends)]
+    spread = float(np.median(bends)) if bends.size else 0.0
+    # variance of a difference over that of a reading
+    return max(_MAD_TO_SIGMA * spread / sqrt(comb(2 * order, order)), step / _STEP), step
 
 
 def _usual_code(values: Floats) -> float:
@@ -369,6 +372,10 @@ _FINE = 4.0  # steps
 
 _SATURATED_STEPS = 16.0
 
+_NOISY = 0.75  # steps of noise that part the readings of a channel
+
+_FEWEST_PILED, _TIMES_PILED = 10, 5  # readings at the end of a channel, and times those beside it
+
 _MOVING_NOISE = 10.0
 
 _MOVING_SHARE = 1e-3
@@ -442,7 +449,7 @@ def _moves(position: Floats, runs: _Runs) -> Bools:
     """Whether the crosshead moves in each run, shape (n_runs,)."""
     if not runs.start.size:
         return np.empty(0, dtype=bool)
-    noise, _ = _noise_of(position)
+    noise, _ = _noise_of(position, order=4)
     low, high = finite_extremes(position)
     reach = np.fmax(high - position[0], position[0] - low)
     tolerance = _MOVING_NOISE * noise + _MOVING_SHARE * reach
@@ -519,7 +526,9 @@ def _find_saturated(tension: Floats, position: Floats) -> Bools:
         runs = _Runs(place[is_first], place[is_last] + 1)
         length, every = runs.stop - runs.start, runs
         fewest = _SATURATED_SAMPLES
-        if is_fine:
+        if noise > _NOISY * step and _is_piled_up(tension, level, runs, step):
+            is_fine, fewest = True, 2
+        elif is_fine:
             # pairs, where noise parts all readings but those at the end of the channel
             beside = take_samples(tension, np.maximum(runs.start[length > 1] - 1, 0))
             is_noisy = beside.size > _FEWEST_PAIRS and np.nanstd(beside) > _FINE * step
@@ -536,6 +545,78 @@ def _find_saturated(tension: Floats, position: Floats) -> Bools:
         starts.append(runs.start)
         stops.append(runs.stop)
     return _Runs(np.sort(np.concatenate(starts)), np.sort(np.concatenate(stops))).mask(tension)
+
+
+def _is_piled_up(values: Floats, level: float, runs: _Runs, step: float) -> bool:
+    """Whether far more readings lie at one end of a noisy channel than in the code next to it.
+
+    Noise thins out towards the greatest reading, and a sine has at most 2.4 times as many readings
+    in its last code as in the one before it, unless it is in step with the log: then the readings
+    that lead to the end are alike.
+    """
+    n_there = int(np.sum(runs.stop - runs.start))
+    before = take_samples(values, np.maximum(runs.start - 1, 0))
+    if n_there < _FEWEST_PILED or not np.nanstd(before) > _NOISY * step:
+        return False
+    n_beside = sum(
+        np.count_nonzero((np.abs(values[part] - level) < 1.5 * step) & (values[part] != level))
+        for part in sample_blocks(values.size, values)
+    )
+    return n_there >= _FEWEST_PILED + _TIMES_PILED * int(n_beside)
+
+
+_FEWEST_ENDS = 3  # runs, of as many readings each
+
+_PASSED_NOISE, _PASSED_SHARE = 3.0, 0.001  # of the load, and of its range
+
+_GOES_ON = 0.15  # of what the load changes by beside a run: a third at the crest of a sine
+
+
+def _find_end_of_position(position: Floats, tension: Floats) -> Bools:
+    """Where position stays at its greatest or least value while the load goes on and comes back.
+
+    A dwell is no such end: in it the load relaxes, or comes late, by little of what it changes by
+    in the same time before and after.
+    """
+    noise, _ = _noise_of(tension)
+    low, high = finite_extremes(tension)
+    least = _PASSED_NOISE * noise + _PASSED_SHARE * (high - low)
+    starts: list[Integers] = [np.empty(0, dtype=np.intp)]
+    stops = list(starts)
+    for level, way in zip(finite_extremes(position), (-1, 1), strict=True):
+        places = np.concatenate(
+            [
+                part.start + np.flatnonzero(position[part] == level)
+                for part in sample_blocks(position.size, position)
+            ]
+        )
+        is_first = np.diff(places, prepend=-2) > 1
+        is_last = np.append(is_first[1:], True)
+        runs = _Runs(places[is_first], places[is_last] + 1)
+        length = runs.stop - runs.start
+        runs = runs.where(
+            (length >= _FEWEST_ENDS)
+            & (runs.start >= length)
+            & (runs.stop + length <= position.size)
+        )
+        if runs.start.size < _FEWEST_ENDS:
+            continue
+        half = (runs.stop - runs.start) // 2
+        before, first, middle, last, after = (
+            way * take_samples(tension, at)
+            for at in (
+                runs.start - half, runs.start, runs.start + half, runs.stop - 1,
+                runs.stop - 1 + half,
+            )
+        )  # fmt: skip
+        goes_on = middle - first > np.fmax(least, _GOES_ON * (first - before))
+        comes_back = middle - last > np.fmax(least, _GOES_ON * (last - after))
+        runs = runs.where(goes_on & comes_back)
+        runs = runs.where(_outlasts_one_code(position, tension, runs))
+        if runs.start.size >= _FEWEST_ENDS:
+            starts.append(runs.start)
+            stops.append(runs.stop)
+    return _Runs(np.sort(np.concatenate(starts)), np.sort(np.concatenate(stops))).mask(position)
 
 
 def _comes_from_afar(tension: Floats, runs: _Runs) -> Bools:
@@ -966,6 +1047,12 @@ def flag_record(
             found.append(note("extensometer-drops-out", name, n_samples=n_samples))
         if n_samples := count_samples(_find_saturated(strain, position)):
             found.append(note("extensometer-ends", name, n_samples=n_samples))
+    n_samples = max(
+        (count_samples(_find_end_of_position(position, load)) for load in record.tension),
+        default=0,
+    )
+    if n_samples:
+        found.append(note("position-ends", n_samples=n_samples))
     flagged = replace(flagged, measured_strain=strains)
     found += _lone_steps(flagged, settings)
     found += notes_on_rows(flagged)

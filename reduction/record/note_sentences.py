@@ -1615,6 +1615,12 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         " crosshead moves: the extensometer is at the end of its range, and strain amplitudes are"
         " too small",
     ),
+    "position-ends": (
+        "warning",
+        "the position stays at its greatest or least value for {n_samples} samples while the load"
+        " goes on and comes back: the sensor is at the end of its range, strain amplitudes are too"
+        " small and EA is too large",
+    ),
     "mean-tension-ramps": (
         "warning",
         lambda first, last, is_of_load, grows: (
@@ -1932,7 +1938,7 @@ CAUSES = (
     "load-never-falls", "load-zero-drifts", "load-zero-wrong", "load-negative",
     "load-falls-with-stretch", "pushed-in-cycles", "reference-length-under-preload",
     "reference-length-elsewhere", "tension-far-below-strength", "extensometer-late",
-    "extensometer-ends", "load-in-steps",
+    "extensometer-ends", "position-ends", "load-in-steps",
     "tape-off-crosshead", "marks-alike", "loops-run-backward",
     "extensometer-against-stroke", "gauge-against-length",
     "modulus-outside-band", "strength-outside-band", "tension-above-strength", "stiffness-jumps",

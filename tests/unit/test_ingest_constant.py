@@ -2,10 +2,12 @@ import tracemalloc
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
 from reduction.readers import sample_flags as constant
 from reduction.readers.sample_flags import (
     _constant_runs,
+    _find_end_of_position,
     _find_saturated,
     _find_stuck,
     _find_stuck_position,
@@ -114,6 +116,56 @@ def test_a_slow_log_of_a_fine_channel_is_saturated_at_short_peaks(clip):
     assert not _find_saturated(load, place).any()
     found = _find_saturated(np.minimum(load, clip), place)
     assert np.array_equal(found, load >= clip)
+
+
+@pytest.mark.parametrize("shape", ["triangle", "sine"])
+def test_a_coarse_channel_is_saturated_at_two_readings_of_many_peaks(shape):
+    """Clipped at 97 % of its range, written to 2 N with noise of 3 N: 4 readings of 200 a cycle."""
+    phase = np.arange(3000) / 200.3 % 1
+    wave = 2 * np.abs(phase - 0.5) if shape == "triangle" else 0.5 + 0.5 * np.cos(2 * np.pi * phase)
+    load = 1000 + 4000 * wave + np.random.default_rng(5).normal(0, 3, phase.size)
+    place = 2 + 0.02 * wave
+    assert not _find_saturated(quantised(load, 2.0), place).any()
+    read = quantised(np.minimum(load, 4880), 2.0)
+    found = _find_saturated(read, place)
+    assert found.sum() > 50
+    assert np.array_equal(found, read == 4880)
+
+
+def test_a_log_of_few_readings_a_cycle_is_saturated():
+    """24 readings a cycle in step, hundreds of newtons apart, written to .5 N."""
+    phase = np.arange(600) / 24 % 1
+    load = 1000 + 8000 * np.abs(phase - 0.5) + np.random.default_rng(6).normal(0, 0.75, 600)
+    place = 2 + 0.04 * np.abs(phase - 0.5)
+    assert not _find_saturated(quantised(load, 0.5), place).any()
+    assert _find_saturated(quantised(np.minimum(load, 4600), 0.5), place).sum() >= 50
+
+
+def ends(kind, *, clip=None, relaxes=0.0, is_late=False):
+    """Position written to 10 um, and load, of cycles of 10 s; with dwells of 2 s or without."""
+    time = np.arange(0, 150, 0.05)
+    phase = time / 10 % 1
+    rise = {"triangle": 0.5, "dwell": 0.3}[kind]
+    wave = np.clip(np.minimum(phase / rise, (0.5 + rise - phase) / rise), 0, 1)
+    spring = lfilter([1, -1], [1, -np.exp(-0.05 / 3)], wave)
+    load = 1000 + 4000 * lfilter([0.05], [1, -0.95], wave) if is_late else 1000 + 4000 * wave
+    load = load + relaxes * 4000 * spring + np.random.default_rng(7).normal(0, 3, time.size)
+    position = 2.08 + 0.04 * wave
+    return quantised(position if clip is None else np.minimum(position, clip), 1e-5), load
+
+
+def test_a_position_that_ends_before_the_load_does_is_found():
+    position, load = ends("triangle", clip=2.118)
+    found = _find_end_of_position(position, load)
+    assert np.array_equal(found, position == position.max())
+    assert found.sum() > 100
+
+
+@pytest.mark.parametrize("relaxes", [0.0, 0.1])
+@pytest.mark.parametrize("is_late", [False, True])
+@pytest.mark.parametrize("kind", ["triangle", "dwell"])
+def test_a_position_that_turns_or_dwells_has_not_ended(kind, is_late, relaxes):
+    assert not _find_end_of_position(*ends(kind, is_late=is_late, relaxes=relaxes)).any()
 
 
 def test_two_readings_beside_the_peak_of_a_wave_in_step_are_not_saturated():

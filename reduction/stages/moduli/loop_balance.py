@@ -201,7 +201,8 @@ def _is_in_step(first: Integers) -> bool:
 def _opens(strain: Floats, tension: Floats, cycles: Cycles) -> float:
     """By how much rises lie above falls at both turns, by the lines through two readings inside.
 
-    Less than nothing where tension is logged late, more where it falls at a turn.
+    Less than nothing where tension is logged late, more where it falls at a turn; NaN where no
+    turn has readings on both of its sides, as of a load cell that saturates there.
 
     Examples
     --------
@@ -217,7 +218,7 @@ def _opens(strain: Floats, tension: Floats, cycles: Cycles) -> float:
     def led_to(at: Floats, one: Integers, two: Integers) -> Floats:
         with np.errstate(divide="ignore", invalid="ignore"):
             slope = (tension[one] - tension[two]) / (strain[one] - strain[two])
-        return np.asarray(tension[one] + slope * (at - strain[one]))
+            return np.asarray(tension[one] + slope * (at - strain[one]))
 
     apart = [
         led_to(at, rise, rise + way) - led_to(at, fall, fall - way)
@@ -226,6 +227,8 @@ def _opens(strain: Floats, tension: Floats, cycles: Cycles) -> float:
             (strain[begin[0]], begin[0] + 1, end[1] - 1, 1),
         )
     ]
+    if not all(np.isfinite(one).any() for one in apart):
+        return np.nan
     return float(np.nanmedian(apart[0]) + np.nanmedian(apart[1]))
 
 
