@@ -718,6 +718,16 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             " of the stroke, as of any other waveform"
         ),
     ),
+    "loops-widen-evenly": (
+        "warning",
+        lambda change, rate, first, last, **_: (
+            f"the hysteresis energy {'rises' if change > 0 else 'falls'} evenly from {first:.3g} to"
+            f" {last:.3g} J/m over the test, while EA stays. If load and position come from two"
+            f" loggers, their clocks drift apart by about {float(f'{1e6 * abs(rate):.2g}'):g} ppm"
+            f" ({abs(change):.2g} s in all): put both on one clock. If not, the specimen heats or"
+            " wears, and the means over the cycles are of no single state"
+        ),
+    ),
     "drift-in-energy": (
         "warning",
         lambda energy, closed, effect: (

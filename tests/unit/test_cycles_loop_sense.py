@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from reduction.record.settings import CycleSettings, PhaseSettings
-from reduction.stages.cycles.cycle_product import Cycles
+from reduction.stages.cycles.cycle_product import Cycles, Loops
 from reduction.stages.cycles.cycle_search import find_cycles
 from reduction.stages.cycles.loop_sense import (
     OPEN,
@@ -48,6 +48,44 @@ def of_sine(turn, tension, strain):
 
 def notes(loops, *, lag=0.0):
     return notes_of_loops(loops, names=["rope"], lag=[lag], time_step=1 / FREQUENCY / PER)
+
+
+def cycles_of(energy, *, stiffness=900.0):
+    """Loops of 0.5 Hz, 180 N and 0.2 whose energy, or stiffness, is given by cycle."""
+    one = np.ones((1, energy.size))
+    levels = {"frequency": 0.5, "tension_amplitude": 180, "strain_amplitude": 0.2,
+              "apparent_spring_constant": stiffness, "hysteresis_energy": energy,
+              "closed_loop_energy": energy, "cycle_start_time": 2.0 * np.arange(energy.size)}  # fmt: skip
+    fields = {name: levels.get(name, 1.0) * one for name in Loops.__dataclass_fields__}
+    return Loops(**fields | {"uncertainty": {}})
+
+
+def test_clocks_that_drift_apart_by_100_ppm_are_told_from_the_energy():
+    """A lag of l adds 2 pi^2 f F e l to a sine: here 35.5 J/m a second, and .04 s in 200 cycles."""
+    noise = np.random.default_rng(3).normal(0, 0.02, 200)
+    energy = 11 + 2 * np.pi**2 * 0.5 * 180 * 0.2 * 1e-4 * 2.0 * np.arange(200) + noise
+    (found,) = notes(cycles_of(energy))
+    assert found.code == "loops-widen-evenly" and found.severity == "warning"
+    assert found.numbers["rate"] == pytest.approx(1e-4, rel=0.05)
+    assert found.numbers["first"] == pytest.approx(energy[0], abs=1.0)
+    assert found.numbers["last"] == pytest.approx(energy[-1], abs=1.0)
+    assert "drift apart by about 100 ppm" in str(found)
+    # a lag that is stated is in the interval
+    assert not notes(cycles_of(energy), lag=0.05)
+
+
+@pytest.mark.parametrize("law", ["settles", "softens", "scatters"])
+def test_a_specimen_that_settles_or_softens_has_no_clocks_that_drift(law):
+    cycle = np.arange(200)
+    noise = np.random.default_rng(3).normal(0, 0.02, 200)
+    energy, stiffness = {
+        "settles": (12 + 10 / (1 + cycle / 10) + noise, 900.0),
+        "softens": (12 - 2 * cycle / 200 + noise, 900 * (1 - 0.05 * cycle / 200)),
+        "scatters": (12 + 20 * noise, 900.0),
+    }[law]
+    assert "loops-widen-evenly" not in [
+        one.code for one in notes(cycles_of(energy, stiffness=stiffness))
+    ]
 
 
 def test_a_loop_that_loses_work_gets_no_note():

@@ -42,6 +42,12 @@ _BEYOND_SCATTER = 3.0
 
 _DRIFT_TOLD = 0.02  # of the energy
 
+_FEWEST_CYCLES, _SETTLING = 24, 0.1  # of a drift between clocks; share of cycles left out first
+
+_EVEN = 0.5  # slope of one half of the cycles over that of the other
+
+_STIFFNESS_STAYS = 0.1  # change of EA over that of the energy
+
 _LEAST_LOSS = 1e-3  # loss factor that no rubber and no fibre comes near
 
 _FRICTION = 2.0  # loss over the fall of tension with stretch: less may be damping beside inertia
@@ -407,6 +413,47 @@ def _least_delay(loops: Loops, row: int) -> float:
     return max(0.0, -float(np.arctan2(loss, storage)) / (2 * np.pi * frequency), by_energy)
 
 
+def _drift_of_lag(loops: Loops, row: int, *, stated: float) -> tuple[float, float]:
+    """Change of the lag of tension over a test, and its duration; NaN where none shows. [s].
+
+    Loops widen or narrow by as much in the first half of the cycles as in the second, beyond the
+    stated lag, while their stiffness stays.  A specimen that settles changes less and less, and one
+    that heats or wears changes its stiffness too.
+    """
+    energy, stiffness = loops.hysteresis_energy[row], loops.apparent_spring_constant[row]
+    swing = loops.frequency[row] * loops.tension_amplitude[row] * loops.strain_amplitude[row]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        lag = energy / (2 * np.pi**2 * swing)
+    known = np.flatnonzero(np.isfinite(lag) & np.isfinite(stiffness))
+    if known.size < _FEWEST_CYCLES:
+        return np.nan, np.nan
+    known = known[int(_SETTLING * known.size) :]
+    time, lag = loops.cycle_start_time[row, known], lag[known]
+    time = time - time[0]
+    is_late = np.arange(known.size) >= known.size // 2
+    slopes, errors = zip(*(_slope(time[one], lag[one]) for one in (~is_late, is_late)), strict=True)
+    slope, error = _slope(time, lag)
+    change = slope * float(time[-1])
+    mean = float(np.median(lag))
+    softens = _slope(time, stiffness[known])[0] * time[-1] / float(np.median(stiffness[known]))
+    shows = (
+        slopes[0] * slopes[1] > 0
+        and min(np.abs(slopes)) > max(_EVEN * max(np.abs(slopes)), _BEYOND_SCATTER * max(errors))
+        and abs(slope) > _BEYOND_SCATTER * error
+        and abs(change) / 2 > max(stated, _DRIFT_TOLD * abs(mean))
+        and abs(softens * mean) < _STIFFNESS_STAYS * abs(change)
+    )
+    return (change, float(time[-1])) if shows else (np.nan, np.nan)
+
+
+def _slope(x: Floats, y: Floats) -> tuple[float, float]:
+    """Slope of a straight line, and its standard error."""
+    away = x - x.mean()
+    slope = float(away @ y / (away @ away))
+    residual = y - y.mean() - slope * away
+    return slope, float(np.sqrt(residual @ residual / (x.size - 2) / (away @ away)))
+
+
 def notes_of_loops(
     loops: Loops,
     *,
@@ -494,6 +541,17 @@ def notes_of_loops(
             )  # fmt: skip
             # the interval of the energy has the stated lag, and holds zero
             told.append(replace(found, severity="note") if cause == "lag" else found)
+        change, duration = _drift_of_lag(loops, row, stated=stated)
+        if np.isfinite(change):
+            half = np.pi**2 * change * _median(
+                loops.frequency[row] * loops.tension_amplitude[row] * loops.strain_amplitude[row]
+            )  # fmt: skip
+            told.append(
+                note(
+                    "loops-widen-evenly", name, change=change, rate=change / duration,
+                    first=mean - half, last=mean + half, effect=half / abs(mean),
+                )
+            )  # fmt: skip
         # of a first cycle the ramp before it makes most of the drift, and little of the mean
         later = np.flatnonzero(np.isfinite(energy))[int(known.size > 2) :]
         mean = float(energy[later].mean())
