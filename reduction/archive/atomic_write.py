@@ -1,4 +1,4 @@
-"""Files that appear whole or not at all."""
+"""Writes files completely or not at all."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from pathlib import Path
 
 from reduction.record.errors import ArchiveError
 
-# of disks on a network that know nothing of folders that are flushed
+# from network disks without support for flushing folders
 _NO_SUCH_CALL = (errno.EINVAL, errno.ENOTSUP, errno.ENOSYS)
 
 
 @contextmanager
 def atomic_file(path: Path) -> Iterator[Path]:
-    """Give a temporary name beside ``path``; when the block ends well it becomes ``path``."""
+    """Yield a temporary path beside ``path``, which becomes ``path`` if the block succeeds."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    # workers on two machines may have one number
+    # workers on two machines may have the same process number
     part = path.with_name(f".{path.name}.{_machine()}-{os.getpid()}-{uuid.uuid4().hex[:8]}.part")
     is_there = False
     try:
@@ -33,15 +33,15 @@ def atomic_file(path: Path) -> Iterator[Path]:
         is_there = True
     finally:
         if not is_there:
-            with suppress(OSError):  # a disk that refuses this too would hide why
+            with suppress(OSError):  # if the disk refuses this too, the cause must stay visible
                 part.unlink(missing_ok=True)
     _flush_folder(path)
 
 
 def remove_abandoned(path: Path) -> None:
-    """Remove what processes of this machine that are no more began of a file."""
+    """Remove files left unfinished by processes of this machine that have ended."""
     begun = re.compile(rf"\.{re.escape(path.name)}\.{_machine()}-(\d+)-[0-9a-f]+\.part")
-    with suppress(OSError):  # what cannot be removed is in nobody's way
+    with suppress(OSError):  # files that cannot be removed do no harm
         for name in os.listdir(path.parent):
             found = begun.fullmatch(name)
             if found is not None and not _is_alive(int(found[1])):
@@ -49,7 +49,7 @@ def remove_abandoned(path: Path) -> None:
 
 
 def _machine() -> str:
-    """Few letters that tell machines apart, and containers, which number processes anew."""
+    """A few letters that distinguish machines, and containers, which renumber processes."""
     space = Path("/proc/self/ns/pid")
     name = f"{platform.node()} {space.readlink() if space.is_symlink() else ''}"
     return hashlib.sha256(name.encode()).hexdigest()[:8]
@@ -57,18 +57,18 @@ def _machine() -> str:
 
 def _is_alive(process: int) -> bool:
     if os.name != "posix":
-        return True  # nothing there asks without ending it
+        return True  # no way to ask without ending it
     try:
         os.kill(process, 0)
     except ProcessLookupError:
         return False
     except (PermissionError, OverflowError):
-        pass  # of another user, or no number of a process
+        pass  # another user's process, or not a process number
     return True
 
 
 def take_away(path: Path) -> None:
-    """Remove a file that an earlier run made, where it is there."""
+    """Remove a file from an earlier run, if it exists."""
     try:
         path.unlink(missing_ok=True)
     except OSError as error:
@@ -80,7 +80,7 @@ def take_away(path: Path) -> None:
 
 
 def _flush_folder(path: Path) -> None:
-    """Put the new name of a file on the disk; only POSIX systems open a folder for this."""
+    """Flush the new name of a file to disk; only POSIX systems open a folder for this."""
     if os.name != "posix":
         return
     try:

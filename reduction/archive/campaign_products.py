@@ -1,9 +1,9 @@
 """The archives of outcomes, predictions and comparisons of a campaign.
 
-Along ``outcome``, one entry a row of the table of results.  A value stands under the name of its
-quantity, with its unit; it is NaN under the names of the others.  What no row says is absent.
-``outcome_use`` is what statistics make of the value: a break in the termination and a test that
-was stopped are lower bounds.
+The dimension ``outcome`` has one entry per row of the table of results.  A value is stored under
+the name of its quantity, with its unit; it is NaN under the other names.  Quantities absent from
+all rows are left out. ``outcome_use`` states how statistics use the value: a break in the
+termination and a stopped test give lower bounds.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ from reduction.record.measurement import Floats, Origin
 from reduction.record.notes import Note
 
 _PREFIX = re.compile("^(tension|calibrated|event|comparison|parameter)_")
-"""Of a name in the archive that the part of a comparison which has it goes without."""
+"""Prefix of a name in the archive that the corresponding part of a comparison lacks."""
 
 _NOT_ASKED = 2
 
@@ -56,7 +56,7 @@ _RANDOM = "_random_standard_uncertainty"
 
 @dataclass(frozen=True)
 class NamedComparison:
-    """A comparison with what it is of."""
+    """A comparison with its names."""
 
     name: str
     test: str
@@ -66,14 +66,14 @@ class NamedComparison:
 
     @property
     def notes(self) -> tuple[Note, ...]:
-        """Of the comparison, its verdict and its calibration, none twice."""
+        """Notes of the comparison, its verdict and its calibration, without repeats."""
         found = self.comparison
         own = () if found.calibration is None else found.calibration.notes
         return tuple(dict.fromkeys((*found.notes, *found.validation.notes, *own)))
 
 
 def comparisons_to_dataset(named: Sequence[NamedComparison], *, origin: Origin) -> xr.Dataset:
-    """Bring comparisons into the form of the archive; no file is touched."""
+    """Convert comparisons to the archive dataset, without writing a file."""
     names = [one.name for one in named]
     if not named or len(set(names)) < len(names):
         raise ArchiveError(
@@ -114,7 +114,7 @@ def comparisons_to_dataset(named: Sequence[NamedComparison], *, origin: Origin) 
 
 
 def _of_rows(found: Sequence[Comparison], *dims: str) -> Values:
-    """Numbers whose rows stand along the dimensions, each from the part of it that has it."""
+    """Numbers with the given dimensions, each from the part of the comparison that has it."""
     values: Values = {}
     for row in COMPARISON_SCHEMA.values():
         if row.dims != ("comparison", *dims) or row.is_text:
@@ -175,7 +175,7 @@ def _compared_curves(found: Sequence[Comparison]) -> Values:
 
 
 def _compared_pressures(found: Sequence[Comparison]) -> Values:
-    """What was compared in fill pressure, on the strains of the tension; nothing of no test."""
+    """Comparison in fill pressure, on the strains of the tension; empty without any."""
     pressures = [one.pressure for one in found]
     if not any(pressures):
         return {}
@@ -211,7 +211,7 @@ def _compared_pressures(found: Sequence[Comparison]) -> Values:
 
 
 def _shared_values(found: Sequence[Comparison], values: Values) -> Values:
-    """What the samples of each test share, and the uncertainty of its curves with it."""
+    """Shared errors of the samples of each test, and its curve's uncertainty with them."""
     measured = values["measured_tension"]
     component = sorted({each for one in found for each in one.measured.component})
     rows = np.zeros((len(component), *measured.shape))
@@ -219,7 +219,7 @@ def _shared_values(found: Sequence[Comparison], values: Values) -> Values:
         own = [component.index(each) for each in one.measured.component]
         rows[own, place, :, : one.measured.strain.size] = one.measured.contribution
     return component_values(component) | {
-        # where there is no tension, nothing contributes to it
+        # without a tension there are no contributions
         "measured_tension_uncertainty_contribution": np.where(np.isnan(measured), np.nan, rows),
         "measured_tension_standard_uncertainty": combined_standard_uncertainty(
             rows, values[f"measured_tension{_RANDOM}"]
@@ -228,7 +228,7 @@ def _shared_values(found: Sequence[Comparison], values: Values) -> Values:
 
 
 def _calibration_values(found: Sequence[Comparison]) -> Values:
-    """What is no number of a row by itself; nothing where no number was to be fitted."""
+    """Calibration values without a row; empty if nothing was to be fitted."""
     fits = [one.calibration for one in found]
     most = max((len(fit.parameter) for fit in fits if fit is not None), default=0)
     if not most:
@@ -287,7 +287,7 @@ _OF_LAYER = ("least_strain", "greatest_strain", "break_strain", "least_angle", "
 
 
 def predictions_to_dataset(hoses: Sequence[PredictedHose], *, origin: Origin) -> xr.Dataset:
-    """Bring predictions into the form of the archive; no file is touched."""
+    """Convert predictions to the archive dataset, without writing a file."""
     names = [hose.plan.name for hose in hoses]
     if not hoses or len(set(names)) < len(names):
         raise ArchiveError(
@@ -356,7 +356,7 @@ def _event_values(hoses: Sequence[PredictedHose]) -> Values:
 
 
 def _uncertainty_values(hoses: Sequence[PredictedHose]) -> Values:
-    """Nothing of hoses of which no number is uncertain."""
+    """Uncertainties of hoses; empty if all their inputs are exact."""
     given = [hose.uncertainty for hose in hoses]
     names = (*HOSE_PARAMETERS, PICK_UP)
     sources = [name for name in names if any(name in one.source for one in given)]
@@ -386,7 +386,7 @@ def _uncertainty_values(hoses: Sequence[PredictedHose]) -> Values:
 
 
 def _nan_where_exact(hose: PredictedHose, values: Floats) -> Floats:
-    """NaN, not zero, of a hose of which no number is uncertain."""
+    """NaN instead of zero for a hose with exact inputs."""
     return values if hose.uncertainty.source else np.full(values.shape, np.nan)
 
 
@@ -429,7 +429,7 @@ _NUMBERS = (
 
 
 def outcomes_to_dataset(outcomes: Sequence[Outcome], *, origin: Origin) -> xr.Dataset:
-    """Bring outcomes into the form of the archive; no file is touched."""
+    """Convert outcomes to the archive dataset, without writing a file."""
     if not outcomes:
         raise ArchiveError("there are no outcomes to keep", needed="one or more")
     values: Values = {
@@ -461,7 +461,7 @@ def _says_something(array: np.ndarray[Any, np.dtype[Any]]) -> bool:
 
 
 def outcomes_of_dataset(dataset: xr.Dataset) -> tuple[Outcome, ...]:
-    """Return the outcomes that an archive holds, as they were."""
+    """Return the outcomes stored in an archive."""
     if "outcome" not in dataset.sizes:
         raise ArchiveError(
             "the archive holds no outcomes", found=", ".join(map(str, dataset.sizes))
@@ -469,7 +469,7 @@ def outcomes_of_dataset(dataset: xr.Dataset) -> tuple[Outcome, ...]:
     size = dataset.sizes["outcome"]
 
     def column(name: str, missing: object) -> list[Any]:
-        # tolist gives numbers of Python, which print and compare as those that were read
+        # tolist gives Python numbers, which print and compare like those read
         return dataset.variables[name].values.tolist() if name in dataset else [missing] * size
 
     quantity = [_QUANTITIES[code] for code in column("outcome_quantity", 0)]

@@ -1,4 +1,4 @@
-"""A processed campaign as one tree of datasets, loaded on demand."""
+"""A processed campaign as a tree of datasets, loaded on demand."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from reduction.archive.open import Chunks, open_archive
 from reduction.archive.product_files import OF_CAMPAIGN, archives_of_tests
 from reduction.record.errors import ArchiveError, SettingsError
 
-# what an archive says of itself: of a campaign with one archive it is not said either
+# attributes of a single archive: excluded even for a campaign with one archive
 _OF_ONE_ARCHIVE = frozenset(
     {
         "id", "test", "test_kind", "test_order", "raw_file", "raw_file_sha256", "raw_file_bytes",
@@ -23,33 +23,33 @@ _OF_ONE_ARCHIVE = frozenset(
 
 
 def open_campaign(path: str | Path, *, chunks: Chunks | None = None) -> xr.DataTree | xr.Dataset:
-    """Open a processed campaign, or one of its archives; nothing but labels is read.
+    """Open a processed campaign, or one of its archives; only labels are read.
 
     Parameters
     ----------
     path : str or pathlib.Path
         ``processed/<campaign>``, or one archive in it.
     chunks : int or mapping of str to int or "auto", optional
-        Passed on to Dask, if it is installed: values of a chunk by dimension, such as
-        ``{"sample": 655360}`` or ``{"sample": "auto"}``; ``{}`` for chunks as they are stored.
-        Without it variables are no Dask arrays, and are read when they are asked for all the same.
+        Passed to Dask, if installed: chunk size in values by dimension, such as ``{"sample":
+        655360}`` or ``{"sample": "auto"}``; ``{}`` for stored chunks. Without it variables are not
+        Dask arrays, but are still read on demand.
 
     Returns
     -------
     campaign : xarray.DataTree or xarray.Dataset
-        Of a folder a tree: one node a test (a step is ``<test>.<step>``), and nodes ``surfaces``,
-        ``outcomes``, ``predictions``, ``comparisons`` and ``change_in_length`` where there are
-        such archives; the attributes in which all of them agree stand on the root. Of a file
-        its dataset. To be closed, or used with ``with``.
+        For a folder, a tree: one node per test (a step is ``<test>.<step>``), and nodes
+        ``surfaces``, ``outcomes``, ``predictions``, ``comparisons`` and ``change_in_length`` for
+        existing archives; attributes common to all of them are on the root. For a file, its
+        dataset. Close it, or use it with ``with``.
 
     Raises
     ------
     ArchiveError
-        If there is nothing of that name, no archive in the folder, a file that is no archive of
-        this version, or the archives are of more than one campaign.
+        If there is nothing with that name, no archive in the folder, a file that is not an archive
+        of this version, or archives from more than one campaign.
     SettingsError
-        If Dask is wanted and not installed, refuses the chunks, or no archive has a dimension
-        of the name.
+        If Dask is requested and not installed, refuses the chunks, or no archive has a dimension
+        with that name.
 
     Examples
     --------
@@ -84,7 +84,7 @@ def open_campaign(path: str | Path, *, chunks: Chunks | None = None) -> xr.DataT
         _refuse_several({name: one.attrs.get("campaign", "") for name, one in nodes.items()})
         root = xr.Dataset(attrs=_in_common(one.attrs for one in nodes.values()))
         tree = xr.DataTree.from_dict({"/": root} | nodes, name=root.attrs.get("campaign"))
-        # each file is now closed by its node
+        # from here on each node closes its own file
         for name, one in nodes.items():
             tree[name].set_close(one.close)
         opened.pop_all()
@@ -92,7 +92,7 @@ def open_campaign(path: str | Path, *, chunks: Chunks | None = None) -> xr.DataT
 
 
 def _without_archives(folder: Path) -> ArchiveError:
-    """Say what to open instead where the folder is the one above."""
+    """Error that suggests a folder to open if this one is above it."""
     campaigns = sorted({one.parent.name for one in folder.glob("*/*.nc")})
     return ArchiveError(
         f"no archive in {folder.as_posix()}",
@@ -103,7 +103,7 @@ def _without_archives(folder: Path) -> ArchiveError:
 
 
 def _refuse_unknown(chunks: Chunks | None, archives: Collection[xr.Dataset]) -> None:
-    """One that only some archives have is right; one that none has is misspelt."""
+    """Refuse a dimension found in no archive, as a misspelling; one found in some is valid."""
     dimensions = {str(name) for one in archives for name in one.dims}
     named = chunks if isinstance(chunks, Mapping) else ()
     unknown = sorted(set(named) - dimensions)
@@ -126,7 +126,7 @@ def _refuse_several(campaigns: Mapping[str, str]) -> None:
 
 
 def _in_common(attributes: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
-    """Attributes that every archive has with the same text, in the order of the first."""
+    """Attributes with the same text in all archives, in the order of the first."""
     first, *others = attributes
     return {
         name: text

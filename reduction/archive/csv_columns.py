@@ -1,4 +1,4 @@
-"""Columns and rows of a CSV table, written block by block."""
+"""Writes the columns and rows of CSV tables block by block."""
 
 from __future__ import annotations
 
@@ -52,33 +52,33 @@ Cell = str | int | float | None
 
 @dataclass(frozen=True)
 class CsvColumn:
-    """A column: name, what it holds, and the variable that its values come from."""
+    """A column: name, meaning, and the source variable of its values."""
 
     name: str
     variable: Quantity
 
     @property
     def header(self) -> str:
-        """Name with the unit where it is a real number."""
+        """Column name with the unit, if it is a real number."""
         is_real = self.variable.dtype == "f8"
         return f"{self.name} [{self.variable.unit}]" if is_real else self.name
 
     @property
     def description(self) -> list[Cell]:
-        """Header, unit, meaning, and why there is no uncertainty: a row of columns.csv."""
+        """Header, unit, meaning, and reason for no uncertainty: a row of columns.csv."""
         row = self.variable
         unit = "" if row.is_text or row.flags else row.unit
         return [self.header, unit, row.long_name, row.no_uncertainty]
 
 
 def uncertainty_of(column: CsvColumn) -> CsvColumn:
-    """Return the column that stands beside a measured one."""
+    """Return the uncertainty column of a measured one."""
     suffix = "_standard_uncertainty"
     return CsvColumn(f"{column.name}{suffix}", column.variable.companion(suffix))
 
 
 def _shown_values(values: NDArray[Any], variable: Quantity) -> Sequence[Any] | NDArray[Any]:
-    """Values of a column as a table has them: flags as their meanings, texts safe to open."""
+    """Values of a column in table form: flags as their meanings, texts safe to open."""
     if variable.flags:
         return _each(values, lambda value: _flag_text(int(value), variable))
     if variable.dtype == TEXT:
@@ -87,7 +87,7 @@ def _shown_values(values: NDArray[Any], variable: Quantity) -> Sequence[Any] | N
 
 
 def _each(values: NDArray[Any], worded: Callable[[Any], str]) -> list[str]:
-    """Put labels, most of which repeat, in words."""
+    """Convert labels to text, each distinct one only once."""
     labels = values.tolist()
     words = {label: worded(label) for label in set(labels)}
     return [words[label] for label in labels]
@@ -100,13 +100,13 @@ def _flag_text(value: int, variable: Quantity) -> str:
 
 
 def csv_text(header: Sequence[str], rows: Iterable[Sequence[Cell]]) -> str:
-    """Return a table as text of a CSV file; texts are safe to open in a spreadsheet program."""
+    """Return a table as CSV text; its texts are safe to open in a spreadsheet program."""
     return _text_of([[safe_cell(one) for one in header], *map(_safe, rows)])
 
 
 def _safe(row: Sequence[Cell]) -> list[Cell]:
-    """Return a row with its texts safe to open, and nothing for a number that is missing."""
-    # NaN alone is not itself
+    """Return a row with its texts safe to open, and empty cells for missing numbers."""
+    # only NaN differs from itself
     return [safe_cell(one) if isinstance(one, str) else None if one != one else one for one in row]
 
 
@@ -117,7 +117,7 @@ def _text_of(rows: Iterable[Sequence[Cell]]) -> str:
 
 
 def _cells(values: Sequence[Any] | NDArray[Any]) -> Sequence[Cell]:
-    """Return a column as cells, nothing for a number that is missing."""
+    """Return a column as cells, empty for missing numbers."""
     if not isinstance(values, np.ndarray):
         return values
     cells: list[Cell] = values.tolist()
@@ -131,7 +131,7 @@ Product = Literal[
 ]
 
 Variables = Mapping[str, xr.Variable]
-"""By name, as those of an archive."""
+"""Variables of an archive by name."""
 
 TEST = CsvColumn("test", QUANTITIES["test"])
 
@@ -153,25 +153,25 @@ def _nothing(_: xr.Dataset) -> Variables:
 
 @dataclass(frozen=True)
 class CsvTable:
-    """One file of tables: a row for each combination of the entries of ``dims``.
+    """Definition of one table: a row for each combination of the entries of ``dims``.
 
-    Columns are the coordinates of the dimensions, what it begins with, every number whose row
-    names the table, and what it ends with.  A measured one is followed by its uncertainty.
+    Columns are the coordinates of the dimensions, the first ones, every number whose row names the
+    table, and the last ones.  A measured one is followed by its uncertainty.
 
     Parameters
     ----------
     name : str
         File name without suffix.
     dims : tuple of str
-        Slowest first; a dimension with a coordinate gives a column.
+        Dimensions, slowest first; a dimension with a coordinate gives a column.
     needs : tuple of str
-        A row is written where one of these is known; where any number is, if none is named.
+        A row is written if one of these is known, or any number if none is listed.
     first, last : tuple of str
-        Of the archive, in order; ``column=variable`` gives it another name here.
+        Variables of the archive in order; ``column=variable`` renames one here.
     derive : callable
-        From the archive to variables that the table needs beside or in place of its own.
+        Function from the archive to added or replaced variables for the table.
     product : str
-        Whose names they are. A row of a test names it; any other names its experiment or hose.
+        Type of product. A row of a test names the test; any other its experiment or hose.
     """
 
     name: str
@@ -189,7 +189,7 @@ class CsvTable:
 
     @cached_property
     def columns(self) -> list[CsvColumn]:
-        """Every column, the test first and the word on synthetic data last."""
+        """All columns, with the test first and the synthetic-data mark last."""
         schema = _SCHEMAS[self.product]
         columns = [TEST] if self.product in ("test", "stepwise test") else []
         axes = (dim for dim in self.dims if dim in schema)
@@ -201,7 +201,7 @@ class CsvTable:
 
 
 def _companions_of(column: CsvColumn, *, is_of_runs: bool) -> Iterator[CsvColumn]:
-    """Give what stands beside a number; of a surface, what its runs do not share too."""
+    """Yield the companions of a number; for a surface also the part not shared by its runs."""
     row = column.variable
     for suffix in row.companions:
         is_part = suffix in ("_random_standard_uncertainty", "_uncertainty_contribution")
@@ -210,21 +210,21 @@ def _companions_of(column: CsvColumn, *, is_of_runs: bool) -> Iterator[CsvColumn
 
 
 def _column(name: str, variable: Quantity) -> CsvColumn:
-    # the axis is `branch_name`, since `branch` is a flag of the samples
+    # the axis is `branch_name`, because `branch` is a sample flag
     return CsvColumn("branch" if name == "branch_name" else name, variable)
 
 
 BLOCK_ROWS = 1 << 12
-"""Rows of a block: three megabytes of text where a table is as wide as that of the cycles. [1]"""
+"""Rows in a block: three megabytes of text for a table as wide as that of the cycles. [1]"""
 
 
 def table_blocks(
     archive: xr.Dataset, table: CsvTable, *, block_rows: int = BLOCK_ROWS
 ) -> Iterator[pd.DataFrame]:
-    """Give the rows that an archive gives to a table; none where it lacks the subject."""
+    """Yield the rows of an archive for a table; none if it lacks the subject."""
     headers = [column.header for column in table.columns]
     for place, columns in column_blocks(archive, archive.variables, table, block_rows=block_rows):
-        # what the archive lacks is missing, as where its file is read
+        # columns absent from the archive are missing, as on reading its file
         known = [
             np.full(place.size, np.nan) if isinstance(one, list) and set(one) == {""} else one
             for one in columns
@@ -239,7 +239,7 @@ def column_blocks(
     *,
     block_rows: int = BLOCK_ROWS,
 ) -> Iterator[tuple[Integers, list[Sequence[Any] | NDArray[Any]]]]:
-    """Give the places of the rows of a table, and their values by column."""
+    """Yield the places of the rows of a table, and their values by column."""
     needed = [name for name in table.needs or table.own if name in variables]
     sizes = {dim: archive.sizes.get(dim, -1) for dim in table.dims}
     if not needed or -1 in sizes.values():
@@ -275,9 +275,9 @@ def column_blocks(
 
 
 def _blocks(sizes: Mapping[str, int], most: int) -> Iterator[dict[str, range]]:
-    """Cut the combinations of entries of dimensions, the last fastest, in blocks."""
+    """Split the combinations of dimension entries, the last fastest, into blocks."""
     shape = list(sizes.values())
-    # whole along the last dimensions, one entry at a time along the first
+    # complete along the last dimensions, one entry at a time along the first
     cut = next(axis for axis in range(len(shape)) if prod(shape[axis + 1 :]) <= most)
     step = max(1, most // max(1, prod(shape[cut + 1 :])))
     for outer in np.ndindex(*shape[:cut]):
@@ -288,7 +288,7 @@ def _blocks(sizes: Mapping[str, int], most: int) -> Iterator[dict[str, range]]:
 
 
 def _laid_out(variable: xr.Variable, block: Mapping[str, range]) -> NDArray[Any]:
-    """Repeat a variable over the dimensions it lacks, and unroll it."""
+    """Broadcast a variable over the dimensions it lacks, and flatten it."""
     dims = variable.dims
     own = [dim for dim in block if dim in dims]
     if any(len(block[dim]) < variable.sizes[dim] for dim in own):
@@ -315,13 +315,13 @@ class GroupColumn:
 
     @property
     def header(self) -> str:
-        """Name with the unit where it is a real number."""
+        """Column name with the unit, if it is a real number."""
         unit = self.column.unit
         return f"{self.column.name} [{unit}]" if unit not in ("", "count") else self.column.name
 
     @property
     def description(self) -> list[Cell]:
-        """Header, unit, meaning, and why there is no uncertainty: a row of columns.csv."""
+        """Header, unit, meaning, and reason for no uncertainty: a row of columns.csv."""
         column = self.column
         unit = "1" if column.unit == "count" else column.unit
         return [self.header, unit, column.long_name, column.no_uncertainty]
@@ -337,11 +337,11 @@ _COLUMNS = {
 OUTCOME_TABLES: dict[str, tuple[GroupColumn | CsvColumn, ...]] = {
     name: (*map(GroupColumn, columns), SYNTHETIC) for name, columns in _COLUMNS.items()
 }
-"""Columns of each table, the word on synthetic data last."""
+"""Columns of each table, with the synthetic-data mark last."""
 
 
 def outcome_table_rows(archive: xr.Dataset) -> dict[str, list[list[Cell]]]:
-    """Return the rows of every table of outcomes; none where the outcomes do not give it."""
+    """Return the rows of every table of outcomes; empty if the outcomes lack its subject."""
     outcomes = outcomes_of_dataset(archive)
     synthetic = archive.attrs.get("synthetic", "no")
     rows: dict[str, list[Row]] = {
@@ -356,7 +356,7 @@ def outcome_table_rows(archive: xr.Dataset) -> dict[str, list[list[Cell]]]:
 
 
 def _cell(value: float | str) -> Cell:
-    return None if value != value else value  # NaN alone is not itself
+    return None if value != value else value  # only NaN differs from itself
 
 
 _U = "_standard_uncertainty"
@@ -386,7 +386,7 @@ _UNKNOWN = "nothing is known of its scatter"
 
 
 def _is_empty(values: Sequence[Any] | NDArray[Any]) -> Bools:
-    """Find the cells of a column that hold nothing."""
+    """Find the empty cells of a column."""
     if isinstance(values, np.ndarray) and values.dtype.kind == "f":
         return np.asarray(np.isnan(values), dtype=bool)
     return np.array([one is None or one == "" or one != one for one in values], dtype=bool)
@@ -395,7 +395,7 @@ def _is_empty(values: Sequence[Any] | NDArray[Any]) -> Bools:
 def column_descriptions(
     columns: Sequence[CsvColumn | GroupColumn], lonely: Collection[int] = ()
 ) -> Iterator[list[Cell]]:
-    """Return the rows of columns.csv of one table."""
+    """Return the rows of columns.csv for one table."""
     quantities = dict(_uncertainties(columns))
     for place, column in enumerate(columns):
         *about, reason = column.description
@@ -405,7 +405,7 @@ def column_descriptions(
 
 
 def _uncertainties(columns: Sequence[CsvColumn | GroupColumn]) -> Iterator[tuple[int, str]]:
-    """Places of the uncertainties, and of which quantity each is."""
+    """Indices of the uncertainty columns, with the quantity of each."""
     names = [column.header.partition(" [")[0] for column in columns]
     for place, (name, own) in enumerate(pairwise(names), start=1):
         if own == f"{name}{_U}":
@@ -413,22 +413,22 @@ def _uncertainties(columns: Sequence[CsvColumn | GroupColumn]) -> Iterator[tuple
 
 
 class TableFile:
-    """A table that grows by rows; without rows there is no file.
+    """A table built row by row; without rows no file is written.
 
     Parameters
     ----------
     path : pathlib.Path
-        Of the table.
+        Path of the table.
     columns : sequence of Column or GroupColumn
-        Of it.
+        Its columns.
     whole : contextlib.ExitStack
-        At whose end the file gets its name.
+        Exit stack that gives the file its final name.
     """
 
     def __init__(
         self, path: Path, columns: Sequence[CsvColumn | GroupColumn], whole: ExitStack
     ) -> None:
-        """Begin a table without rows."""
+        """Start a table without rows."""
         self.path = path
         self.columns = columns
         self.lonely: set[int] = set()
@@ -442,7 +442,7 @@ class TableFile:
         return self._append is not None
 
     def add_columns(self, columns: Sequence[Sequence[Any] | NDArray[Any]]) -> None:
-        """Add rows by their columns, texts safe to open already."""
+        """Add rows by columns, with texts already safe to open."""
         if not len(columns[0]):
             return
         rows: Iterable[Sequence[Cell]] = zip(*map(_cells, columns), strict=True)

@@ -1,6 +1,6 @@
-"""The CSV tables of a campaign: what their rows go along, and how they begin and end.
+"""Defines the CSV tables of a campaign: dimensions of the rows, first and last columns.
 
-Columns between are the numbers whose rows in `reduction.quantities` name the table.
+The columns between are the numbers whose rows in `reduction.quantities` name the table.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ ERROR = (
     "uncertainty_source", "uncertainty_source_of", "uncertainty_source_number",
     "uncertainty_source_degrees_of_freedom",
 )  # fmt: skip
-"""Columns that say which error a row is of."""
+"""Columns that identify the error in a row."""
 
-# those of curves, a row for each error and each place of a grid, stay in the archives alone
+# tables for curves, with a row per error and grid place, are only in the archives
 _FILES = {
     ("specimen",): "shared_errors",
     ("specimen", "branch_name", "segment"): "shared_errors_segments",
@@ -36,7 +36,7 @@ _FILES = {
     ("elastomer_parameter",): "shared_errors_elastomer",
 }
 
-# whose they are, where a row of the table itself would not say
+# owner of each row, if the table itself does not show it
 _LABELS_OF = {
     ("hold",): ("specimen=hold_specimen", "hold_number"),
     ("hold", "prony_term"): ("specimen=hold_specimen", "hold_number"),
@@ -63,7 +63,7 @@ SHARED_TABLES = tuple(_shared_table(name, dims) for dims, name in _FILES.items()
 
 
 def _edges_of_bins(archive: xr.Dataset) -> Variables:
-    """Give each bin of strain its edges as columns."""
+    """Add the edges of each strain bin as columns."""
     edges = archive.variables["strain_bin_bounds"]
     return {"strain_bin_low": edges[:, 0], "strain_bin_high": edges[:, 1]}
 
@@ -74,7 +74,7 @@ def _cycle_count(archive: xr.Dataset) -> Variables:
 
 
 def _chords_of_branches(archive: xr.Dataset) -> Variables:
-    """Give each branch a column of its own, so that a cycle stays one row."""
+    """Give each branch its own column, so that a cycle has one row."""
     if "chord_modulus" not in archive:
         return {}
     return {
@@ -85,7 +85,7 @@ def _chords_of_branches(archive: xr.Dataset) -> Variables:
 
 
 def _fit_of_parameters(archive: xr.Dataset) -> Variables:
-    """Repeat what is said of a fit beside each of its parameters."""
+    """Repeat the results of a fit beside each of its parameters."""
     fit = archive.variables["elastomer_parameter_fit"].values - 1
     return {
         str(name): xr.Variable(("elastomer_parameter",), variable.values[fit], fastpath=True)
@@ -95,7 +95,7 @@ def _fit_of_parameters(archive: xr.Dataset) -> Variables:
 
 
 def _one_specimen(archive: xr.Dataset) -> Variables:
-    """Leave out the axis of a specimen that is alone."""
+    """Drop the axis of a single specimen."""
     return {
         str(name): xr.Variable(
             [dim for dim in variable.dims if dim != "specimen"],
@@ -117,7 +117,7 @@ _OF_HOLD = ("creep_rate_per_decade", "creep_tension_over_strength", "creep_compl
 
 
 def _one_a_specimen(archive: xr.Dataset) -> Variables:
-    """Give a step one static stiffness and one creep: of its last pair, its longest hold."""
+    """Give a step one static stiffness and one creep: from its last pair and its longest hold."""
     if "programme_step" not in archive:
         return {}
     found: dict[str, xr.Variable] = {}
@@ -137,7 +137,7 @@ def _one_a_specimen(archive: xr.Dataset) -> Variables:
 
 
 def _chosen(of_row: list[str], names: list[str], rank: np.ndarray) -> Integers:
-    """Row of the highest rank of each specimen, the last of those alike; -1 where it has none."""
+    """Row with the highest rank for each specimen, the last of equal ones; -1 without one."""
     found = [
         max((rank[row], row) for row, own in enumerate(of_row) if own == name)[1]
         if name in of_row
@@ -319,7 +319,7 @@ TABLES = (
         first=("n_rows_read", "n_rows_kept", "n_rows_stored"),
     ),
 )
-"""Of tests."""
+"""Tables of tests."""
 
 _RUN = ("run_name", "run_specimen")
 

@@ -87,7 +87,7 @@ class _Curve:
 
 
 def _curves_of(archive: xr.Dataset) -> Iterator[_Curve]:
-    """Give the curves of an archive; none where the test has no cycles."""
+    """Yield the curves of an archive; none for a test without cycles."""
     if "tangent_modulus" not in archive:
         return
     edges = archive.variables["strain_bin_bounds"].values
@@ -113,13 +113,13 @@ def _curves_of(archive: xr.Dataset) -> Iterator[_Curve]:
 
 
 def _on_grid(curve: _Curve, grid: Floats) -> tuple[Floats, Floats]:
-    """Bring a curve onto a strain grid by straight lines between neighbouring bins."""
+    """Interpolate a curve linearly between neighbouring bins onto a strain grid."""
     modulus, uncertainty = _read_curve(curve, grid, np.stack([curve.modulus, curve.uncertainty]))
     return modulus, uncertainty
 
 
 def _read_curve(curve: _Curve, grid: Floats, values: Floats) -> Floats:
-    """Values at the bins of a curve, (n, n_bins), on a strain grid, (n, n_grid); as `_on_grid`."""
+    """Interpolate values at the bins of a curve, (n, n_bins), to a strain grid, (n, n_grid)."""
     known = np.isfinite(curve.modulus)
     strain = curve.strain[known]
     if strain.size == 0:
@@ -129,7 +129,7 @@ def _read_curve(curve: _Curve, grid: Floats, values: Floats) -> Floats:
 
 
 def _envelope_rows(curves: Sequence[_Curve]) -> list[list[Cell]]:
-    """Return the envelope of each specimen and branch on one strain grid."""
+    """Return the envelope of each specimen and branch on a common strain grid."""
     if not curves:
         return []
     widest = max(curves, key=lambda curve: curve.width)
@@ -140,7 +140,7 @@ def _envelope_rows(curves: Sequence[_Curve]) -> list[list[Cell]]:
         np.floor((low - origin) / widest.width + 0.01),
         np.ceil((high - origin) / widest.width - 0.01) + 1,
     )
-    # sixteenth digits that differ from test to test say nothing
+    # differences between tests in the sixteenth digit are rounding
     grid = np.round(origin + widest.width * steps, 12)
     groups: dict[tuple[str, str], list[_Curve]] = defaultdict(list)
     for curve in curves:
@@ -173,7 +173,7 @@ def _group_rows(
 
 
 def _by_response(archive: xr.Dataset) -> xr.Dataset:
-    """Set the responses side by side along a dimension ``response``."""
+    """Stack the responses along a dimension ``response``."""
     names = [
         name
         for name in SURFACE_NAMES
@@ -193,7 +193,7 @@ def _by_response(archive: xr.Dataset) -> xr.Dataset:
                 stacked[f"response{own}"] = variable
     if "term_unit_engineering" in archive:
         of_term = archive.variables["term_unit_engineering"].values
-        # the unit of a term stands there as what is multiplied, not as what is divided by
+        # the unit of a term is a factor there, not a divisor
         full = [
             [[combined_unit(unit, [str(own)], [-1]) for own in row] for unit in units]
             for row in of_term
@@ -218,12 +218,12 @@ def _by_response(archive: xr.Dataset) -> xr.Dataset:
         stacked["effect_is_there"] = xr.Variable(
             ("experiment", "response", "plan_column"), _marked(known), fastpath=True
         )
-    # at once: xarray aligns hundreds of variables whenever one is added
+    # in one call: xarray aligns hundreds of variables for each addition
     return archive.assign(stacked)
 
 
 def _stacked(archive: xr.Dataset, names: Sequence[str], what: str) -> xr.Variable | None:
-    """Set one quantity of every response behind the experiments; None where none has it."""
+    """Stack one quantity of every response after the experiments; None if absent from all."""
     given = {
         name: archive.variables[f"{name}{what}"] for name in names if f"{name}{what}" in archive
     }
@@ -257,7 +257,7 @@ STATIC_DYNAMIC_COLUMNS = (
 
 @dataclass(frozen=True)
 class _Slope:
-    """Slope between two readings of a stepwise test, at the strain in their middle."""
+    """Slope between two readings of a stepwise test, at their mid-strain."""
 
     test: str
     specimen: str
@@ -270,7 +270,7 @@ class _Slope:
 
 
 def _slopes_of(archive: xr.Dataset) -> Iterator[_Slope]:
-    """Give the slopes of an archive that have a number; none where the test is not stepwise."""
+    """Yield the numeric slopes of an archive; none for a test that is not stepwise."""
     if "interval_modulus" not in archive:
         return
     branches = {value: name for name, value in BRANCH_VALUES.items()}
@@ -292,7 +292,7 @@ def _slopes_of(archive: xr.Dataset) -> Iterator[_Slope]:
 
 
 def _static_dynamic_rows(slopes: Sequence[_Slope], curves: Sequence[_Curve]) -> list[list[Cell]]:
-    """Set every static slope beside the dynamic curves of its branch, and give their ratio."""
+    """Pair every static slope with the dynamic curves of its branch, and give their ratio."""
     rows: list[list[Cell]] = []
     for curve in curves:
         beside = sorted(
@@ -341,7 +341,7 @@ def _row(
 
 
 def _left(whole: float, contribution: Floats) -> float:
-    """Random part of a standard uncertainty: what is not shared."""
+    """Random part of a standard uncertainty, without the shared part."""
     return float(np.sqrt(max(whole**2 - float(contribution @ contribution), 0.0)))
 
 
@@ -369,9 +369,9 @@ def write_tables(
     opener: Opener = reading,
     each: Callable[[Path, xr.Dataset], None] = lambda path, archive: None,
 ) -> list[Path]:
-    """Write every table that the archives fill, and columns.csv, which explains them.
+    """Write every table with data in the archives, and columns.csv, which explains them.
 
-    ``each`` is given every archive of a test while it is open.
+    ``each`` is called with every open test archive.
     """
     columns: dict[str, Sequence[CsvColumn | GroupColumn]] = {
         table.name: table.columns for table in _ALL
@@ -404,24 +404,24 @@ def write_tables(
 
 
 def table_of(archive: xr.Dataset, name: str) -> pd.DataFrame:
-    """Return one table of an archive of a test as its CSV file has it.
+    """Return one table of a test archive with the contents of its CSV file.
 
     Parameters
     ----------
     archive : xarray.Dataset
-        As `reduction.open_archive` gives it.
+        Dataset from `reduction.open_archive`.
     name : str
         File name without suffix: "cycles", "moduli", "relaxation", ...
 
     Returns
     -------
     table : pandas.DataFrame
-        Columns by their headers, units among them; no rows where the test lacks the subject.
+        Columns by their headers with units; no rows if the test lacks the subject.
 
     Raises
     ------
     SettingsError
-        If no table of tests has that name.
+        If there is no such table of tests.
     """
     table = next((one for one in TABLES if one.name == name), None)
     if table is None:
@@ -436,7 +436,7 @@ def table_of(archive: xr.Dataset, name: str) -> pd.DataFrame:
 
 
 def _place(path: Path) -> _Place:
-    """Place in the history, tests without one last; then the name, T-2 before T-10."""
+    """Sort key: place in the history, unplaced tests last; then the name, T-2 before T-10."""
     test, order = place_of(path)
     name = re.split(r"(\d+)", test)
     return order, [(int(part), "") if part.isdigit() else (-1, part) for part in name]

@@ -1,7 +1,7 @@
 """Builds a dataset that follows CF: dimensions, variables, global attributes.
 
-Every attribute is text and none is a list: a list of one does not survive netCDF.
-Several raw files stand one a line, and so do the stages in ``history``.
+Every attribute is a text, not a list: a list with one entry does not survive netCDF. Several raw
+files have one line each, as have the stages in ``history``.
 """
 
 from __future__ import annotations
@@ -28,14 +28,15 @@ from reduction.stages.reduced_test import ReducedTest
 SCHEMA_NAME = "mooring-reduction archive"
 
 SCHEMA_VERSION = "1.0"
-"""The first number rises when a name, group, dimension, unit or meaning changes or goes, the second
-when one is added: a reader of 1.0 reads 1.7."""
+"""The first number rises if a name, group, dimension, unit or meaning is changed or removed, the
+second if one is added: a reader of 1.0 can read 1.7.
+"""
 
-_COMPRESSED_FROM = 4096  # values; below it a chunk and its index cost more than they save
+_COMPRESSED_FROM = 4096  # values; below it a chunk with its index costs more than it saves
 
-_TRIED = 16384  # values by which it is told how the others compress
+_TRIED = 16384  # values used to test compression
 
-_CHUNK = 65536  # values; half a megabyte, which a cycle of a long record costs to read
+_CHUNK = 65536  # values; half a megabyte, the cost of reading a cycle from a long record
 
 
 def build_dataset(
@@ -45,14 +46,14 @@ def build_dataset(
     attributes: Mapping[str, str],
     is_stored: bool = False,
 ) -> xr.Dataset:
-    """Bring arrays into the form of the archive, in the order of the schema.
+    """Convert arrays to the archive dataset, in schema order.
 
-    Where they were stored already, nothing is said of how to store them.
+    Arrays that were stored before get no new storage settings.
     """
     unknown = sorted(set(values) - set(schema))
     if unknown:
         raise ArchiveError("values without a place in the schema", found=", ".join(unknown))
-    # zero-length dimensions turn unlimited in a file, so what is empty is left out
+    # zero-length dimensions would become unlimited in a file, so empty arrays are left out
     present = {name: values[name] for name in schema if name in values and values[name].size}
     sizes = _sizes(present, schema)
     auxiliary = schema["time"].dims[0] if "time" in present else ""
@@ -71,7 +72,7 @@ def build_dataset(
 
 
 def _sizes(values: Values, schema: Mapping[str, Quantity]) -> dict[str, int]:
-    """Length of every dimension; refuse an array that does not fit the others."""
+    """Length of every dimension; refuse an array that does not match the others."""
     sizes: dict[str, int] = {}
     for name, array in values.items():
         dims = schema[name].dims
@@ -106,7 +107,7 @@ def _stored(array: NDArray[Any], row: Quantity, present: Values) -> xr.Variable:
 
 
 def as_read(attributes: Mapping[str, Any]) -> dict[str, Any]:
-    """Attributes of a variable as a reader finds them: one number alone is no array."""
+    """Variable attributes in the form that a reader gets: a single number is not an array."""
     return {
         name: value[0] if isinstance(value, np.ndarray) and value.size == 1 else value
         for name, value in attributes.items()
@@ -121,10 +122,10 @@ def variable_of(
     attributes: Mapping[str, Any],
     encoding: Mapping[str, Any] | None = None,
 ) -> xr.Variable:
-    """Make a variable of an array as it is; labels of a dimension as an index.
+    """Make a variable from an array unchanged; labels of a dimension become an index.
 
-    Of labels that are no index yet xarray asks whether they are arrays of pint, which takes longer
-    to import than a test to read.
+    For labels that are not an index, xarray would import pint to check their type, which takes
+    longer than reading a test.
     """
     if dims != (name,):
         return xr.Variable(dims, values, attributes, encoding, fastpath=True)
@@ -154,8 +155,8 @@ def _attributes(row: Quantity, present: Values) -> dict[str, Any]:
 
 
 def _encoding(array: NDArray[Any], row: Quantity, auxiliary: str) -> dict[str, Any]:
-    # labels are not listed: they have the names of their dimensions, by which a reader finds
-    # them, and CF advises against listing an array that shares the name of its dimension
+    # labels are not listed: readers find them under the names of their dimensions, and CF advises
+    # against listing an array that shares the name of its dimension
     is_beside = auxiliary and auxiliary in row.dims and row.name != "time"
     listed = {"coordinates": "time"} if is_beside else {}
     if row.is_text:
@@ -175,7 +176,7 @@ def _encoding(array: NDArray[Any], row: Quantity, auxiliary: str) -> dict[str, A
 
 
 def _is_smaller_shuffled(array: NDArray[Any]) -> bool:
-    """Whether like bytes of its numbers together compress to less than the numbers as they are."""
+    """Whether its numbers compress better after a byte shuffle."""
     if array.size < _CHUNK:
         return True
     quarter = array.size // 4  # within the first of two specimens
@@ -186,7 +187,7 @@ def _is_smaller_shuffled(array: NDArray[Any]) -> bool:
 
 
 def _chunk_sizes(shape: tuple[int, ...]) -> tuple[int, ...]:
-    """Chunk of `_CHUNK` values at most: the last dimension first, then as much of those before."""
+    """Chunk of at most `_CHUNK` values: filled from the last dimension to the first."""
     sizes: list[int] = []
     left = _CHUNK
     for length in reversed(shape):
@@ -203,7 +204,7 @@ _SOFTWARE = "mooring-reduction"
 
 _PROPAGATION = "first order (JCGM 100:2008)"
 
-# a line bends where E' comes near K_0: each test says by which of both its uncertainty is
+# a line bends where E' is near K_0: each test states the method for its uncertainty
 _OF_LINE = "; K_1, tau and K_1 tau as test_line_uncertainty_method says (JCGM 101:2008)"
 
 _KEYWORDS = "mooring, tension test, elastic modulus, hysteresis"
@@ -237,7 +238,7 @@ _LEGAL = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 def global_attributes(
     test: ReducedTest, *, version: str, command: str, samples: str = "all"
 ) -> dict[str, str]:
-    """Return the global attributes in a fixed order; empty ones are left out."""
+    """Return the global attributes in fixed order, without empty ones."""
     about = test.description
     names = " and ".join(one.name for one in test.specimens)
     return _complete(
@@ -267,7 +268,7 @@ def global_attributes(
 
 
 def part_attributes(part: PartName, names: Sequence[str] = (), *, origin: Origin) -> dict[str, str]:
-    """Return the global attributes of an archive of a part of a campaign, in the same order."""
+    """Return the global attributes for an archive of part of a campaign, in the same order."""
     summary, keywords = _OF_PART[part]
     return _complete(
         origin.attributes,
@@ -288,7 +289,7 @@ def part_attributes(part: PartName, names: Sequence[str] = (), *, origin: Origin
 
 
 def key_of(settings_json: str) -> str:
-    """What a product is known by beside its raw files and version: SHA-256 of its settings."""
+    """Key of a product beside its raw files and version: SHA-256 of its settings."""
     return hashlib.sha256(settings_json.encode()).hexdigest()
 
 
@@ -308,12 +309,12 @@ def _complete(
     version: str,
     command: str,
 ) -> dict[str, str]:
-    """What the laboratory gave and what the product is, with what every product says."""
+    """Attributes from the laboratory and of the product, with those common to all products."""
     given = dict(attributes)
     title = given.pop("title", f"Campaign {product['campaign']}")
     source = given.pop("source", "")
     if given.get("synthetic") == "yes":
-        # a reader who sees only the title or only the source has to see it too
+        # a reader of only the title or the source must see it too
         title = title if "synthetic" in title.lower() else f"{title} (synthetic data)"
         source = source if "synthetic" in source.lower() else f"synthetic; {source}".rstrip("; ")
     own = {

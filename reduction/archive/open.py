@@ -1,4 +1,4 @@
-"""Opens archives: files of this major version of the schema."""
+"""Opens archives with this major version of the schema."""
 
 from __future__ import annotations
 
@@ -42,33 +42,34 @@ from reduction.quantities.row import GROUPS, Quantity
 from reduction.record.errors import ArchiveError, SettingsError
 
 Chunks = int | Mapping[str, int | Literal["auto"] | tuple[int, ...]]
-"""Values of a chunk, or by dimension, as `xarray.open_dataset` takes them."""
+"""Chunk size in values, overall or by dimension, as for `xarray.open_dataset`."""
 
 Opener = Callable[[Path], AbstractContextManager[xr.Dataset]]
-"""How a step opens an archive for a block: as `reading` does."""
+"""Context manager that opens an archive, like `reading`."""
 
 KeptArchive = bytes
-"""An archive that was just written, pickled: it goes from a worker to the scratch file as it is."""
+"""A newly written archive, pickled, and passed unchanged from a worker to the scratch file."""
 
 _CACHE = 1 << 20
-"""Bytes of each variable that the library keeps as they are read: two chunks of an archive. Its own
-64 MB hold all that was ever read of a test, beside what is made of it."""
+"""Library cache for each variable in bytes: two chunks of an archive. The default of 64 MB would
+hold everything read from a test, in addition to its results.
+"""
 
-LARGEST = 8_000_000  # bytes of values of an archive that is kept in a run, unpacked
+LARGEST = 8_000_000  # bytes of unpacked values of an archive kept during a run
 
-_ROOM = 2_000_000_000  # bytes of all on disk, beside archives of nearly the same size
+_ROOM = 2_000_000_000  # bytes of all archives on disk, beside archives of nearly the same size
 
 _BESIDE = "_nc4_non_coord_"
-"""Before the name of a variable that has the name of a dimension and is not its coordinate."""
+"""Prefix for a variable named after a dimension without being its coordinate."""
 
 _NO_VARIABLE = np.dtype(">f4")
-"""Type by which the netCDF library stores a dimension that has no variable."""
+"""Type of a dimension without a variable in the netCDF library."""
 
 _OF_LIBRARY = re.compile(r"(\[Errno -\d+\] )?NetCDF: ")
 
 _VERSION = re.compile(r"(\d{1,4})\.\d{1,4}", re.ASCII)
 
-_MOST_PACKED = 1100  # times that deflated values can be larger than the file
+_MOST_PACKED = 1100  # maximum ratio of deflated values to the file size
 
 _LONGEST_SETTINGS = 20_000_000
 
@@ -79,7 +80,7 @@ _TEXTS = (
 
 _AGAIN = "Check the disk; take a copy that is whole, or remove it and run the campaign again."
 
-# by the dimension that its kind alone has; a reduced test compares specimens, too
+# by a dimension unique to each kind; a reduced test has comparisons of specimens as well
 _OF_CAMPAIGN: dict[str, dict[str, Quantity]] = {
     "experiment": SURFACE_SCHEMA,
     "outcome": OUTCOME_SCHEMA,
@@ -91,25 +92,25 @@ _OF_CAMPAIGN: dict[str, dict[str, Quantity]] = {
 
 @contextmanager
 def reading(path: Path) -> Iterator[xr.Dataset]:
-    """Open an archive for a block in which its values are read, and close it.
+    """Open an archive as a context manager, for reading its values.
 
-    Of a small archive of a test all values are read at once, which takes less time than to ask
-    the netCDF library for its variables.
+    For a small archive of a test all values are read at once, which is faster than a query of each
+    variable in the netCDF library.
 
     Parameters
     ----------
     path : pathlib.Path
-        A file that `write_archive` wrote.
+        A file written by `write_archive`.
 
     Yields
     ------
     dataset : xarray.Dataset
-        As `open_archive` gives it.
+        Dataset as from `open_archive`.
 
     Raises
     ------
     ArchiveError
-        As `open_archive`, and if the library fails while something is read in the block.
+        As `open_archive`, and if the library fails on reading in the block.
     """
     own = _read_own(path)
     with failing_reads(str(path)), open_archive(path) if own is None else nullcontext(own) as found:
@@ -117,11 +118,11 @@ def reading(path: Path) -> Iterator[xr.Dataset]:
 
 
 class ReadOnce:
-    """Reads small archives from their files once, and gives them again from a scratch file.
+    """Reads small archives once, and then returns them from a scratch file.
 
-    To open an archive takes longer than to read all of a small one, since the library looks at each
-    of its 350 variables; the steps of a run read each several times.  Called as `reading`, it gives
-    an archive that is the caller's alone.  A file that is another one by now is read anew.
+    Opening an archive takes longer than reading all of a small one, since the library examines each
+    of its 350 variables, and the steps of a run read each several times.  A call like `reading`
+    gives an archive for the caller alone.  A file that has changed is read again.
     """
 
     def __init__(self) -> None:
@@ -130,7 +131,7 @@ class ReadOnce:
 
     @contextmanager
     def __call__(self, path: Path) -> Iterator[xr.Dataset]:
-        """Open an archive for a block, as `reading` does."""
+        """Open an archive as a context manager, like `reading`."""
         stamp = _stamp_of(path)
         known, place = self._kept.get(path, ((), slice(0)))
         if stamp and known == stamp:
@@ -140,27 +141,27 @@ class ReadOnce:
                 if archive.nbytes > LARGEST or self._scratch.n_bytes > _ROOM:
                     yield archive
                     return
-                content = pickle.dumps(in_memory(archive).copy())  # which has no file to close
+                content = pickle.dumps(in_memory(archive).copy())  # the copy has no file to close
             self._put(path, stamp, content)
         yield pickle.loads(content)  # noqa: S301  # of this object
 
     def keep(self, path: Path, written: KeptArchive) -> None:
-        """Keep an archive that was just written."""
+        """Keep a newly written archive."""
         if self._scratch.n_bytes <= _ROOM:
             self._put(path, _stamp_of(path), written)
 
     def _put(self, path: Path, stamp: tuple[int, ...], content: bytes) -> None:
-        with suppress(OSError):  # without room on the disk it is read again
+        with suppress(OSError):  # without disk space it is read again
             self._kept[path] = stamp, self._scratch.put(content)
 
 
 def as_kept(written: xr.Dataset) -> KeptArchive | None:
-    """An archive that was just written as a reader finds it, for `keep_written`; no large one."""
+    """A newly written archive as seen by a reader, for `keep_written`; None if large."""
     return pickle.dumps(_as_read(written)) if written.nbytes <= LARGEST else None
 
 
 def keep_written(opener: Opener, path: Path, written: KeptArchive | None) -> None:
-    """Keep an archive that was just written, where it is opened by what keeps any."""
+    """Keep a newly written archive, if the opener keeps archives."""
     if isinstance(opener, ReadOnce) and written is not None:
         opener.keep(path, written)
 
@@ -171,15 +172,15 @@ def _stamp_of(path: Path) -> tuple[int, ...]:
 
 
 def _as_read(built: xr.Dataset) -> xr.Dataset:
-    """Return a dataset that was built for writing as the libraries give it when they read it.
+    """Convert a dataset built for writing to the form that a reader gets.
 
-    Its variables are those of a copy, since to make a dataset of new ones takes four times as long.
+    Its variables replace those of a copy, since building a new dataset takes four times as long.
     """
     found = built.copy(deep=False)
     for variable in found.variables.values():
         if variable.dtype.kind == "U":
             texts = variable.values.astype(object)
-            # in a variable: given an array, xarray imports Dask, to ask whether it is one
+            # as a variable: for an array, xarray would import Dask to check its type
             variable.data = xr.Variable(variable.dims, texts, fastpath=True)
         variable.attrs = as_read(variable.attrs)
         variable.encoding = {}
@@ -187,30 +188,30 @@ def _as_read(built: xr.Dataset) -> xr.Dataset:
 
 
 def in_memory(archive: xr.Dataset) -> xr.Dataset:
-    """Return the archive with all its values read, so that its file may be closed.
+    """Return the archive with all values read, so that its file can be closed.
 
-    As `xarray.Dataset.load`, which imports Dask to ask it whether the arrays are its own.
+    Like `xarray.Dataset.load`, which would import Dask to check whether the arrays are its own.
     """
     for variable in archive.variables.values():
-        _ = variable.values  # which an archive that was opened without chunks keeps
+        _ = variable.values  # kept by an archive opened without chunks
     return archive
 
 
 def place_of(path: Path) -> tuple[str, float]:
-    """Name of the test of an archive and its place in the history, infinite without one."""
+    """Name of the test in an archive and its position in the history, infinite without one."""
     try:
         with h5py.File(path, "r", locking=False) as file:
             name, order = file.attrs["test"], file.attrs.get("test_order", "inf")
             return _as_text(name), float(_as_text(order))
     except (OSError, RuntimeError, KeyError, ValueError):
-        with reading(path) as archive:  # which says what is wrong with it
+        with reading(path) as archive:  # reports any fault
             return str(archive.attrs["test"]), float(archive.attrs.get("test_order", "inf"))
 
 
 def variables_if(
     path: Path, attributes: Mapping[str, str], names: Collection[str]
 ) -> xr.Dataset | None:
-    """Give a few variables of an archive of a test; None where an attribute has another text.
+    """Return a few variables of a test archive; None if an attribute has another text.
 
     Raises
     ------
@@ -223,7 +224,7 @@ def variables_if(
         with h5py.File(path, "r", locking=False) as file:
             if any(_as_text(file.attrs.get(key, "")) != text for key, text in attributes.items()):
                 return None
-            groups = (file.get(name) for name in GROUPS)  # a variable may have such a name
+            groups = (file.get(name) for name in GROUPS)  # a variable may have the name of a group
             places = [file, *(one for one in groups if isinstance(one, h5py.Group))]
             for place, name in product(places, names):
                 for stored in (name, f"{_BESIDE}{name}"):
@@ -231,23 +232,23 @@ def variables_if(
                     one = _Stored(place[stored].id) if is_there else None
                     if one is not None and one.dtype != _NO_VARIABLE:
                         found[name] = schema[name].dims, _values_of(one, schema[name])
-    except (KeyError, RuntimeError, ValueError) as error:  # of the library, where the disk fails
+    except (KeyError, RuntimeError, ValueError) as error:  # library errors on disk failure
         raise OSError(str(error)) from error
     return xr.Dataset(found)
 
 
 def _as_text(value: Any) -> str:
-    # a text beyond ASCII is kept as an array of one string
+    # a non-ASCII text is stored as an array with one string
     if isinstance(value, np.ndarray) and value.size == 1:
         value = value.item()
     return value.decode() if isinstance(value, bytes) else str(value)
 
 
 def _read_own(path: Path) -> xr.Dataset | None:
-    """Read a small archive of a test that this version wrote; None of any other.
+    """Read a small test archive written by this version; None for any other.
 
-    Dimensions and attributes of its variables are those of the schema, so that the file is not
-    asked for them: a fifth of the time.  Whatever is unusual is left to `open_archive`.
+    Dimensions and attributes of variables are taken from the schema instead of the file, which
+    takes a fifth of the time.  Unusual files are left to `open_archive`.
     """
     with suppress(OSError, RuntimeError, KeyError, ValueError, UnicodeError):
         refuse_no_file(path)
@@ -255,7 +256,7 @@ def _read_own(path: Path) -> xr.Dataset | None:
             attributes = {
                 name: _as_text(text) for name, text in file.attrs.items() if name != "_NCProperties"
             }
-            # products of a whole campaign are of no test
+            # products of a whole campaign have no test
             is_own = attributes.get("software_version") == __version__ and "test" in attributes
             if not is_own or attributes.get("schema_version") != SCHEMA_VERSION:
                 return None
@@ -264,7 +265,7 @@ def _read_own(path: Path) -> xr.Dataset | None:
                 return None
             if sum(one.n_bytes for one in held.values()) > LARGEST:
                 return None
-            # a dimension stands there as a variable without values where it has none
+            # a dimension without a variable is stored as a variable without values
             known = {name: one for name, one in held.items() if one.dtype != _NO_VARIABLE}
             schema = _schema_of_file(known)
             if schema not in (TEST_SCHEMA, STEPWISE_SCHEMA):
@@ -274,14 +275,14 @@ def _read_own(path: Path) -> xr.Dataset | None:
             if len(values) < len(known):
                 return None
             known.clear()
-            held.clear()  # or the file looks for each of them when it is closed
+            held.clear()  # otherwise the file searches for each of them on closing
         found = build_dataset(values, schema, attributes=attributes, is_stored=True)
         return found if _fault_of_form(found) is None else None
     return None
 
 
 class _Stored:
-    """A variable of a file, which is asked once for its shape and its type: both take long."""
+    """A variable in a file; shape and type are queried once, because both take long."""
 
     def __init__(self, held: h5py.h5d.DatasetID) -> None:
         self.held, self.shape, self._type = held, held.shape or (), held.get_type()
@@ -289,13 +290,13 @@ class _Stored:
 
     @cached_property
     def dtype(self) -> np.dtype[Any]:
-        """Of its values."""
+        """Type of its values."""
         found: np.dtype[Any] = self._type.dtype
         return found
 
 
 def _values_of(stored: _Stored, row: Quantity) -> NDArray[Any]:
-    """Read all values of a variable; `ValueError` where they are not of the type of its row."""
+    """Read all values of a variable; `ValueError` if their type is not that of its row."""
     values = np.empty(stored.shape, "S1" if row.is_text else row.dtype)
     if stored.dtype != values.dtype:
         raise ValueError(row.name)
@@ -308,22 +309,22 @@ def _values_of(stored: _Stored, row: Quantity) -> NDArray[Any]:
 
 @contextmanager
 def failing_reads(what: str) -> Iterator[None]:
-    """Turn errors of the netCDF library in a block into those of an archive.
+    """Convert netCDF library errors in a block to archive errors.
 
     Parameters
     ----------
     what : str
-        The file, or files, that are read in the block, for the message.
+        Name of the file or files read in the block, for the message.
 
     Raises
     ------
     ArchiveError
-        If the library fails; other errors are passed on as they are.
+        If the library fails; other errors are passed on.
 
     Notes
     -----
-    Values are read when they are asked for, so that a disk may fail long after a file was opened.
-    The library raises `RuntimeError`, `AttributeError` or `OSError` then, and names no file.
+    Values are read on demand, so that a disk may fail long after a file was opened. The library
+    then raises `RuntimeError`, `AttributeError` or `OSError` without the file name.
 
     Examples
     --------
@@ -347,28 +348,27 @@ def _words(error: Exception) -> str:
 
 
 def open_archive(path: Path | str, *, chunks: Chunks | None = None) -> xr.Dataset:
-    """Open an archive, root and groups as one; values are read when they are asked for.
+    """Open an archive with root and groups combined; values are read on demand.
 
     Parameters
     ----------
     path : pathlib.Path or str
-        A file that `write_archive` wrote.
+        A file written by `write_archive`.
     chunks : int or mapping of str to int or "auto", optional
-        Values of a chunk, by dimension; with them every variable is a Dask array, cut as it
-        is stored where nothing is said of a dimension.
+        Chunk size in values by dimension; every variable is then a Dask array, with stored chunks
+        for the dimensions not listed.
 
     Returns
     -------
     dataset : xarray.Dataset
-        Text decoded, elapsed time as numbers. To be closed, or used with ``with``.
+        Text decoded, elapsed time as numbers. Close it, or use it with ``with``.
 
     Raises
     ------
     ArchiveError
-        If there is no such file, it is not netCDF or damaged, or of another major version of the
-        schema.
+        If the file is missing, damaged or not netCDF, or has another major version of the schema.
     SettingsError
-        If Dask is wanted and not installed, or refuses the chunks.
+        If Dask is requested and not installed, or refuses the chunks.
     """
     path = Path(path)
     refuse_no_file(path)
@@ -379,7 +379,7 @@ def open_archive(path: Path | str, *, chunks: Chunks | None = None) -> xr.Datase
     except ArchiveError:
         raise
     except UnicodeEncodeError as error:
-        # a ValueError too, but of the name and not of the file
+        # a ValueError too, but about the name and not the file
         raise ArchiveError(
             f"{str(path)!a} cannot be given to the netCDF library",
             found=f"a name that {error.encoding} has no letters for",
@@ -387,7 +387,7 @@ def open_archive(path: Path | str, *, chunks: Chunks | None = None) -> xr.Datase
             hint="Set PYTHONUTF8=1, or take a locale of UTF-8, or rename the folder.",
         ) from error
     except (AttributeError, KeyError, OSError, RuntimeError, ValueError, TypeError) as error:
-        # a TypeError of a scale that is text
+        # a TypeError from a text as scale
         raise ArchiveError(
             f"{path} cannot be read as a netCDF file",
             found=_words(error),
@@ -402,13 +402,13 @@ def open_archive(path: Path | str, *, chunks: Chunks | None = None) -> xr.Datase
         raise
     if chunks is None:
         return dataset
-    # what is known to be an archive is opened again, so that a fault is one of the chunks
+    # the file is known to be an archive, so that a fault is one of the chunks
     dataset.close()
     return _open_in_chunks(path, chunks)
 
 
 def _refuse_schema(path: Path, attributes: Mapping[str, object]) -> None:
-    """Refuse what is of another major version, or of no schema; a later minor one adds alone."""
+    """Refuse another major version, or a file without a schema; minor versions only add."""
     name, version = (attributes.get(f"schema_{part}") for part in ("name", "version"))
     stated = _VERSION.fullmatch(version) if isinstance(version, str) else None
     is_ours = name in (None, SCHEMA_NAME)
@@ -433,7 +433,7 @@ def _refuse_schema(path: Path, attributes: Mapping[str, object]) -> None:
 
 
 def refuse_no_file(path: Path) -> None:
-    """Refuse what cannot be opened as a file; one end of a pipe waits for ever for the other."""
+    """Refuse what cannot be opened as a file; a pipe would wait forever for its other end."""
     if path.is_file():
         return
     if path.exists():
@@ -447,7 +447,7 @@ def refuse_no_file(path: Path) -> None:
 
 
 def _opened(path: Path, chunks: Chunks | None = None) -> xr.Dataset:
-    """All groups of a file as one dataset, variables in the order of its schema."""
+    """All groups of a file as one dataset, with variables in schema order."""
     groups = xr.open_groups(
         path,
         engine="netcdf4",
@@ -479,7 +479,7 @@ def _opened(path: Path, chunks: Chunks | None = None) -> xr.Dataset:
 
 
 def _label_of(name: Hashable, variable: xr.Variable) -> xr.Variable:
-    """Give the labels of a dimension as an index, and any other coordinate as it is."""
+    """Return the labels of a dimension as an index, and other coordinates unchanged."""
     if variable.dims != (name,):
         return variable
     return variable_of(
@@ -502,7 +502,7 @@ def _refuse(path: Path, fault: str | None) -> None:
 
 
 def _fault_stored(path: Path) -> str | None:
-    """Values that lie in other files, or are more than the file can hold."""
+    """Fault of values stored in other files, or larger than the file can hold."""
     with h5py.File(path, "r", locking=False) as file:
         return _fault_in_group(file.id, path.stat().st_size)
 
@@ -540,7 +540,7 @@ def _fault_in_group(
 
 
 def _fault_of_form(dataset: xr.Dataset) -> str | None:
-    """Variables and attributes of another kind than archives have them; no values are read."""
+    """Fault of variables and attributes of a wrong kind; no values are read."""
     for key in _TEXTS:
         if not isinstance(dataset.attrs.get(key, ""), str):
             return f"attribute {key} that is no text"
@@ -552,14 +552,14 @@ def _fault_of_form(dataset: xr.Dataset) -> str | None:
         return f"settings of {len(settings):,} characters"
     if settings and not _is_json_object(settings):
         return "settings that are no JSON object"
-    for label, index in dataset.indexes.items():  # in memory already
+    for label, index in dataset.indexes.items():  # already in memory
         values = index.to_numpy()
         if values.dtype.kind == "f" and not np.all(np.isfinite(values)):
             return f"coordinate {label} that is not finite"
     schema = _schema_of_file(dataset.dims)
     for name, variable in dataset.variables.items():
         row = schema.get(str(name))
-        if row is None:  # of another program, which may add to a file
+        if row is None:  # added to the file by another program
             continue
         if {"scale_factor", "add_offset"} & set(variable.encoding):
             return f"{name} that is packed"
@@ -578,7 +578,7 @@ def _is_json_object(text: str) -> bool:
 
 
 def _schema_of_file(dimensions: Container[Hashable]) -> Mapping[str, Quantity]:
-    """What a file may hold, by the dimension that its kind alone has."""
+    """Possible contents of a file, from a dimension unique to its kind."""
     for dimension, schema in _OF_CAMPAIGN.items():
         if dimension in dimensions:
             return schema
@@ -587,7 +587,7 @@ def _schema_of_file(dimensions: Container[Hashable]) -> Mapping[str, Quantity]:
 
 @contextmanager
 def _small_cache() -> Iterator[None]:
-    """Files that are opened meanwhile keep little of what is read; others are as they were."""
+    """Reduce the cache of files opened in the block; others are unaffected."""
     before = netCDF4.get_chunk_cache()
     netCDF4.set_chunk_cache(_CACHE)
     try:

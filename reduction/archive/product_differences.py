@@ -1,7 +1,7 @@
-"""What changed between two products: numbers, names, attributes, tables and tests.
+"""Compares two products: numbers, names, attributes, tables and tests.
 
-Files are walked by the netCDF library itself, and variables are found by their names in whatever
-group they stand: a comparison depends neither on the layout of an archive nor on what reads it.
+Files are read with the netCDF library directly, and variables are found by name in any group: a
+comparison depends neither on the layout of an archive nor on the code that reads it.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ MOVED = 0.5
 """Shift above which an answer has moved, in standard uncertainties."""
 
 RELATIVE = 1e-9
-"""Relative change above which a number has changed; below it is the rounding of another sum."""
+"""Relative change above which a number has changed; smaller ones are rounding in sums."""
 
 _OF_LARGEST = 1e-12
-"""The same over the largest number of a variable, for those that are nothing beside it."""
+"""The same relative to the largest number of a variable, for negligible values."""
 
 _UNCERTAINTY, _RANDOM = "_standard_uncertainty", "_random_standard_uncertainty"
 
@@ -44,28 +44,28 @@ Index = NDArray[np.intp]
 
 @dataclass(frozen=True)
 class Change:
-    """How much of one variable of a file, or column of a table, changed, and the worst of it.
+    """Extent of changes in one variable of a file, or column of a table, and the worst one.
 
     Parameters
     ----------
     file, variable : str
-        Where it stands; the file below the folder that was compared.
+        Location; the file is below the compared folder.
     kind : {"answer", "uncertainty", "number", "text"}
-        An answer has a standard uncertainty beside it; a number has none.
+        An answer has a standard uncertainty; a number has none.
     change : {"none", "changed", "came", "went", "shape"}
-        What the worst is; "came" and "went" where nothing else did worse, "shape" where rows
-        could not be matched.
+        Worst kind of change; "came" and "went" if nothing is worse, "shape" if rows could not be
+        matched.
     n, n_changed, n_moved, n_came, n_went : int
-        Values that were compared, that differ, that moved, and of these those that are on one
-        side only. A series that shares one uncertainty is one value.
+        Numbers of values compared, different and moved, and of those on one side only. A series
+        with one common uncertainty is one value.
     where : dict of str to str
-        Labels of the worst, by dimension.
+        Labels of the worst change, by dimension.
     before, after : float, int, str or None
-        None where there is no number; lengths in words where the shape differs.
+        None if there is no number; lengths in words if the shape differs.
     unit : str
-        Of both.
+        Unit of both values.
     standard_uncertainty, shift, relative : float or None
-        Of the worst: its change over the uncertainty, and over the number before.
+        Of the worst change: relative to the uncertainty, and to the number before.
     """
 
     file: str
@@ -87,7 +87,7 @@ class Change:
 
 
 def _uncertainty_name(name: str) -> str:
-    """Name under which the standard uncertainty of a quantity stands; its own, where it is one.
+    """Name of the standard uncertainty of a quantity; of an uncertainty, its own name.
 
     Examples
     --------
@@ -98,12 +98,12 @@ def _uncertainty_name(name: str) -> str:
 
 
 def _is_uncertainty(name: str) -> bool:
-    """Whether a name is that of a whole standard uncertainty, and not of a part of one."""
+    """Whether a name is that of a total standard uncertainty, not of a part."""
     return name.endswith(_UNCERTAINTY) and not name.endswith(_RANDOM)
 
 
 def _kind_of(name: str, *, has_uncertainty: bool) -> Kind:
-    """What numbers of a name are."""
+    """Kind of the numbers with a name."""
     if _is_uncertainty(name):
         return "uncertainty"
     return "answer" if has_uncertainty and not name.endswith(_PARTS) else "number"
@@ -116,7 +116,7 @@ def _shifts_between(
     *,
     is_exact: bool = False,
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_], NDArray[np.float64]]:
-    """Which numbers changed, which moved, and how far.
+    """Flags of the numbers that changed and moved, and their shifts.
 
     Examples
     --------
@@ -150,7 +150,7 @@ def _worst_change(
     is_exact: bool,
     is_read: bool,
 ) -> Change:
-    """Count what changed of a variable, and keep the worst."""
+    """Count the changes of a variable, and keep the worst."""
     shared: tuple[int, ...] = ()
     if unchanged.kind == "text":
         changed = np.asarray(before.astype(str) != after.astype(str))
@@ -176,7 +176,7 @@ def _worst_change(
     if not n_changed:
         return replace(unchanged, n=n)
     score = np.abs(np.where(np.isfinite(shift), shift, relative))
-    # what was zero, or is on one side alone, is no worse than what can be told in numbers
+    # changes from zero, or values on one side only, rank below numeric changes
     score = np.where(np.isfinite(score), score, 0.0)
     score = np.where(moved if n_moved else changed, score, -1.0)
     at = tuple(int(place) for place in np.unravel_index(np.argmax(score), score.shape))
@@ -199,13 +199,13 @@ def _worst_change(
 
 
 def _finite_or_none(value: Any) -> Any:
-    """A value as JSON has it: None where there is no finite number."""
+    """A value for JSON: None unless it is a finite number."""
     one = value.item() if hasattr(value, "item") else value
     return None if isinstance(one, float) and not np.isfinite(one) else one
 
 
 def _pair_by_name(before: Iterable[str], after: Iterable[str]) -> dict[str, str]:
-    """Pair paths of variables by their last part, in whatever group they stand.
+    """Pair paths of variables by their last part, in any group.
 
     Examples
     --------
@@ -231,7 +231,7 @@ def _pair_by_name(before: Iterable[str], after: Iterable[str]) -> dict[str, str]
 
 
 def _common_end(left: str, right: str) -> int:
-    """How many parts of two paths agree, from their ends."""
+    """Number of parts that agree at the ends of two paths."""
     if left == right:
         return left.count("/") + 2
     parts = zip(reversed(left.split("/")), reversed(right.split("/")), strict=False)
@@ -240,7 +240,7 @@ def _common_end(left: str, right: str) -> int:
 
 @dataclass(frozen=True)
 class _Rows:
-    """How the rows of one side go with those of the other."""
+    """Assignment of rows between the two sides."""
 
     places: tuple[Index | None, Index | None]
     labels: list[NDArray[Any]]
@@ -248,13 +248,13 @@ class _Rows:
     added: list[str] = field(default_factory=list)
 
     def words(self, matched: int) -> list[str]:
-        """Labels of a matched row; its number where it has none."""
+        """Labels of a matched row; its number if it has none."""
         place = matched if self.places[0] is None else int(self.places[0][matched])
         return [_words([one], place) for one in self.labels] or [str(place + 1)]
 
 
 def _rows_by_labels(before: list[NDArray[Any]], after: list[NDArray[Any]]) -> _Rows:
-    """Match rows by labels; of one that occurs again the first goes with the first.
+    """Match rows by labels; repeated labels are matched in order.
 
     Examples
     --------
@@ -282,7 +282,7 @@ def _rows_by_labels(before: list[NDArray[Any]], after: list[NDArray[Any]]) -> _R
 
 
 def _have_own_labels(sides: Iterable[Sequence[NDArray[Any]]]) -> bool:
-    """Whether no two rows of a side have one label."""
+    """Whether all rows on each side have different labels."""
     return all(
         len({_words(side, place) for place in range(side[0].shape[-1])}) == side[0].shape[-1]
         for side in sides
@@ -290,7 +290,7 @@ def _have_own_labels(sides: Iterable[Sequence[NDArray[Any]]]) -> bool:
 
 
 def _words(labels: Sequence[NDArray[Any]], place: int) -> str:
-    """Labels of a row in words; twelve digits, so that the last bit of a bin makes no other bin."""
+    """Labels of a row in words; twelve digits, so that the last bit does not distinguish bins."""
     return ", ".join(
         f"{one:.12g}" if isinstance(one, float) else str(one)
         for label in labels
@@ -310,36 +310,36 @@ def _counted(labels: Iterable[str]) -> list[tuple[str, int]]:
 _LABELS = frozenset(
     "specimen test name law hold number numerator denominator source of cycle clock run".split()
 )
-"""Last words of variables that say which row it is, where no coordinate of a dimension does."""
+"""Last words of variables that identify a row if no coordinate of a dimension does."""
 
 _GRIDS = frozenset("bin grid level time radius".split())
-"""Last words of columns whose numbers are chosen and not measured."""
+"""Last words of columns with chosen rather than measured numbers."""
 
 _RUNNING = frozenset(["hold", "uncertainty_component"])
-"""Columns that number the rows of a file, and shift where a specimen is added."""
+"""Columns that number the rows of a file, and shift if a specimen is added."""
 
 _APART = ("history", "software_version")
 
 
 @dataclass
 class Differences:
-    """What changed between two products, in lists of plain objects.
+    """Changes between two products, in lists of plain objects.
 
     Parameters
     ----------
     is_exact : bool
-        Whether a number moves with its last bit.
+        Whether a difference in the last bit counts.
     archived, tabled : list of Change
-        One a variable of an archive, one a column of a table, changed or not.
+        One per variable of an archive and per column of a table, changed or not.
     added, removed : list of dict
         ``kind`` (campaign, archive, table, variable, column, rows), ``file`` and ``name``.
     regrouped : list of dict
-        Variables that stand in another group now, which is no change.
+        Variables now in another group, which is not a change.
     attributes, history : list of dict
-        With ``file``, ``of`` (a variable or group), ``attribute``, ``before`` and ``after``; a
-        setting by its key. History and version of the software stand apart.
+        Records of ``file``, ``of`` (a variable or group), ``attribute``, ``before`` and ``after``;
+        settings by key. History and software version are separate.
     tests : list of dict
-        Rows of status.csv that differ in more than the time they took.
+        Rows of status.csv that differ in more than run time.
     """
 
     is_exact: bool
@@ -354,7 +354,7 @@ class Differences:
 
     @property
     def changes(self) -> list[Change]:
-        """Every quantity once: those of the archives, and what the tables alone say."""
+        """Every quantity once: those of the archives, and those only in tables."""
         stored = {one.variable for one in self.archived}
         told = {one.variable for one in self.archived if one.n_changed}
         return self.archived + [
@@ -366,7 +366,7 @@ class Differences:
 
     @property
     def is_moved(self) -> bool:
-        """An answer moved, or a test that was reduced fails now."""
+        """Whether an answer moved, or a test reduced before now fails."""
         return any(one.n_moved for one in self.archived + self.tabled) or any(
             one["fails_now"] for one in self.tests
         )
@@ -374,7 +374,7 @@ class Differences:
     def tell_names(
         self, kind: str, file: str, before: Iterable[str], after: Iterable[str]
     ) -> list[str]:
-        """Names on both sides, in the order of the first; the others are added or removed."""
+        """Names on both sides, in the order of the first; record others as added or removed."""
         sides = list(before), list(after)
         for told, here, there in ((self.removed, *sides), (self.added, *sides[::-1])):
             others = set(there)
@@ -383,7 +383,7 @@ class Differences:
         return [name for name in sides[0] if name in common]
 
     def tell_rows(self, file: str, name: str, rows: _Rows | None) -> None:
-        """Rows of a dimension or table that one side alone has; ten of them by their labels."""
+        """Record the rows of a dimension or table on one side only, ten of them by their labels."""
         if rows is not None:
             for told, labels in ((self.removed, rows.removed), (self.added, rows.added)):
                 if labels:
@@ -422,7 +422,7 @@ def differences_between(before: Path, after: Path, *, is_exact: bool = False) ->
 
 
 def _compare_processed(found: Differences, before: Path, after: Path) -> None:
-    """Compare the two campaigns that there are, or those of one name."""
+    """Compare the only campaign on each side, or campaigns of the same name."""
     sides = _campaigns(before), _campaigns(after)
     if all(len(side) == 1 for side in sides):
         (one,), (other,) = (side.values() for side in sides)
@@ -464,7 +464,7 @@ def _compare_folders(found: Differences, place: str, before: Path, after: Path) 
 def _compare_status(
     found: Differences, place: str, before: pd.DataFrame, after: pd.DataFrame
 ) -> None:
-    """Compare what became of each test; how long it took is no matter."""
+    """Compare the status of each test, ignoring run time."""
     left, right = (
         {row.pop("test", ""): row for row in side.to_dict("records")}
         for side in (one.drop(columns="seconds", errors="ignore") for one in (before, after))
@@ -488,7 +488,7 @@ def _compare_status(
 
 
 class _Archive:
-    """An open file: groups, variables and dimensions by their paths, whatever its layout is."""
+    """An open file: groups, variables and dimensions by path, whatever its layout."""
 
     def __init__(self, path: Path, dataset: netCDF4.Dataset) -> None:
         self.path = path
@@ -501,12 +501,12 @@ class _Archive:
                 key = f"{place}/{name}"
                 self.variables[key] = variable
                 dims = [f"{one.group().path.rstrip('/')}/{one.name}" for one in variable.get_dims()]
-                # the last one of a text is that of its letters
+                # the last dimension of a text counts its characters
                 self.dims[key] = dims[:-1] if variable.dtype == "S1" else dims
                 self._of_name.setdefault(name, []).append(key)
 
     def read(self, key: str) -> NDArray[Any]:
-        """Values as numbers or as text; a number that was never written is NaN."""
+        """Values as numbers or text; numbers never written are NaN."""
         variable = self.variables[key]
         with _unreadable(self.path, "netCDF"):
             variable.set_auto_maskandscale(False)
@@ -526,11 +526,11 @@ class _Archive:
         return np.array(texts, dtype=str).reshape(values.shape)
 
     def is_of(self, key: str, kinds: str) -> bool:
-        """Whether values are of these kinds of numpy; text, and what it does not know, is "O"."""
+        """Whether values are of these numpy kinds; text and unknown types are "O"."""
         return getattr(self.variables[key].dtype, "kind", "O") in kinds
 
     def uncertainty_of(self, key: str) -> str | None:
-        """Path of the standard uncertainty of a variable; in its own group first."""
+        """Path of the standard uncertainty of a variable, preferably in the same group."""
         place, _, name = key.rpartition("/")
         stated = str(getattr(self.variables[key], "ancillary_variables", "")).split()
         for one in (_uncertainty_name(name), *filter(_is_uncertainty, stated)):
@@ -541,7 +541,7 @@ class _Archive:
 
     @cached_property
     def labels(self) -> dict[str, dict[str, dict[str, str]]]:
-        """Paths of what says which row it is: by dimension, by how well, by name."""
+        """Paths of row labels: by dimension, by rank, by name."""
         auxiliary = {
             name
             for variable in self.variables.values()
@@ -568,14 +568,14 @@ class _Archive:
         return found
 
     def size(self, dim: str) -> int:
-        """Rows of a dimension."""
+        """Number of rows of a dimension."""
         place, _, name = dim.rpartition("/")
         return int(self.groups[place].dimensions[name].size)
 
 
 @contextmanager
 def _unreadable(path: Path, kind: str) -> Iterator[None]:
-    """Tell of the file what a library says of it."""
+    """Add the file name to library errors."""
     try:
         yield
     except (AttributeError, OSError, RuntimeError, ValueError) as error:
@@ -634,7 +634,7 @@ def _compare_archives(found: Differences, file: str, before: Path, after: Path) 
 
 
 def _match_dimensions(before: _Archive, after: _Archive, pair: tuple[str, str]) -> _Rows | None:
-    """Rows of a dimension by their labels, else by their places; None where neither will do."""
+    """Match rows of a dimension by labels, else by position; None if neither is possible."""
     ranks = before.labels.get(pair[0], {}), after.labels.get(pair[1], {})
     words: list[NDArray[Any]] = []
     for rank in ("coordinate", "auxiliary", "named", "number"):
@@ -701,7 +701,7 @@ def _compare_variables(
 
 
 def _other_shape(one: Change, shapes: Sequence[tuple[int, ...]], is_exact: bool) -> Change:
-    """An answer that cannot be held against the other one counts as moved."""
+    """An answer that cannot be compared counts as moved."""
     told = [" x ".join(map(str, shape)) or "one value" for shape in shapes]
     is_moved = one.kind != "text" and (is_exact or one.kind != "number")
     return replace(
@@ -710,7 +710,7 @@ def _other_shape(one: Change, shapes: Sequence[tuple[int, ...]], is_exact: bool)
 
 
 def _taken(values: NDArray[Any], places: Sequence[Index | None]) -> NDArray[Any]:
-    """Rows that were matched, along each dimension."""
+    """Matched rows along each dimension."""
     for axis, one in enumerate(places):
         if one is not None:
             values = np.take(values, one, axis=axis)
@@ -734,7 +734,7 @@ def _compare_attributes(
             one_side, other_side = left.get(key), right.get(key)
             if repr(one_side) == repr(other_side):
                 continue
-            if key == "values_sha256":  # what the values say themselves
+            if key == "values_sha256":  # compared through the values themselves
                 continue
             if key == "history":
                 one_side, other_side = (
@@ -750,7 +750,7 @@ def _compare_attributes(
 
 
 def _attributes(one: netCDF4.Dataset | netCDF4.Variable[Any]) -> dict[str, Any]:
-    """By name, and the kind of the values of a variable; a JSON object key by key."""
+    """Attributes by name with the type of a variable; JSON objects key by key."""
     found = {"type": str(one.dtype)} if isinstance(one, netCDF4.Variable) else {}
     for name in one.ncattrs():
         value = one.getncattr(name)
@@ -779,7 +779,7 @@ def _read_table(path: Path) -> pd.DataFrame:
 
 
 def _compare_tables(found: Differences, file: str, before: Path, after: Path) -> None:
-    """Compare rows by their first columns, numbers by the column of their uncertainty."""
+    """Compare rows by their first columns, and numbers by their uncertainty column."""
     frames = [_read_table(path) for path in (before, after)]
     columns = found.tell_names("column", file, *(frame.columns for frame in frames))
     if not columns:
@@ -822,7 +822,7 @@ def _compare_tables(found: Differences, file: str, before: Path, after: Path) ->
 
 
 def _cells(column: pd.Series[Any]) -> NDArray[Any]:
-    """Numbers, to their last bit, where every cell that is not empty has one; else text."""
+    """Numbers, exactly, if all non-empty cells are numeric; otherwise text."""
     texts = column.tolist()
     try:
         return np.array([float(one) if one else np.nan for one in texts], dtype=float)
@@ -835,7 +835,7 @@ def _key_columns(
     frames: Sequence[pd.DataFrame],
     sides: Sequence[Mapping[str, NDArray[Any]]],
 ) -> list[str]:
-    """The first columns that together say which row it is; none where they do not."""
+    """The fewest first columns that identify a row; empty if there are none."""
     for skipped in (_RUNNING, frozenset[str]()):
         keys: list[str] = []
         for column in columns:
@@ -852,14 +852,14 @@ def _key_columns(
 
 
 def _is_measured(cells: NDArray[Any]) -> bool:
-    """Numbers that are no whole ones."""
+    """Whether a column has non-integer numbers."""
     return cells.dtype.kind == "f" and bool(np.any(cells[np.isfinite(cells)] % 1))
 
 
 def _match_tables(
     keys: Sequence[str], lengths: Sequence[int], sides: Sequence[Mapping[str, NDArray[Any]]]
 ) -> _Rows | None:
-    """Rows by their keys, else by their places; None where neither will do."""
+    """Match rows by keys, else by position; None if neither is possible."""
     is_as_long = lengths[0] == lengths[1]
     by_place = _Rows((None, None), []) if is_as_long else None
     if not keys:
@@ -868,6 +868,6 @@ def _match_tables(
     rows = _rows_by_labels(*labels)
     if rows.places[0] is None:
         return rows
-    # whole numbers alone may be answers themselves, and would be taken for other rows
+    # integer keys alone may be answers, which would be taken for different rows
     is_sure = not is_as_long or any(cells.dtype.kind == "U" for cells in labels[0])
     return rows if rows.places[0].size and is_sure else by_place

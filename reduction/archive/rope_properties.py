@@ -1,4 +1,4 @@
-"""The archive of change-in-length properties, and the rope steps it is made from."""
+"""Archive of change-in-length properties, and the rope steps used for it."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def properties_to_dataset(
     *,
     origin: Origin,
 ) -> xr.Dataset:
-    """Bring properties into the form of the archive; no file is touched."""
+    """Convert properties to the archive dataset, without writing a file."""
     listed = [(specimen, one) for specimen, own in found.items() for one in own]
     if not listed:
         raise ArchiveError("there are no properties to store", needed="one or more")
@@ -114,10 +114,10 @@ def _on_axis(
     component: Sequence[Sequence[Component]],
     contribution: Sequence[Floats],
 ) -> Floats:
-    """Contributions to each property on the errors of all, shape (n_components, n_properties)."""
+    """Contributions to each property from all errors, shape (n_components, n_properties)."""
     rows = np.zeros((len(axis), len(contribution)))
     for place, (own, amounts) in enumerate(zip(component, contribution, strict=True)):
-        # one without a number has none
+        # a property without a value has no contributions
         if amounts.size:
             rows[[axis.index(one) for one in own], place] = amounts
     return rows
@@ -126,14 +126,14 @@ def _on_axis(
 _HELD = ("quasi-static stiffness", "creep")
 
 CHANGES_LENGTH = ("bedding-in", "dynamic stiffness", *_HELD)
-"""Steps that a change-in-length property can come from."""
+"""Steps that can give a change-in-length property."""
 
 _RANDOM = "_random_standard_uncertainty"
 
 
 @dataclass(frozen=True)
 class _ArchivedStep:
-    """A step of a programme, and the shared errors that its contributions are of, in order."""
+    """A step of a programme, and the shared errors of its contributions, in order."""
 
     step: StepOfProgramme
     component: tuple[Component, ...]
@@ -145,7 +145,7 @@ def step_of_archive(
     instruments: InstrumentErrors | None = None,
     model: StrainModel | None = None,
 ) -> _ArchivedStep:
-    """What an archive keeps of one specimen of a step."""
+    """Data in an archive on one specimen of a step."""
     names = dataset.variables["specimen"].values.astype(str).tolist()
     if specimen not in names:
         raise ArchiveError(f"the archive has no specimen '{specimen}'", found=", ".join(names))
@@ -178,7 +178,7 @@ class _Reader:
 
     @cached_property
     def component(self) -> tuple[Component, ...]:
-        """Those of the archive, and what is stated beyond them."""
+        """Errors in the archive, followed by other stated ones."""
         found = set(self.stored)
         if self.instruments is not None:
             found |= set(self.field_at(np.zeros(1), np.zeros(1))[0])
@@ -216,20 +216,20 @@ class _Reader:
     def field_at(
         self, strain: Floats, tension: Floats
     ) -> tuple[tuple[Component, ...], Floats, Floats]:
-        """What is stated of the instruments does to points: errors, strain and tension."""
+        """Stated instrument errors at points: components, effects on strain and tension."""
         if self.instruments is None or self.model is None:
             return (), np.empty((0, strain.size)), np.empty((0, strain.size))
         field = error_field(self.instruments, self.model, strain=strain, tension=tension)
         return field.component, field.strain, field.tension
 
     def points(self, strain: Floats, tension: Floats) -> tuple[Floats, Floats]:
-        """Contributions to the strain and the tension of points, shape (n_components, n_points)."""
+        """Contributions to strain and tension at points, shape (n_components, n_points)."""
         component, of_strain, of_tension = self.field_at(strain, tension)
         rows = np.zeros((2, len(self.component), strain.size))
         for one, *moved in zip(component, of_strain, of_tension, strict=True):
             rows[:, self.component.index(one)] = moved
             if one.source == "temperature" and self.is_load_kept and self.instruments is not None:
-                # a stiffer rope stretches less where the machine sets the load
+                # under load control a stiffer rope stretches less
                 rows[:, self.component.index(one)] = (
                     -self.instruments.stiffness * strain,
                     0 * tension,
@@ -242,7 +242,7 @@ def _strength(instruments: InstrumentErrors) -> Component:
 
 
 def _first_rise(read: _Reader) -> FirstRise | None:
-    """None where fewer than two strains have a tension."""
+    """Curve of the first rise; None if fewer than two strains have a tension."""
     dataset, row = read.dataset, read.row
     name = "branch_tension_first_loading"
     if name not in dataset:
@@ -264,7 +264,7 @@ def _first_rise(read: _Reader) -> FirstRise | None:
 
 
 def _first_peak(dataset: xr.Dataset, row: int) -> float:
-    """Greatest strain until the first cycle is over: what lies beyond is of later cycles."""
+    """Maximum strain up to the end of the first cycle; larger ones belong to later cycles."""
     if "cycle_last_sample" not in dataset:
         return float("inf")
     stop = int(dataset.variables["cycle_last_sample"].values[0]) + 1
@@ -292,7 +292,7 @@ def _bedding(read: _Reader) -> BeddingCycles | None:
 def _level(read: _Reader) -> CyclicLevel | None:
     if "dynamic_stiffness" not in read.dataset:
         return None
-    # the mean of so many cycles
+    # mean over this number of cycles
     cycles = read.value("dynamic_cycles") if "dynamic_cycles" in read.dataset else np.inf
     return CyclicLevel(
         read.number("dynamic_stiffness", degrees_of_freedom=max(cycles - 1, 1.0)),
@@ -329,7 +329,7 @@ def _pair(read: _Reader, row: int) -> PairOfHolds:
 
 
 def _held(read: _Reader, name: str, row: int) -> StepNumber:
-    """A tension that the machine keeps: the temperature of the rope is in its strain alone."""
+    """A tension kept by the machine: rope temperature affects only the strain."""
     found = read.number(name, row)
     is_kept = np.array([one.source != "temperature" for one in read.component], dtype=bool)
     return replace(found, contribution=np.where(is_kept, found.contribution, 0.0))
@@ -341,7 +341,7 @@ def _known(dataset: xr.Dataset, name: str, row: int) -> Floats:
 
 
 def _holds(read: _Reader, specimen: str) -> tuple[HeldTension, ...]:
-    """Holds of a step at which the machine kept the tension."""
+    """Holds of a step at constant tension."""
     dataset = read.dataset
     step = str(dataset.variables["programme_step"].values) if "programme_step" in dataset else ""
     if step not in _HELD or "hold_specimen" not in dataset:

@@ -1,4 +1,4 @@
-"""What memory has no room for, put on disk until it is read again."""
+"""Data on disk that do not fit in memory, until they are read again."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ from reduction.record.samples import scratch_folder
 
 
 class ScratchFile:
-    """Contents one behind the other on disk, gone with the object; no file until there are any."""
+    """Data stored one after another on disk, deleted with the object; created on first use."""
 
     def __init__(self) -> None:
         self._file: FileIO | None = None
         self.n_bytes = 0
 
     def __del__(self) -> None:
-        """Give the disk back."""
+        """Release the disk space."""
         if self._file is not None:
             self._file.close()
 
     def put(self, content: bytes) -> slice:
-        """Keep a content and give its place; `OSError` where the disk has no room for it."""
+        """Store data and return their position; `OSError` if the disk has no room."""
         if self._file is None:
             self._file = TemporaryFile(buffering=0, dir=scratch_folder())
         self._file.seek(self.n_bytes)
@@ -34,7 +34,7 @@ class ScratchFile:
         return place
 
     def get(self, place: slice) -> bytes:
-        """Return the content at a place."""
+        """Return the data at a position."""
         if self._file is None:
             return b""
         self._file.seek(place.start)

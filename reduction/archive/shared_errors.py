@@ -1,4 +1,4 @@
-"""Errors that a test shares with others, as its archive holds them."""
+"""Errors shared between tests, as stored in their archives."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ from reduction.record.notes import Note, note
 from reduction.record.samples import like_storage, release_pages
 
 FREEDOM = "uncertainty_source_degrees_of_freedom"
-"""Of each shared error; there where one of them is from a few readings."""
+"""Degrees of freedom of each shared error; present if any is based on a few readings."""
 
 SHARED: dict[str, tuple[str, ...]] = {
     row.name: row.contribution_dims
     for row in OF_TEST
     if row.shares_errors and "sample" not in row.dims
 }
-"""Quantities whose contributions are kept, with their dimensions."""
+"""Quantities with stored contributions, with their dimensions."""
 
 SHARED_OF_CHANNELS: dict[str, tuple[str, ...]] = {
     row.name: row.contribution_dims for row in OF_TEST if row.shares_errors and "sample" in row.dims
@@ -44,9 +44,9 @@ SHARED_OF_CHANNELS: dict[str, tuple[str, ...]] = {
 SHARED_OF_STEPS: dict[str, tuple[str, ...]] = {
     row.name: row.contribution_dims for row in IN_PLACE_OF_RECORD if row.shares_errors
 }
-"""Of a stepwise test alone: in a record it is of each cycle."""
+"""Only for a stepwise test: in a record it belongs to each cycle."""
 
-# the curve of one cycle has the shared error of the mean
+# the curve of one cycle has the shared error of the mean curve
 _ALIKE = {"tangent_modulus_by_cycle": "tangent_modulus"}
 
 
@@ -56,7 +56,7 @@ def with_shared(
     shared_uncertainty_of_cycles: dict[str, Floats],
     random: Values | None = None,
 ) -> Values:
-    """Put the shared part of every uncertainty beside its random part, and both together."""
+    """Store the shared and random parts of every uncertainty, and the combined value."""
     known = SHARED | SHARED_OF_CHANNELS | SHARED_OF_STEPS
     homeless = sorted(set(contributions.values) - set(known)) if contributions else []
     if homeless:
@@ -75,14 +75,14 @@ def with_shared(
         return found
     for name, rows in contributions.values.items():
         if name not in values:
-            continue  # of a stage that this test has not
+            continue  # from a stage absent in this test
         if name in SHARED_OF_CHANNELS:
             _combine_channel(found, name, rows)
             continue
         if random is not None and name in random:
             found[f"{name}_standard_uncertainty"] = random[name]
         found[f"{name}_random_standard_uncertainty"] = _combine(found, name, rows)
-        # where there is no number, nothing contributes to it
+        # without a number there are no contributions
         found[f"{name}_uncertainty_contribution"] = np.where(np.isnan(values[name]), np.nan, rows)
     for name, mean in _ALIKE.items():
         if name in values and mean in contributions.values:
@@ -92,7 +92,7 @@ def with_shared(
 
 
 def component_values(component: Sequence[Component]) -> Values:
-    """Return the axis of the shared errors, and what each of them is."""
+    """Return the axis of the shared errors, with their descriptions."""
     freedom = np.array([one.degrees_of_freedom for one in component], dtype=np.float64)
     return {
         COMPONENT: np.arange(1, len(component) + 1),
@@ -103,7 +103,7 @@ def component_values(component: Sequence[Component]) -> Values:
 
 
 def shared_contributions(archive: xr.Dataset, name: str, *place: int) -> dict[Component, float]:
-    """What each shared error adds to one number of an archive; empty where nothing is known."""
+    """Contribution of each shared error to one number of an archive; empty if unknown."""
     rows = stored(archive, f"{name}_uncertainty_contribution")
     if rows is None:
         return {}
@@ -117,7 +117,7 @@ def shared_contributions(archive: xr.Dataset, name: str, *place: int) -> dict[Co
 
 
 def components_of(archive: xr.Dataset, experiment: int | None = None) -> list[Component]:
-    """Every shared error of an archive, or of one of its experiments, in order."""
+    """All shared errors of an archive, or of one of its experiments, in order."""
     names = ("uncertainty_source", "uncertainty_source_of", "uncertainty_source_number")
     columns = [archive.variables[name].values for name in names]
     own = columns if experiment is None else [column[experiment] for column in columns]
@@ -125,7 +125,7 @@ def components_of(archive: xr.Dataset, experiment: int | None = None) -> list[Co
     known = np.full(len(own[0]), np.inf)
     if kept is not None:
         known = kept.values if experiment is None else kept.values[experiment]
-        # an experiment with fewer errors than another is filled up
+        # an experiment with fewer errors than another is padded
         known = np.where(np.isnan(known), np.inf, known)
     return [
         Component(str(source), str(of), int(number), float(freedom))
@@ -134,7 +134,7 @@ def components_of(archive: xr.Dataset, experiment: int | None = None) -> list[Co
 
 
 def _combine(values: Values, name: str, rows: Floats) -> Floats:
-    """Make the uncertainty of a quantity the combined one; return its random part."""
+    """Replace the uncertainty of a quantity by the combined one; return its random part."""
     key = f"{name}_standard_uncertainty"
     if key not in values:
         return np.full(np.shape(values.get(name, np.nan)), np.nan)
@@ -145,10 +145,10 @@ def _combine(values: Values, name: str, rows: Floats) -> Floats:
 
 
 def _combine_channel(values: Values, name: str, rows: Floats) -> None:
-    """Put both parts of a channel's uncertainty side by side: of a reading, of all samples."""
+    """Store both parts of a channel's uncertainty: for single readings, and for all samples."""
     key = f"{name}_standard_uncertainty"
     reading = np.asarray(values.get(key, np.full(rows.shape[1:], np.nan)), dtype=np.float64)
-    # what is not stated of a reading counts as zero where something else is stated
+    # an unstated error of a reading counts as zero if another error is stated
     random = np.where(np.isnan(reading) & np.any(rows != 0, axis=0), 0.0, reading)
     values[f"{name}_random_standard_uncertainty"] = random
     values[f"{name}_uncertainty_contribution"] = rows
@@ -156,7 +156,7 @@ def _combine_channel(values: Values, name: str, rows: Floats) -> None:
 
 
 def stated_errors_of(archive: xr.Dataset) -> StatedErrors:
-    """Standard uncertainties with which a test was reduced."""
+    """Stated standard uncertainties in the reduction of a test."""
     settings = json.loads(str(archive.attrs.get("settings") or "{}"))
     kept = settings.get("uncertainty") or {}
     known: dict[str, Any] = {}
@@ -194,9 +194,9 @@ _OF_STRAIN = frozenset(
         "machine_compliance",
     }
 )
-"""Sources that move a point of the curve along the axis of strain alone."""
+"""Sources that move a point of the curve only along the strain axis."""
 
-# the curve, the modulus that its errors of strain were carried with, and the axis of both
+# the curve, the modulus used to propagate its strain errors, and their axis
 _CURVES = (
     ("branch_tension", "tangent_modulus_untrimmed", "strain_bin"),
     ("branch_tension_first_loading", "tangent_modulus_first_loading", "first_loading_strain_bin"),
@@ -205,11 +205,11 @@ _CURVES = (
 _OF_CURVE_ALONE = (
     "position_offset", "lag", "stiffness", "attached_mass", "linear_density", "machine_compliance",
 )  # fmt: skip
-"""What may be stated of a test that only its curve carries: no scale, no zero of the load."""
+"""Possible statements that affect only the curve: neither scales nor the zero of the load."""
 
 
 def curve_errors_of(archive: xr.Dataset, place: int) -> tuple[SharedErrors, tuple[Note, ...]]:
-    """Errors that all samples share, at the bins of the curve of one specimen."""
+    """Errors shared by all samples, at the bins of the curve of one specimen."""
     for curve, modulus, axis in _CURVES:
         rows = stored(archive, f"{curve}_uncertainty_contribution")
         if rows is None or modulus not in archive:
@@ -238,7 +238,7 @@ def _errors(
     known = np.where(there, rows, np.nan)
     for own, other in ((0, 1), (1, 0)):
         if not there[own].any():
-            # a first rise is alone; on the way back a lag has the other sign
+            # the first rise has one branch; a lag has the opposite sign on the way back
             way = np.array([-1.0 if component[k].source == "lag" else 1.0 for k in kept])
             there[own], tension[own], slope[own] = there[other], tension[other], slope[other]
             known[:, own] = way[:, None] * known[:, other]
@@ -254,10 +254,10 @@ def _errors(
 
 
 def _scales_and_zero(archive: xr.Dataset, place: int, stated: StatedErrors) -> SharedErrors:
-    """Scales of load and strain and zero of the load, which need no curve to be known.
+    """Scales of load and strain and zero of the load, which do not need a curve.
 
-    A gauge length and the scale of the position it is compared with scale every strain; nothing
-    where strain is not over one.
+    A gauge length, and the scale of the position compared with it, scale every strain; not applied
+    to strain without a gauge length.
     """
     gauge = _number(archive, "strain_gauge_length", place)
     spread = _number(archive, "strain_gauge_length_standard_uncertainty", place)
@@ -270,7 +270,7 @@ def _scales_and_zero(archive: xr.Dataset, place: int, stated: StatedErrors) -> S
 
 
 def _number(archive: xr.Dataset, name: str, place: int) -> float:
-    """A number of one specimen, or of all; NaN where it is not there."""
+    """A number for one specimen, or for all; NaN if absent."""
     if name not in archive:
         return float("nan")
     return float(np.broadcast_to(archive.variables[name].values, archive.sizes["specimen"])[place])

@@ -1,4 +1,4 @@
-"""The archive of response surfaces: written, and read back."""
+"""Writes and reads the archive of response surfaces."""
 
 from __future__ import annotations
 
@@ -44,19 +44,19 @@ from reduction.uncertainty.surface_errors import with_shared_at_points
 
 
 def effect_values(effects: ScreeningEffects, response_names: Sequence[str]) -> Values:
-    """Return the effects of the factors and then of the dummies, which are not tested.
+    """Return the effects of the factors, followed by those of the dummies without a test.
 
     Parameters
     ----------
     effects : ScreeningEffects
-        Of the responses.
+        Effects on the responses.
     response_names : sequence of str
-        In the order of the effects.
+        Names in the order of the effects.
 
     Returns
     -------
     values : dict of str to ndarray
-        Names of `reduction.quantities.names`.
+        Values by names of `reduction.quantities.names`.
     """
     values: Values = {
         "effect_error_from": np.array(effects.error_from),
@@ -86,7 +86,7 @@ def effect_values(effects: ScreeningEffects, response_names: Sequence[str]) -> V
 
 
 def _half_normal_quantile(effects: Floats) -> Floats:
-    """Quantile of each effect in its own place; NaN where a response has none."""
+    """Half-normal quantile of each effect in its own column; NaN if a response has none."""
     points = half_normal_coordinates(effects)
     quantile = np.empty(effects.shape)
     along = np.broadcast_to(points.quantile, effects.shape)
@@ -100,19 +100,19 @@ def alias_values(plan: Floats, factor_names: Sequence[str]) -> Values:
     Parameters
     ----------
     plan : ndarray, shape (n_runs, n_columns)
-        Coded levels of the factors and then of the dummies; balanced and orthogonal.
+        Coded levels of the factors, then of the dummies; balanced and orthogonal.
     factor_names : sequence of str
-        Of the first columns.
+        Names of the first columns.
 
     Returns
     -------
     values : dict of str to ndarray
-        Names of `reduction.quantities.names`; empty for a single factor.
+        Values by names of `reduction.quantities.names`; empty for a single factor.
 
     Notes
     -----
-    The dummies are columns as the factors are: what stands in them is in the error that the
-    effects are judged by.  In the mean of an orthogonal plan no interaction stands.
+    The dummies are columns like the factors: interactions aliased with them contribute to the error
+    by which the effects are judged.  No interaction is aliased with the mean of an orthogonal plan.
     """
     n_factors = len(factor_names)
     pairs, alias = alias_matrix(plan)
@@ -120,7 +120,7 @@ def alias_values(plan: Floats, factor_names: Sequence[str]) -> Values:
     if not of_factors:
         return {}
     named = list(combinations(factor_names, 2))
-    # the runs in which an interaction moves with a column are whole: without the solver's rounding
+    # the number of runs in which an interaction follows a column is an integer: removes rounding
     n_runs = plan.shape[0]
     share = np.rint(alias[1:, of_factors].T * n_runs) / n_runs + 0.0
     return {
@@ -161,20 +161,20 @@ _LABELS = {
 
 
 def _stiffness_values(forms: Sequence[StiffnessForm], quality: FormQuality) -> Values:
-    """Return the forms of one response beside the quadratic surface of the same runs.
+    """Return the forms of one response, compared with the quadratic surface of the same runs.
 
     Parameters
     ----------
     forms : sequence of StiffnessForm
-        Of one response.
+        Forms of one response.
     quality : FormQuality
-        Of those forms in their order, and of others after them.
+        Quality of those forms in order, followed by others.
 
     Returns
     -------
     values : dict of str to ndarray
-        Names of `reduction.quantities.names`, without the dimension ``experiment``; a
-        form that has no coefficients of its own here has quality alone.
+        Values by names of `reduction.quantities.names`, without the dimension ``experiment``; a
+        form without coefficients of its own has only its quality.
     """
     n_forms = len(quality.forms)
     size = max(len(form.coefficient_names) for form in forms)
@@ -217,21 +217,21 @@ _RADIUS = np.linspace(0.0, 1.0, 11)
 def point_values(
     surfaces: ResponseSurfaces, plan: Floats, shared: SharedSurfaces | None = None
 ) -> Values:
-    """Return every surface at the centre, at the points of the plan and at the corners.
+    """Return every surface at the centre, the plan points and the corners.
 
     Parameters
     ----------
     surfaces : ResponseSurfaces
-        As fitted.
+        Fitted surfaces.
     plan : ndarray, shape (n_runs, n_factors)
-        Coded levels as planned.
+        Planned coded levels.
     shared : SharedSurfaces, optional
-        What the runs share; nothing where not given.
+        Errors shared by the runs; none if omitted.
 
     Returns
     -------
     values : dict of str to ndarray
-        Names of `reduction.quantities.names`.
+        Values by names of `reduction.quantities.names`.
     """
     points = plan_points(plan)
     found = evaluate_surfaces(
@@ -268,21 +268,21 @@ def point_values(
 
 
 def _both_parts(name: str, random: Floats, rows: Floats | None) -> Values:
-    """Return the uncertainty of a quantity with its parts; one part alone has no other beside it.
+    """Return the uncertainty of a quantity with its parts; a single part is not repeated.
 
     Parameters
     ----------
     name : str
-        Of the quantity.
+        Name of the quantity.
     random : ndarray, shape (...)
         Its random part. [any]
     rows : ndarray, shape (n_components, ...), or None
-        Contributions of shared errors; None where nothing is shared. [as random]
+        Contributions of shared errors; None if nothing is shared. [as random]
 
     Returns
     -------
     values : dict of str to ndarray
-        By the name and `reduction.archive.variables.SUFFIXES`.
+        Values by the name with `reduction.quantities.row.SUFFIXES`.
     """
     if rows is None:
         return {f"{name}_standard_uncertainty": random}
@@ -301,24 +301,24 @@ def _rows(surfaces: ResponseSurfaces, shared: SharedSurfaces | None) -> tuple[Fl
 
 
 def ridge_values(surfaces: ResponseSurfaces, shared: SharedSurfaces | None = None) -> Values:
-    """Return the highest and the lowest points of every surface, by distance from the centre.
+    """Return the maximum and minimum of every surface at each distance from the centre.
 
     Parameters
     ----------
     surfaces : ResponseSurfaces
-        As fitted.
+        Fitted surfaces.
     shared : SharedSurfaces, optional
-        What the runs share; nothing where not given.
+        Errors shared by the runs; none if omitted.
 
     Returns
     -------
     values : dict of str to ndarray
-        Names of `reduction.quantities.names`; NaN for a response without a surface.
+        Values by names of `reduction.quantities.names`; NaN for a response without a surface.
 
     Notes
     -----
-    The points are found on the scale that a surface was fitted on, which rises with the response.
-    The same runs chose them: of the intervals only the simultaneous ones hold there.
+    The points are found on the scale of the fit, which rises with the response. Since the same runs
+    determine the points, only the simultaneous intervals are valid there.
     """
     limits = {"low": surfaces.low, "high": surfaces.high}
     paths = [
@@ -340,7 +340,7 @@ def ridge_values(surfaces: ResponseSurfaces, shared: SharedSurfaces | None = Non
     both = with_shared_at_points(surfaces, found, *_rows(surfaces, shared))
     values: Values = {"ridge_direction": texts(("ascent", "descent")), "ridge_radius": _RADIUS}
     for index, name in enumerate(surfaces.response_names):
-        # each surface at the points of its own ridge
+        # each surface at the points on its own ridge
         own = (index, slice(index * n_points, (index + 1) * n_points))
         ends = both.simultaneous_interval[own].reshape(2, _RADIUS.size, 2)
         values |= {
@@ -380,26 +380,26 @@ _SINGLE_TIME = {
     "confidence": "confidence",
     "tolerance": "tolerance",
 }
-"""Field of the check to name after ``single_time_``."""
+"""Name after ``single_time_``, by the field of the check."""
 
 
 def _experiment_values(result: ExperimentResult) -> Values:
-    """Return every number and text of an experiment but its notes and its stiffness forms.
+    """Return all numbers and texts of an experiment except notes and stiffness forms.
 
     Parameters
     ----------
     result : ExperimentResult
-        With responses of `reduction.quantities.names.RESPONSES`.
+        Result with responses from `reduction.quantities.names.RESPONSES`.
 
     Returns
     -------
     values : dict of str to ndarray
-        Names of `reduction.quantities.names`.
+        Values by names of `reduction.quantities.names`.
 
     Raises
     ------
     ArchiveError
-        If a response has no name, or the surfaces are of other runs.
+        If a response is unknown, or the surfaces belong to other runs.
     """
     fitted = () if result.surfaces is None else result.surfaces.response_names
     strange = sorted({*result.response_names, *fitted} - set(SURFACE_NAMES))
@@ -483,7 +483,7 @@ def _require_same_runs(runs: RunTable, surfaces: ResponseSurfaces) -> None:
 
 
 def _common_values(surfaces: ResponseSurfaces, factor_units: Sequence[str]) -> Values:
-    """What all surfaces of an experiment have in common."""
+    """Values common to all surfaces of an experiment."""
     values: Values = {
         "term": texts(surfaces.labels),
         "term_other": texts(surfaces.labels),
@@ -514,7 +514,7 @@ def _common_values(surfaces: ResponseSurfaces, factor_units: Sequence[str]) -> V
 def _with_shared(
     values: Values, surfaces: ResponseSurfaces, shared: SharedSurfaces, index: int, name: str
 ) -> Values:
-    """Coefficients with what the errors that runs share add to the scatter of the runs."""
+    """Coefficients with the shared errors of the runs added to their scatter."""
     coded = shared.coefficient[:, index]
     slopes = canonical_slopes(
         surfaces.canonical.stationary_point[[index]],
@@ -535,7 +535,7 @@ def _with_shared(
 
 
 def _surface_values(surfaces: ResponseSurfaces, index: int, name: str) -> Values:
-    """One surface."""
+    """Values of one surface."""
     anova, lack, canonical = surfaces.anova, surfaces.lack_of_fit, surfaces.canonical
     diagnostics = surfaces.diagnostics
     pattern = surfaces.pattern[index]
@@ -583,7 +583,7 @@ def _surface_values(surfaces: ResponseSurfaces, index: int, name: str) -> Values
         "stationary_kind": canonical.kind,
         "eigenvalue": canonical.eigenvalue,
         "eigenvalue_standard_uncertainty": canonical.eigenvalue_standard_uncertainty,
-        # the archive has a direction a row
+        # the archive has one direction per row
         "eigenvector": canonical.eigenvector.transpose(0, 2, 1),
     }
     if surfaces.blocks is not None:
@@ -603,7 +603,7 @@ def _surface_values(surfaces: ResponseSurfaces, index: int, name: str) -> Values
 
 
 def _reduced_values(reduced: ReducedSurfaces, index: int, name: str) -> Values:
-    """The terms that are kept of one surface."""
+    """Terms kept in one surface."""
     infinite = np.isinf(reduced.full_criterion[index])
     return {
         f"{name}_reduced_coefficient": reduced.coefficient[index],
@@ -614,7 +614,7 @@ def _reduced_values(reduced: ReducedSurfaces, index: int, name: str) -> Values:
         f"{name}_reduced_is_kept": reduced.is_kept[index],
         f"{name}_reduced_sigma": reduced.sigma[index],
         f"{name}_reduced_aicc": reduced.criterion[index],
-        # infinite says that the runs are too few for the correction
+        # infinity means too few runs for the correction
         f"{name}_full_aicc": np.array(np.nan if infinite else reduced.full_criterion[index]),
     }
 
@@ -628,26 +628,26 @@ def _single_time_values(check: SingleTimeCheck) -> Values:
 
 
 def surfaces_to_dataset(results: Sequence[ExperimentResult], *, origin: Origin) -> xr.Dataset:
-    """Bring experiments into the form of the archive; no file is touched.
+    """Convert experiments to the archive dataset, without writing a file.
 
     Parameters
     ----------
     results : sequence of ExperimentResult
-        One or more, of one campaign.
+        One or more from the same campaign.
     origin : Origin
-        The campaign, the files that the experiments were made from, and how they were made.
+        Campaign, source files and method of the experiments.
 
     Returns
     -------
     dataset : xarray.Dataset
-        Names, dimensions and attributes of `reduction.quantities.names`, encoding
-        included. Equal inputs give equal datasets.
+        Names, dimensions and attributes from `reduction.quantities.names`, with encoding. Equal
+        inputs give equal datasets.
 
     Raises
     ------
     ArchiveError
-        If a response has no name in the vocabulary, two experiments have one name, or a
-        run of a surface is not a run of its experiment.
+        If a response is not in the vocabulary, two experiments have the same name, or a run of a
+        surface is not in its experiment.
     """
     names = [result.name for result in results]
     twice = sorted({name for name in names if names.count(name) > 1})
@@ -674,7 +674,7 @@ def _values_of(result: ExperimentResult) -> Values:
 
 
 def _stacked(parts: Sequence[Values]) -> Values:
-    """Set experiments side by side; an axis of the file is the longest of its kind."""
+    """Stack experiments; each axis of the file is the longest of its kind."""
     sizes: dict[str, int] = {}
     for part in parts:
         for name, array in part.items():
@@ -691,7 +691,7 @@ def _stacked(parts: Sequence[Values]) -> Values:
 
 
 def _padded(name: str, array: NDArray[Any] | None, shape: tuple[int, ...]) -> NDArray[Any]:
-    """Bring an array to the length of the longest; all of it where there is none."""
+    """Pad an array to the longest length; create it if absent."""
     row = SURFACE_SCHEMA[name]
     fill = "" if row.is_text else np.nan if row.dtype == "f8" else 0
     if array is None:
@@ -706,7 +706,7 @@ def _own_dims(name: str) -> tuple[str, ...]:
 
 
 def _note_values(results: Sequence[ExperimentResult]) -> Values:
-    """Notes of surfaces under their own stage, and none twice."""
+    """Notes of surfaces with their own stage, without repeats."""
     names: list[str] = []
     notes: list[Note] = []
     for result in results:
@@ -719,7 +719,7 @@ def _note_values(results: Sequence[ExperimentResult]) -> Values:
 
 
 def _caution_values(results: Sequence[ExperimentResult]) -> Values:
-    """Cautions, with the names of the runs that they count from 1."""
+    """Cautions, with the names of the runs, which they count from 1."""
     rows = [
         (
             result.name,
@@ -744,28 +744,28 @@ _LABEL_OF_DIM = {
     "anova_row": "anova_source",
     "block": "block_name",
 }
-"""Text that says how far an experiment fills a dimension."""
+"""Text variable that shows how much of a dimension an experiment uses."""
 
 
 def surface_names(dataset: xr.Dataset, experiment: str) -> tuple[str, ...]:
-    """Return the responses of an experiment that have a surface, transformed ones last.
+    """Return the responses of an experiment with a surface, transformed ones last.
 
     Parameters
     ----------
     dataset : xarray.Dataset
         An archive of experiments.
     experiment : str
-        Name of one.
+        Name of an experiment.
 
     Returns
     -------
     names : tuple of str
-        Of `reduction.quantities.names.SURFACE_NAMES`; empty for a screening.
+        Names from `reduction.quantities.names.SURFACE_NAMES`; empty for a screening.
 
     Raises
     ------
     ArchiveError
-        If the archive has no such experiment.
+        If the archive lacks the experiment.
     """
     row = _row_of(dataset, experiment)
     return tuple(
@@ -779,26 +779,26 @@ def surface_names(dataset: xr.Dataset, experiment: str) -> tuple[str, ...]:
 def surfaces_of(
     dataset: xr.Dataset, experiment: str, responses: Sequence[str] | None = None
 ) -> ResponseSurfaces:
-    """Return surfaces as they were fitted; `reduction.experiments` works on them as before.
+    """Return the fitted surfaces; `reduction.experiments` accepts them like new ones.
 
     Parameters
     ----------
     dataset : xarray.Dataset
         An archive of experiments.
     experiment : str
-        Name of one.
+        Name of an experiment.
     responses : sequence of str, optional
-        Of `surface_names`; all of them where not given.
+        Names from `surface_names`; default all.
 
     Returns
     -------
     surfaces : ResponseSurfaces
-        In the order asked for, each with a pattern of its own.
+        Surfaces in the requested order, each with its own pattern.
 
     Raises
     ------
     ArchiveError
-        If the archive has no such experiment, or the experiment no such surface.
+        If the archive lacks the experiment, or the experiment lacks a surface.
     """
     known = surface_names(dataset, experiment)
     names = known if responses is None else tuple(responses)
@@ -828,7 +828,7 @@ def _row_of(dataset: xr.Dataset, experiment: str) -> int:
 
 
 class _Reader:
-    """One experiment of an archive, cut to its own length."""
+    """Reads one experiment of an archive, without padding."""
 
     def __init__(self, dataset: xr.Dataset, row: int, names: tuple[str, ...]) -> None:
         self.dataset, self.row, self.names = dataset, row, names
@@ -840,37 +840,37 @@ class _Reader:
         self.sizes["direction"] = self.sizes["factor"]
 
     def own(self, name: str) -> NDArray[Any]:
-        """Give a variable of this experiment."""
+        """Return a variable of this experiment."""
         variable = self.dataset.variables[name]
         cut = tuple(slice(self.sizes[str(dim)]) for dim in variable.dims[1:])
         values: NDArray[Any] = np.asarray(variable.values[self.row])[cut]
         return values
 
     def labels(self, name: str) -> tuple[str, ...]:
-        """Give a text of this experiment, empty where the file has none."""
+        """Return a text of this experiment; empty if the file has none."""
         dim = str(SURFACE_SCHEMA[name].dims[1])
         if name not in self.dataset:
             return ("",) * self.sizes[dim]
         return tuple(str(text) for text in self.own(name))
 
     def stack(self, what: str) -> NDArray[Any]:
-        """Give what is said of each response, the responses first."""
+        """Return a value for each response, with responses on the first axis."""
         return np.stack([self.own(f"{name}_{what}") for name in self.names])
 
     def random(self, what: str) -> Floats:
-        """Give the uncertainty of each response from the scatter of its runs alone."""
+        """Return the uncertainty of each response due to the scatter of its runs only."""
         kind = "_random" if f"{self.names[0]}_{what}_random{_SPREAD}" in self.dataset else ""
         return self.stack(f"{what}{kind}{_SPREAD}")
 
     def codes(self, what: str, reasons: dict[int, str]) -> NDArray[np.int8]:
-        """Give the code of each reason; an archive without the text has none to give."""
+        """Return the code of each reason; empty for an archive without the text."""
         code = {text: number for number, text in reasons.items()}
         texts = [stored(self.dataset, f"{name}_{what}") for name in self.names]
         found = [0 if text is None else code[str(text.values[self.row])] for text in texts]
         return np.array(found, dtype=np.int8)
 
     def surfaces(self) -> ResponseSurfaces:
-        """Put the surfaces together again."""
+        """Rebuild the surfaces."""
         exponents = self.own("term_exponent").astype(np.int64)
         low, high = self.own("factor_low"), self.own("factor_high")
         return ResponseSurfaces(
@@ -927,24 +927,24 @@ class _Reader:
         )
 
     def run_names(self) -> tuple[str, ...]:
-        """Give the runs, with the specimen where there are several, as `RunTable.names`."""
+        """Return the run names as in `RunTable.names`, with the specimen if there are several."""
         runs, specimens = self.labels("run_name"), self.labels("run_specimen")
         many = len(set(specimens)) > 1
         pairs = zip(runs, specimens, strict=True)
         return tuple(f"{run} {specimen}" if many else run for run, specimen in pairs)
 
     def measured(self) -> Floats:
-        """Give the response that each surface is of, before any transform."""
+        """Return the untransformed response of each surface."""
         of = [next(base for base in RESPONSES if name.endswith(base)) for name in self.names]
         return np.stack([self.own(f"{base}_measured") for base in of])
 
     def counts(self, what: str) -> Integers:
-        """Give numbers that are counted; those of a surface that is not there are 0."""
+        """Return counts, 0 for an absent surface."""
         counted: Integers = np.nan_to_num(self.stack(what)).astype(np.int64)
         return counted
 
     def anova(self) -> Anova:
-        """Give the analysis of variance."""
+        """Return the analysis of variance."""
         return Anova(
             source=self.labels("anova_source"),
             degrees_of_freedom=self.stack("anova_degrees_of_freedom"),
@@ -956,7 +956,7 @@ class _Reader:
         )
 
     def lack_of_fit(self) -> LackOfFit:
-        """Give what the analysis of variance says of lack of fit, and the repeats."""
+        """Return the lack of fit from the analysis of variance, with the repeats."""
         source = self.labels("anova_source")
         lack, pure = source.index("lack of fit"), source.index("pure error")
         squares = self.stack("anova_sum_of_squares")
@@ -974,7 +974,7 @@ class _Reader:
         )
 
     def canonical(self) -> Canonical:
-        """Give stationary points and principal directions."""
+        """Return stationary points and principal directions."""
         return Canonical(
             stationary_point=self.stack("stationary_point"),
             stationary_point_engineering=self.stack("stationary_point_engineering"),
@@ -989,7 +989,7 @@ class _Reader:
         )
 
     def blocks(self) -> BlockEffects | None:
-        """Give the blocks; None where there is one."""
+        """Return the block effects; None for a single block."""
         treatment = str(self.own("block_treatment")) if "block_treatment" in self.dataset else ""
         if not treatment:
             return None
@@ -1004,7 +1004,7 @@ class _Reader:
         )
 
     def notes(self) -> tuple[Note, ...]:
-        """Give the notes of the surfaces."""
+        """Return the notes on the surfaces."""
         name = str(self.dataset.variables["experiment"].values[self.row])
         own = read_notes(self.dataset, of=("note_experiment", name))
         return tuple(one for one in own if one.stage == "surfaces")

@@ -1,4 +1,4 @@
-"""A reduced test as a dataset that follows CF."""
+"""Converts a reduced test to a dataset that follows CF."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ from reduction.stages.strain.stress import nominal_stress
 
 
 def strain_model_of(dataset: xr.Dataset, place: int) -> StrainModel | None:
-    """Method and coefficients of one specimen's strain; marks and covariance stay in the file."""
+    """Method and coefficients of one specimen's strain, without marks and covariance."""
     if "strain_method" not in dataset:
         return None
 
@@ -81,7 +81,7 @@ def strain_model_of(dataset: xr.Dataset, place: int) -> StrainModel | None:
 
 
 def _specimen_values(specimens: Sequence[Specimen]) -> Values:
-    """Return what is known of each specimen before the test."""
+    """Return the data of each specimen before the test."""
     known = [one.mean_diameter if one.diameter else None for one in specimens]
     area = numbers([one.area if one.has_area else None for one in specimens])
     spread = numbers([one.diameter_scatter for one in specimens])
@@ -114,7 +114,7 @@ def _specimen_values(specimens: Sequence[Specimen]) -> Values:
 
 
 def _random_of_section(specimens: Sequence[Specimen], contributions: Contributions) -> Values:
-    """Random part of diameters and areas: none where the error of the mean diameter is shared."""
+    """Random part of diameters and areas: none if the error of the mean diameter is shared."""
     rows = contributions.values.get("diameter")
     if rows is None:
         return {}
@@ -125,7 +125,7 @@ def _random_of_section(specimens: Sequence[Specimen], contributions: Contributio
 
 
 def _linear_densities(specimens: Sequence[Specimen]) -> Values:
-    """Mass a length in air and in water, where it is stated of one at least."""
+    """Mass per length in air and in water, if stated for any specimen."""
     values = {
         "linear_density": numbers([one.linear_density for one in specimens]),
         "wet_linear_density": numbers([one.wet_linear_density for one in specimens]),
@@ -134,7 +134,7 @@ def _linear_densities(specimens: Sequence[Specimen]) -> Values:
 
 
 def _history_values(history: History) -> Values:
-    """Return what each specimen had seen before the test."""
+    """Return the history of each specimen before the test."""
     flex = history.earlier_flex_cycles
     return {
         "earlier_tests": texts([", ".join(tests) for tests in history.earlier_tests]),
@@ -148,7 +148,7 @@ def _history_values(history: History) -> Values:
 
 
 def _strain_model_values(models: Sequence[StrainModel]) -> Values:
-    """Return method, coefficients, ranges and marks of each specimen's strain."""
+    """Return method, coefficients, ranges and marks for each specimen's strain."""
     values: Values = {
         "strain_method": texts([one.method for one in models]),
         "strain_marks_from": texts([one.marks_from for one in models]),
@@ -194,15 +194,15 @@ def _coefficient_values(models: Sequence[StrainModel]) -> Values:
 
 
 def _deviation_and_correlation(model: StrainModel) -> tuple[Floats, Floats]:
-    """Split a covariance, whose units are mixed, into parts that have a unit each."""
+    """Split a covariance with mixed units into parts with one unit each."""
     size = len(model.coefficients)
     if model.covariance.shape != (size, size):
         return np.full(size, np.nan), np.full((size, size), np.nan)
-    # by the tape, and by which law of the splices it is
+    # from the tape and from the choice of splice law
     covariance = model.covariance + (model.law_covariance if model.law_covariance.size else 0.0)
     deviation = np.sqrt(np.diag(covariance))
     scale = np.outer(deviation, deviation)
-    # an exact coefficient has no spread and is correlated with itself alone
+    # an exact coefficient has no spread and correlates only with itself
     correlation = np.divide(covariance, scale, out=np.eye(size), where=scale > 0)
     return deviation, correlation
 
@@ -223,13 +223,13 @@ def _mark_values(models: Sequence[StrainModel]) -> Values:
 
 
 _SHARE = 8
-"""Of a longer record than is stored whole, this part of it at most for cycles, and for the rest."""
+"""Of a record too long to be stored whole, at most this fraction for cycles, and for the rest."""
 
 
 @dataclass(frozen=True)
 @read_only_arrays
 class _KeptSamples:
-    """What is stored of a record that is not stored whole."""
+    """Selection of samples from a record that is not stored whole."""
 
     index: Integers
     words: str
@@ -240,7 +240,7 @@ class _KeptSamples:
 
 
 def kept_samples(test: ReducedTest, settings: ReductionSettings) -> _KeptSamples | None:
-    """Choose the samples of a test that its archive holds."""
+    """Choose the samples of a test to be stored in its archive."""
     record, wanted = test.record, settings.archive
     if record is None or wanted.samples == "all":
         return None
@@ -257,7 +257,7 @@ def kept_samples(test: ReducedTest, settings: ReductionSettings) -> _KeptSamples
     outside, step_outside = _places(
         np.concatenate([[0], last + 1]), np.concatenate([first, [record.n_samples]]), most
     )
-    # two cycles share the sample at which one turns to the other
+    # two cycles share the sample at the turn between them
     index = np.union1d(of_cycles, outside)
     if index.size == record.n_samples:
         return None
@@ -273,12 +273,12 @@ def _cycles_with_curves(test: ReducedTest, longest: int) -> Integers:
     if test.cycles is None or not test.cycles.n_cycles:
         return np.empty(0, dtype=np.int64)
     numbers = select_cycles(test.cycles.n_cycles, longest=longest)
-    # curves that pool cycles go by the first of them
+    # curves that pool cycles are named after the first one
     return numbers if test.curves is None else np.union1d(numbers, test.curves.selected_cycle)
 
 
 def _places(start: Integers, stop: Integers, most: int) -> tuple[Integers, int]:
-    """Every k-th sample of stretches and the last of each, about ``most`` in all; and k."""
+    """Every k-th sample of intervals and the last of each, about ``most`` in all; and k."""
     is_stretch = stop > start
     start, stop = start[is_stretch], stop[is_stretch]
     step = max(1, -(-int((stop - start).sum()) // most))
@@ -291,7 +291,7 @@ def _every(step: int) -> str:
 
 
 def stored_cycles(dataset: xr.Dataset) -> Integers:
-    """Return the numbers of the cycles whose samples an archive holds."""
+    """Return the numbers of the cycles with stored samples in an archive."""
     if "cycle" not in dataset:
         return np.empty(0, dtype=np.int64)
     numbers: Integers = dataset.variables["cycle"].values
@@ -304,7 +304,7 @@ def stored_cycles(dataset: xr.Dataset) -> Integers:
 
 
 def _sample_values(test: ReducedTest, record: Record, kept: _KeptSamples | None = None) -> Values:
-    """Return everything that stands along ``sample``, with the declared uncertainties."""
+    """Return all variables along ``sample``, with the declared uncertainties."""
 
     def stored(values: NDArray[Any]) -> NDArray[Any]:
         return values if kept is None else kept.of(values)
@@ -349,7 +349,7 @@ def _sample_values(test: ReducedTest, record: Record, kept: _KeptSamples | None 
 
 
 def _narrowed(numbers: Integers) -> Integers:
-    """Whole numbers of the width that they are stored in, by blocks."""
+    """Integers in their stored width, processed by blocks."""
     narrow: Integers = empty_like(numbers, dtype=np.int32)
     for part in sample_blocks(numbers.size, numbers, narrow):
         narrow[part] = numbers[part]
@@ -357,7 +357,7 @@ def _narrowed(numbers: Integers) -> Integers:
 
 
 def _stress(tension: Floats, flags: Integers, specimens: tuple[Specimen, ...]) -> Floats:
-    """Nominal stress where an area is known and tension is usable, NaN elsewhere."""
+    """Nominal stress if an area is known and tension is usable, NaN elsewhere."""
     stress: Floats = full_like(tension, np.nan)
     for row, specimen in enumerate(specimens):
         if specimen.has_area:
@@ -368,7 +368,7 @@ def _stress(tension: Floats, flags: Integers, specimens: tuple[Specimen, ...]) -
 
 
 def _row_account(record: Record, kept: _KeptSamples | None = None) -> Values:
-    """Count rows read, kept, stored and flagged, by channel and mask."""
+    """Count rows read, kept, stored and flagged by channel and mask."""
     flags = [record.crosshead_position_quality_flag, *record.quality_flag]
     return {
         "n_rows_read": np.array(record.n_rows_read),
@@ -383,7 +383,7 @@ def _row_account(record: Record, kept: _KeptSamples | None = None) -> Values:
 
 
 def _counts(flags: Integers) -> list[int]:
-    """Samples with each mask."""
+    """Number of samples with each mask."""
     counts = dict.fromkeys(QUALITY_MASKS.values(), 0)
     for part in sample_blocks(flags.size, flags):
         block = flags[part]
@@ -397,7 +397,7 @@ def _counts(flags: Integers) -> list[int]:
 def to_dataset(
     test: ReducedTest, *, version: str, command: str, kept: _KeptSamples | None = None
 ) -> xr.Dataset:
-    """Bring a reduced test into the form of the archive; no file is touched."""
+    """Convert a reduced test to the archive dataset, without writing a file."""
     return build_dataset(
         _all_values(test, kept),
         TEST_SCHEMA if test.stepwise is None else STEPWISE_SCHEMA,

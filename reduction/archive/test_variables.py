@@ -1,4 +1,4 @@
-"""Variables of a reduced test, stage by stage."""
+"""Variables of a reduced test by stage."""
 
 from __future__ import annotations
 
@@ -70,14 +70,14 @@ COEFFICIENTS = {
     "reference_position": "reference_position",
     "gauge_length": "strain_gauge_length",
 }
-"""Coefficient of a strain method to its name here, along ``specimen``.
+"""Archive name, along ``specimen``, by coefficient of a strain method.
 
-They differ where the name has another meaning in a product.
+They differ if the name has another meaning in a product.
 """
 
 
 def cycle_values(cycles: Cycles, *, control: str) -> Values:
-    """Return the cycles and their branches; ``control`` gives band and rate their unit."""
+    """Return the cycles and their branches; ``control`` gives the unit of band and rate."""
     band, rate = (
         ("tension_band", "tension_rate")
         if control == "load"
@@ -113,7 +113,7 @@ def loop_values(loops: Loops) -> Values:
 
 
 def amplitude_values(amplitude: AmplitudeSummary) -> Values:
-    """Return the means over the cycles of a test; ``test_`` keeps them apart from the cycles'."""
+    """Return the means over the cycles of a test, with the prefix ``test_``."""
     return _with_uncertainty(amplitude, "test_")
 
 
@@ -123,19 +123,19 @@ def end_modulus_values(moduli: EndModuli) -> Values:
 
 
 def identity_values(identity: CycleIdentity) -> Values:
-    """Return both sides of the closed-cycle identity and what is left."""
+    """Return both sides of the closed-cycle identity and the residual."""
     return {
         item.name: getattr(identity, item.name) for item in fields(identity) if item.name != "notes"
     }
 
 
 def trend_values(trend: PeakTrend) -> Values:
-    """Return the slopes against the logarithm of cycle number."""
+    """Return the slopes against the logarithm of the cycle number."""
     return {item.name: getattr(trend, item.name) for item in fields(trend)}
 
 
 def slip_values(slips: Slips, *, specimens: tuple[str, ...]) -> Values:
-    """Return the steps found; ``n_slips`` of zero says that they were looked for."""
+    """Return the steps found; ``n_slips`` is zero if a search found none."""
     return {
         "n_slips": np.array([slips.specimen.count(name) for name in specimens]),
         "creep_per_cycle": slips.creep_per_cycle,
@@ -152,7 +152,7 @@ def slip_values(slips: Slips, *, specimens: tuple[str, ...]) -> Values:
 
 def curve_values(curves: ModulusCurves) -> Values:
     """Return the tangent modulus curves with their companions."""
-    # what the window blurs is in the contributions
+    # window smoothing errors are in the contributions
     apart = (
         "window",
         "notes",
@@ -171,7 +171,7 @@ def curve_values(curves: ModulusCurves) -> Values:
 
 
 def first_loading_values(curves: ModulusCurves) -> Values:
-    """Return the curves of the first loading, on a strain axis of their own."""
+    """Return the curves of the first loading, on their own strain axis."""
     return {
         "branch_name": texts(BRANCH_NAMES),
         "first_loading_strain_bin": curves.strain_bin,
@@ -202,7 +202,7 @@ def segment_values(segments: Segments) -> Values:
 
 
 def ratio_values(ratios: Sequence[Ratio]) -> Values:
-    """Return the modulus ratios of a test, which share one strain grid."""
+    """Return the modulus ratios of a test, which share a strain grid."""
 
     def stacked(name: str) -> NDArray[Any]:
         return np.stack([getattr(ratio, name) for ratio in ratios])
@@ -224,7 +224,7 @@ def ratio_values(ratios: Sequence[Ratio]) -> Values:
 
 
 def stress_at_strain_values(stress: Floats, uncertainty: Floats, levels: Sequence[float]) -> Values:
-    """Return the stress at stated elongations, in rising order of elongation."""
+    """Return the stress at stated elongations, in ascending order."""
     order = np.argsort(np.asarray(levels, dtype=np.float64), kind="stable")
     return {
         "strain_level": np.asarray(levels, dtype=np.float64)[order],
@@ -234,7 +234,7 @@ def stress_at_strain_values(stress: Floats, uncertainty: Floats, levels: Sequenc
 
 
 def elastomer_values(fits: Sequence[ElastomerFit]) -> Values:
-    """Return the fitted laws; their parameters are one row each, a modulus or an exponent."""
+    """Return the fitted laws, with one row per parameter, a modulus or an exponent."""
     rows = [
         (number, name, value, fit.standard_uncertainty.get(name))
         for number, fit in enumerate(fits, start=1)
@@ -294,7 +294,7 @@ _PRONY = (
 
 
 def standstill_values(standstills: Standstills) -> Values:
-    """Return every interval in which the crosshead, or the tension that is kept, stands still."""
+    """Return every interval with constant position, or with constant tension at load control."""
     values: Values = {
         "standstill_start_time": standstills.start_time,
         "standstill_end_time": standstills.end_time,
@@ -310,7 +310,7 @@ def standstill_values(standstills: Standstills) -> Values:
 
 
 def hold_values(holds: Sequence[HoldResult]) -> Values:
-    """Return one row a hold and specimen, ragged parts padded with NaN."""
+    """Return one row per hold and specimen, with ragged parts padded with NaN."""
     values: Values = {
         "hold": np.arange(1, len(holds) + 1),
         "hold_number": hold_numbers(holds),
@@ -324,7 +324,7 @@ def hold_values(holds: Sequence[HoldResult]) -> Values:
     for name in _OF_RAMP:
         values[f"hold_{name}"] = numbers([getattr(one, name) for one in holds])
     for kind in ("relaxation", "creep"):
-        # share of tension and gain of strain are two quantities, so two names
+        # tension ratio and strain gain are two quantities, with two names
         chosen = [one.kind == kind for one in holds]
         for suffix in ("", "_standard_uncertainty"):
             rate = numbers([getattr(one, f"rate_per_decade{suffix}") for one in holds])
@@ -350,7 +350,7 @@ def _on_common_times(holds: Sequence[HoldResult], name: str, times: Floats) -> F
 
 
 def lag_values(estimate: LagEstimate) -> Values:
-    """Return what the turns of the wave say of the clocks of the channels."""
+    """Return the channel lag estimated from the turns of the wave."""
     return {
         "channel_lag": estimate.lag,
         "channel_lag_standard_uncertainty": estimate.standard_uncertainty,
@@ -383,7 +383,7 @@ def line_values(
 
 
 def random_of_line(cycles: LineParameters, test: LineParameters) -> Values:
-    """Return what is random in lines of cycles and test: the fit of a slow pull is shared."""
+    """Return the random part of the lines of cycles and test; the fit of a slow pull is shared."""
     names = {name: cycles.random_uncertainty[name] for name in _LINE}
     names |= {f"test_{name}": test.random_uncertainty[name] for name in _LINE}
     constant = test.quasi_static_spring_constant
@@ -391,7 +391,7 @@ def random_of_line(cycles: LineParameters, test: LineParameters) -> Values:
 
 
 def spread_of_line_values(spread: LineSpread, values: Values) -> Values:
-    """Return interval and method of the line of a test, and its uncertainty where drawn."""
+    """Return interval and method for the line of a test, and its uncertainty if drawn."""
     found: Values = {
         "test_line_uncertainty_method": spread.method,
         "test_line_without_solution_share": spread.without_solution_share,
@@ -406,7 +406,7 @@ def spread_of_line_values(spread: LineSpread, values: Values) -> Values:
 
 
 def pull_values(pulls: tuple[SlowPull | None, ...], specimens: tuple[Specimen, ...]) -> Values:
-    """Return the slow pull of each specimen on one grid of tension; NaN where one has none."""
+    """Return the slow pull of each specimen on one tension grid; NaN without a pull."""
     given = [one for one in pulls if one is not None]
     if not given:
         return {}
@@ -473,7 +473,7 @@ _OVER = re.compile("_over_strength|^creep_compliance")
 
 
 def rope_values(step: RopeStep, specimens: tuple[Specimen, ...]) -> Values:
-    """Return what one step of a programme gave; a part that it lacks is left out."""
+    """Return the results of one programme step; missing parts are left out."""
     strength = numbers([one.rated_break_strength for one in specimens])
     values: Values = {"programme_step": np.array(step.name)}
     if step.bedding_in is not None:
@@ -519,7 +519,7 @@ def _bedding_values(bedding: BeddingIn, strength: Floats) -> Values:
 
 
 def _dynamic_values(dynamic: DynamicStiffness) -> Values:
-    """The one level of a step."""
+    """Values of the single level of a step."""
     given: Values = {
         "dynamic_cycles": dynamic.n_cycles,
         "dynamic_stiffness": dynamic.dynamic_stiffness,
@@ -546,7 +546,7 @@ def _dynamic_values(dynamic: DynamicStiffness) -> Values:
 
 
 def _held_values(pairs: Sequence[HeldPair], strength: dict[str, float]) -> Values:
-    """One row a pair of holds and specimen; NaN where its stiffness is refused."""
+    """One row per pair of holds and specimen; NaN if its stiffness is refused."""
     of_pair = numbers([strength[one.specimen] for one in pairs])
     found = [one.stiffness for one in pairs]
     level, u_level, slope, u_slope, at = (
@@ -590,7 +590,7 @@ def _held_values(pairs: Sequence[HeldPair], strength: dict[str, float]) -> Value
 
 
 def _creep_values(creep: Sequence[CreepOfHold]) -> Values:
-    """Along the holds of the test, of which each has one entry."""
+    """Values along the holds of the test, one entry each."""
     share = numbers([one.tension_over_strength for one in creep])
     spread = numbers([one.creep_per_decade_standard_uncertainty for one in creep])
     return {
@@ -614,7 +614,7 @@ def _failure_values(lasted: CyclesToFailure) -> Values:
 
 
 def _tensile_values(pull: TensilePull) -> Values:
-    """Strength and strain at failure of what broke alone; the greatest tension of any."""
+    """Strength and strain at failure of broken specimens; the maximum tension of all."""
     u_tension, u_strain = (
         pull.peak_tension_standard_uncertainty,
         pull.strain_at_peak_standard_uncertainty,
@@ -641,7 +641,7 @@ def _tensile_values(pull: TensilePull) -> Values:
 
 
 def stepwise_values(result: StepwiseResult) -> Values:
-    """Return the readings as the contract names them: ``gauge_length`` is the length read."""
+    """Return the readings by their contract names: ``gauge_length`` is the length read."""
     flags = {
         "length_and_elongation_disagree": result.is_inconsistent,
         "creep": result.is_creep,

@@ -32,7 +32,7 @@ _RANDOM = "_random_standard_uncertainty"
 
 _CONTRIBUTION = "_uncertainty_contribution"
 
-# one of them is a regression on samples, of which there are hundreds
+# one of these dimensions means a regression on hundreds of samples
 _OF_SAMPLES = frozenset({
     "cycle", "selected_cycle", "hold", "held_pair", "slip", "step", "interval", "tension_grid",
     "break_share", "pull_term", "strain_level", "elastomer_parameter", "first_loading_strain_bin",
@@ -51,40 +51,40 @@ _LINES = ("_per_decade", "_per_cycle", "_change", "_drift")
 
 _SINGLE = "tension_amplitude"
 
-# from the differences of neighbouring cycles, of which each cycle is in two
+# from the differences of neighbouring cycles, each of which is used twice
 _OF_NEIGHBOURS = frozenset({"peak_tension_change", "mean_strain_drift"})
 
 _READINGS = {"diameter": "diameter_reading", "area": "diameter_reading"}
 
-# bins are those of the cycles that reach them
+# counts of the cycles that reach each bin
 _COUNTS = {"tangent_modulus": "tangent_modulus_count", "branch_tension": "branch_tension_count",
            "tangent_modulus_untrimmed": "branch_tension_count"}  # fmt: skip
 
 
 def cycles_averaged(archive: xr.Dataset, name: str) -> Floats:
-    """Cycles that the mean of a quantity over a test is of: those after the break-in that have one.
+    """Number of cycles in the mean of a quantity over a test: with a value and after break-in.
 
     Parameters
     ----------
     archive : xarray.Dataset
-        Of a reduced test.
+        Archive of a reduced test.
     name : str
-        As the archive names the mean.
+        Name of the mean in the archive.
 
     Returns
     -------
     count : ndarray, shape (n_specimens,), or a single number
-        Of an archive that keeps single cycles by specimen, else the same of all. [1]
+        By specimen if the archive keeps single cycles, else one value for all. [1]
 
     Raises
     ------
     ValueError
-        If the settings of the archive are no JSON.
+        If the settings of the archive are not JSON.
 
     Notes
     -----
-    A cycle of which a channel is missing has no number and is in no mean.  Quantities that are
-    not kept cycle by cycle are found where the tension amplitude is.
+    A cycle with a missing channel has no value and is not in the mean.  For quantities not kept
+    cycle by cycle, the cycles with a tension amplitude are counted.
 
     Examples
     --------
@@ -101,7 +101,7 @@ def cycles_averaged(archive: xr.Dataset, name: str) -> Floats:
 
 
 def break_in_cycles(archive: xr.Dataset) -> int:
-    """How many first cycles are in no mean, by the settings of an archive."""
+    """Number of first cycles left out of means, from the settings of an archive."""
     return _stated_break_in(str(archive.attrs.get("settings") or "{}"))
 
 
@@ -117,28 +117,28 @@ def random_freedom(archive: xr.Dataset, name: str) -> Floats:
     Parameters
     ----------
     archive : xarray.Dataset
-        Of a reduced test, or of experiments.
+        Archive of a reduced test, or of experiments.
     name : str
-        As the archive names it.
+        Name in the archive.
 
     Returns
     -------
     freedom : ndarray, in the shape of the quantity or a single number
-        Of what the part was found from; at least 1. [1]
+        Degrees of freedom, at least 1. [1]
 
     Raises
     ------
     ValueError
-        If the settings of the archive are no JSON.
+        If the settings of the archive are not JSON.
 
     Notes
     -----
-    Stated, where the archive states it: of a regression over runs, of a ratio.  Readings less one;
-    cycles less one, or two for a line over them, of those that reach the number or of all after the
-    break-in that have it; 2 (n - 1)^2 / (3 n - 4) for the differences of n neighbours, whose mean
-    square has the variance 4 (3 n - 4) sigma^4 / (n - 1)^2 about 2 sigma^2 ([2]_); infinite for a
-    regression on the samples of one rise, pull or hold, and where a single cycle leaves nothing
-    but that ([1]_, 4.2.6).
+    Stated by the archive for a regression over runs or a ratio.  Otherwise readings minus one; or
+    cycles minus one, two for a line over them, counting those that reach the number or all with it
+    after break-in; 2 (n - 1)^2 / (3 n - 4) for the differences of n neighbours, whose mean square
+    has the variance 4 (3 n - 4) sigma^4 / (n - 1)^2 about 2 sigma^2 ([2]_); infinite for a
+    regression on the samples of one rise, pull or hold, and for a single cycle
+    ([1]_, 4.2.6).
 
     Examples
     --------
@@ -153,7 +153,7 @@ def random_freedom(archive: xr.Dataset, name: str) -> Floats:
     for of in _OF_SURFACE:
         if f"{name.removesuffix(of)}_term_degrees_of_freedom" in archive and name.endswith(of):
             found = archive.variables[f"{name.removesuffix(of)}_term_degrees_of_freedom"].values
-            # all terms of a surface together count as the one that is known from the fewest
+            # all terms of a surface have the degrees of freedom of the least known one
             fewest = np.min(found, axis=-1, where=np.isfinite(found), initial=np.inf)
             return np.asarray(fewest[:, None])
     if _READINGS.get(name) in archive:
@@ -175,7 +175,7 @@ def random_freedom(archive: xr.Dataset, name: str) -> Floats:
     count = cycles_averaged(archive, name)
     if count.ndim:
         own = tuple(archive.variables[name].dims) if name in archive else ()
-        # what stands behind the specimen: branches, segments and the like
+        # dimensions after the specimen: branches, segments and the like
         behind = [1] * (len(own) - 1)
         count = count.reshape(-1, *behind) if own[:1] == ("specimen",) else count.min()
     return np.where(count == 1, np.inf, np.maximum(count - fitted, 1.0))
@@ -187,29 +187,29 @@ def effective_freedom(archive: xr.Dataset, name: str) -> Floats:
     Parameters
     ----------
     archive : xarray.Dataset
-        Of a reduced test, or of experiments.
+        Archive of a reduced test, or of experiments.
     name : str
-        As the archive names it.
+        Name in the archive.
 
     Returns
     -------
     freedom : ndarray, in the shape of the quantity
-        Of the random part and of what is shared together; where an archive keeps no parts, all of
-        its uncertainty counts as random. [1]
+        Of the random and shared parts combined; without separate parts in the archive, the whole
+        uncertainty counts as random. [1]
 
     Raises
     ------
     KeyError
-        If the archive has no such quantity.
+        If the archive lacks the quantity.
 
     Notes
     -----
-    [1]_, G.4.1: what is stated of instruments counts as known, the scatter of a few readings does
+    [1]_, G.4.1: stated instrument errors count as exactly known, the scatter of a few readings does
     not.
 
     Examples
     --------
-    A diameter of three readings that is all of the uncertainty of an area:
+    The area uncertainty comes only from a diameter read three times:
 
     >>> archive = xr.Dataset({
     ...     "area": ("specimen", [1.0]),
@@ -231,7 +231,7 @@ def effective_freedom(archive: xr.Dataset, name: str) -> Floats:
         return effective_degrees_of_freedom(spread.values, own)
     of_rows = np.asarray(np.inf)
     if known is not None:
-        # where the archive has several experiments each has its own errors
+        # with several experiments each has its own errors
         dims = (COMPONENT, *variable.dims)
         of_each = np.where(known.values > 0, known.values, np.inf)
         of_each = of_each.transpose([known.dims.index(dim) for dim in dims if dim in known.dims])
@@ -244,18 +244,18 @@ def effective_freedom(archive: xr.Dataset, name: str) -> Floats:
     )
 
 
-# what a user calls a dimension; no quantity has two of one name
+# user names of dimensions; no quantity has two with the same one
 _CALLED = {"branch_name": "branch", "strain_bin": "strain", "first_loading_strain_bin": "strain",
            "ratio_strain_bin": "strain", "tension_grid": "tension"}  # fmt: skip
 
 ON_AN_AXIS = ("strain_bin", "first_loading_strain_bin", "ratio_strain_bin", "tension_grid")
-"""Dimensions along which a number is read between the points, on straight lines."""
+"""Dimensions along which numbers are interpolated linearly."""
 
 _ROUNDING = 1e-9
 
 _MOST = 12
 
-# what tells the entries of a dimension apart, beside their number
+# variables that identify the entries of a dimension, beside their number
 _WORDS = {
     "property": ("property_name", "property_specimen", "property_test"),
     "comparison": ("ratio_numerator", "ratio_denominator"),
@@ -272,29 +272,29 @@ _JOINED = {"comparison": " over "}
 
 
 def place_name(dim: str) -> str:
-    """What a dimension is called where a place along it is asked for: ``branch``, ``strain``."""
+    """User name of a dimension in a request: ``branch``, ``strain``."""
     return _CALLED.get(dim, dim)
 
 
 def parse_place(name: str, text: str) -> str:
-    """Label of a place as `_find_place` takes it: a strain as a number, a tension in newton.
+    """Label of a place for `_find_place`: a strain as a number, a tension in newtons.
 
     Parameters
     ----------
     name : str
-        What the place is called: ``branch``, ``strain``.
+        User name of the dimension: ``branch``, ``strain``.
     text : str
-        As written, with a unit or a percent sign where it is a strain or a tension.
+        Text with a unit or percent sign for a strain or a tension.
 
     Returns
     -------
     label : str
-        In SI.
+        Label in SI.
 
     Raises
     ------
     SettingsError
-        If a strain or a tension cannot be read.
+        If a strain or a tension cannot be parsed.
 
     Examples
     --------
@@ -308,7 +308,7 @@ def parse_place(name: str, text: str) -> str:
 
 
 def _label_of(archive: xr.Dataset, dim: str, index: int) -> Any:
-    """Label of an entry of a dimension, or its number where it has none."""
+    """Label of an entry along a dimension, or its number if it has none."""
     return archive.variables[dim].values[index] if dim in archive.variables else index + 1
 
 
@@ -319,26 +319,26 @@ def words_of(
     place: Mapping[str, int],
     on_axis: float | None = None,
 ) -> str:
-    """What an entry of a dimension is, for a reader who does not know its number.
+    """Description of an entry, for a reader who does not know its number.
 
     Parameters
     ----------
     archive : xarray.Dataset
-        Of a reduced test, of experiments, of properties or of comparisons.
+        Archive of a reduced test, of experiments, of properties or of comparisons.
     dim : str
-        The dimension.
+        Name of the dimension.
     index : int
-        Of the entry.
+        Index of the entry.
     place : mapping of str to int
-        The others, where the entry depends on them.
+        Other indices, if the entry depends on them.
     on_axis : float, optional
-        What was asked for between the points of an axis.
+        Requested value between the points of an axis.
 
     Returns
     -------
     words : str
-        Such as ``dynamic stiffness of R01``, or a number with its unit; empty where the label says
-        it all.
+        Such as ``dynamic stiffness of R01``, or a number with its unit; empty if the label is
+        sufficient.
 
     Raises
     ------
@@ -386,28 +386,28 @@ def _number(value: float, variable: xr.Variable) -> str:
 def _find_place(
     archive: xr.Dataset, dim: str, text: str | None, others: Mapping[str, int] | None = None
 ) -> int:
-    """Index along a dimension of what was asked for.
+    """Index of a requested place along a dimension.
 
     Parameters
     ----------
     archive : xarray.Dataset
-        Where.
+        Archive to search.
     dim : str
-        The dimension.
+        Name of the dimension.
     text : str or None
-        A label, a number, a strain, or the words of an entry; one that is alone need not be said.
+        A label, a number, a strain, or words; may be None for a single entry.
     others : mapping of str to int, optional
-        Places along other dimensions, as far as they are known.
+        Known places along other dimensions.
 
     Returns
     -------
     index : int
-        Of the entry; on an axis that of the nearest point.
+        Index of the entry; on an axis, of the nearest point.
 
     Raises
     ------
     SettingsError
-        If it is not said, or there is no such entry.
+        If the place is not stated, or there is no such entry.
     """
     size, known = archive.sizes[dim], dict(others or {})
     labels = [str(_label_of(archive, dim, index)) for index in range(size)]
@@ -443,7 +443,7 @@ def _listed(texts: list[str]) -> str:
 
 
 def _nearest(archive: xr.Dataset, dim: str, value: float) -> int:
-    """Point that is nearest; nothing is read beyond the first and the last."""
+    """Index of the nearest point; values outside the range are refused."""
     middle = np.asarray(archive[dim].values, dtype=np.float64)
     rounding = _ROUNDING * float(np.max(np.abs(middle)))
     if not middle.min() - rounding <= value <= middle.max() + rounding:
@@ -457,18 +457,18 @@ def _nearest(archive: xr.Dataset, dim: str, value: float) -> int:
 def _read_at(
     archive: xr.Dataset, values: xr.Variable, place: Mapping[str, int], on_axis: float | None
 ) -> Floats:
-    """Values at a place, shape (n_components,) or (); between points where one is given.
+    """Values at a place, shape (n_components,) or (); interpolated along an axis.
 
     Parameters
     ----------
     archive : xarray.Dataset
-        With the points of the axis.
+        Archive with the points of the axis.
     values : xarray.Variable
-        With the dimensions of the place, and one before them at most.
+        Variable with the dimensions of the place, and at most one before them.
     place : mapping of str to int
         Index along each dimension.
     on_axis : float or None
-        Strain or tension that was asked for. [unit of the axis]
+        Requested strain or tension. [unit of the axis]
 
     Returns
     -------
@@ -494,7 +494,7 @@ def _read_at(
 
 
 def _where_known(archive: xr.Dataset, variable: xr.Variable, place: Mapping[str, int]) -> str:
-    """Places along the last dimension that have a number, the others as asked for."""
+    """Places along the last dimension with a number, for the other places requested."""
     dim = str(variable.dims[-1])
     row = variable.isel({one: at for one, at in place.items() if one != dim})
     known = np.flatnonzero(np.isfinite(row.values))
@@ -511,12 +511,12 @@ _U = "_standard_uncertainty"
 
 _NAMES = ("{}", "test_{}", "{}_coefficient")
 
-# where the archive says why there is no number
+# reasons for missing numbers in the archive
 _REASONS = {"property": "property_remark", "hold": "hold_refusal", "held_pair": "static_refusal"}
 
 
 def quantities_with_budget(archive: xr.Dataset) -> tuple[str, ...]:
-    """Names of the numbers that an archive keeps the shared errors of; channels are none."""
+    """Names of the quantities with shared errors in an archive, except channels."""
     return tuple(
         str(name).removesuffix(_CONTRIBUTION)
         for name in archive.variables
@@ -531,25 +531,25 @@ def budget_from_archive(archive: xr.Dataset, quantity: str, at: Mapping[str, str
     Parameters
     ----------
     archive : xarray.Dataset
-        Of a reduced test, or of experiments.
+        Archive of a reduced test, or of experiments.
     quantity : str
-        Of the vocabulary, as the archive names it; without ``test_`` the mean of the test is
-        meant where the archive keeps only that.
+        Name in the vocabulary and archive; without ``test_`` it means the mean of the test if the
+        archive keeps only that.
     at : mapping of str to str
-        Place along each dimension by label, number, or strain, between bins too; one with a
-        single entry may be left out.
+        Place along each dimension by label, number, or strain (also between bins); optional for a
+        dimension with a single entry.
 
     Returns
     -------
     budget : Budget
-        Of that number.
+        Budget of that number.
 
     Raises
     ------
     SettingsError
-        If the quantity has no budget, or the place is not one number of it.
+        If the quantity has no budget, or the place is not a single number.
     ArchiveError
-        If there is no number at that place, or it is not known how well it is known.
+        If the number or its uncertainty is missing.
     """
     known = quantities_with_budget(archive)
     name = next((one for pattern in _NAMES if (one := pattern.format(quantity)) in known), None)
@@ -594,14 +594,14 @@ def all_budgets(archive: xr.Dataset, quantity: str) -> list[Budget]:
     Parameters
     ----------
     archive : xarray.Dataset
-        Of a reduced test, or of experiments.
+        Archive of a reduced test, or of experiments.
     quantity : str
-        As the archive names it.
+        Name in the archive.
 
     Returns
     -------
     budgets : list of Budget
-        In the order of the archive; none where nothing is known of its shared errors.
+        Budgets in the order of the archive; empty without shared errors.
     """
     if quantity not in quantities_with_budget(archive):
         return []
@@ -616,7 +616,7 @@ def all_budgets(archive: xr.Dataset, quantity: str) -> list[Budget]:
 def _budget_at(
     archive: xr.Dataset, name: str, place: Mapping[str, int], strain: float | None = None
 ) -> Budget:
-    """Budget of one number; with a strain it is read between bins, as a look-up reads it."""
+    """Budget of one number; a strain is interpolated between bins, as in a look-up."""
     variable = archive.variables[name]
     contribution = archive.variables[f"{name}{_CONTRIBUTION}"]
     freedom = np.broadcast_to(random_freedom(archive, name), variable.shape)
@@ -645,7 +645,7 @@ def _budget_at(
 
 
 def _labels(archive: xr.Dataset, place: Mapping[str, int], on_axis: float | None) -> dict[str, str]:
-    """Label of each place; a strain or a tension as it was asked for."""
+    """Label of each place; a strain or a tension as requested."""
     found = {}
     for dim, index in place.items():
         label = _label_of(archive, dim, index)
@@ -656,7 +656,7 @@ def _labels(archive: xr.Dataset, place: Mapping[str, int], on_axis: float | None
 
 
 def _why_there_is_none(archive: xr.Dataset, place: Mapping[str, int]) -> str:
-    """What the archive itself says of a number that is missing, or not known; else nothing."""
+    """Reason in the archive for a missing number or uncertainty; empty if there is none."""
     said = [
         str(archive.variables[name].values[place[dim]])
         for dim, name in _REASONS.items()
@@ -667,7 +667,7 @@ def _why_there_is_none(archive: xr.Dataset, place: Mapping[str, int]) -> str:
 
 
 def _no_budget(archive: xr.Dataset, quantity: str, known: Sequence[str]) -> SettingsError:
-    """Why a quantity has no budget: not there, or not shared."""
+    """Error for a quantity without a budget: absent, or without shared errors."""
     of_archive = next(
         (one for pattern in _NAMES if (one := pattern.format(quantity)) in archive), None
     )

@@ -1,4 +1,4 @@
-"""Arrays that become variables of an archive, and notes as such."""
+"""Converts arrays and notes to variables of an archive."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from reduction.record.note_sentences import Severity
 from reduction.record.notes import Note
 
 Values = dict[str, NDArray[Any]]
-"""Name of the schema to array; dimensions and attributes are the schema's business."""
+"""Arrays by schema name; the schema provides dimensions and attributes."""
 
 
 def texts(items: Sequence[str]) -> NDArray[np.str_]:
-    """Return labels as an array; an empty sequence stays an array of text."""
+    """Return labels as an array; an empty sequence gives an empty text array."""
     return np.array(list(items), dtype=np.str_)
 
 
@@ -28,7 +28,7 @@ def numbers(items: Sequence[float | None]) -> Floats:
 
 
 def pad(rows: Sequence[ArrayLike]) -> Floats:
-    """Put ragged rows under each other, NaN where a row is shorter."""
+    """Stack ragged rows, with NaN where a row is shorter."""
     arrays = [np.atleast_1d(np.asarray(row, dtype=np.float64)) for row in rows]
     table = np.full((len(arrays), max((row.size for row in arrays), default=0)), np.nan)
     for line, row in zip(table, arrays, strict=True):
@@ -37,13 +37,13 @@ def pad(rows: Sequence[ArrayLike]) -> Floats:
 
 
 def pad_texts(rows: Sequence[Sequence[str]]) -> NDArray[np.str_]:
-    """Put ragged rows of labels under each other, "" where a row is shorter."""
+    """Stack ragged rows of labels, with "" where a row is shorter."""
     length = max((len(row) for row in rows), default=0)
     return np.array([[*row, *[""] * (length - len(row))] for row in rows], dtype=np.str_)
 
 
 def stored(dataset: xr.Dataset, name: str) -> xr.Variable | None:
-    """Give a variable of an archive, or nothing.
+    """Return a variable of an archive, or None.
 
     Examples
     --------
@@ -54,9 +54,9 @@ def stored(dataset: xr.Dataset, name: str) -> xr.Variable | None:
 
 
 def at_places(variable: xr.Variable, dim: Hashable, places: Integers) -> xr.Variable:
-    """Give entries of a variable in memory along a dimension, or all of one that lacks it.
+    """Return entries of a variable along a dimension in memory; all of it if it lacks this.
 
-    As `xarray.Variable.isel`, which imports Dask to ask whether the places are an array of it.
+    Like `xarray.Variable.isel`, which would import Dask to check the type of the places.
     """
     if dim not in variable.dims:
         return variable
@@ -73,7 +73,7 @@ NOTE_VARIABLES = (*_NOTE_TEXTS, "note_effect")
 
 
 def note_values(notes: Sequence[Note]) -> Values:
-    """Return notes as variables, in their order."""
+    """Return notes as variables, in order."""
     return {
         "note": texts([str(one) for one in notes]),
         "note_stage": texts([one.stage for one in notes]),
@@ -84,7 +84,7 @@ def note_values(notes: Sequence[Note]) -> Values:
 
 
 def read_notes(archive: xr.Dataset, *, of: tuple[str, str] | None = None) -> tuple[Note, ...]:
-    """Return the notes of an archive, or those where a variable has one value; none twice."""
+    """Return the notes of an archive, optionally for one value of a variable, without repeats."""
     if "note" not in archive:
         return ()
     columns = [archive.variables[name].values.astype(str).tolist() for name in _NOTE_TEXTS]

@@ -1,4 +1,4 @@
-"""Tables as the sheets of one spreadsheet workbook."""
+"""Writes tables as sheets of a spreadsheet workbook."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ _LONGEST_NAME = 31
 _MOST_ROWS = 1_048_576
 _WIDEST = 40
 
-# no clock: equal tables make equal files
+# fixed, so that equal tables give equal files
 _MADE = datetime(2000, 1, 1, tzinfo=UTC).replace(tzinfo=None)
 
 
 @dataclass(frozen=True)
 class Sheet:
-    """A sheet by its name, the headings of its columns with their units, and its rows."""
+    """A sheet: its name, column headings with units, and rows."""
 
     name: str
     headings: Sequence[str]
@@ -36,10 +36,10 @@ class Sheet:
 
 
 def write_workbook(path: Path, sheets: Iterable[Sheet]) -> None:
-    """Write sheets as an xlsx file, whole or not at all.
+    """Write sheets as an xlsx file, completely or not at all.
 
-    Text stays text: nothing is taken for a formula, a link or a number, and what begins with
-    ``=``, ``+``, ``-`` or ``@`` keeps that when the cell is edited.
+    Text stays text: nothing becomes a formula, a link or a number, and text that begins with ``=``,
+    ``+``, ``-`` or ``@`` stays so when the cell is edited.
 
     Raises
     ------
@@ -77,7 +77,7 @@ def write_workbook(path: Path, sheets: Iterable[Sheet]) -> None:
 
 
 def _name(wanted: str, taken: set[str]) -> str:
-    """A name that a sheet may have, and none of the others has.
+    """A valid sheet name, different from the others.
 
     Examples
     --------
@@ -116,11 +116,11 @@ def _fill(page: Any, sheet: Sheet, bold: Any, quoted: Any) -> None:
 
 
 COLUMNS = "columns.csv"
-"""Table of the tables: every column with unit and meaning."""
+"""Table of the tables: every column with its unit and meaning."""
 
 
 def sheets_of_tables(folder: Path) -> list[Sheet]:
-    """Sheets of the answer tables of a campaign: what there is, every column, each table.
+    """Sheets of the answer tables of a campaign: overview, all columns, and each table.
 
     Parameters
     ----------
@@ -130,7 +130,7 @@ def sheets_of_tables(folder: Path) -> list[Sheet]:
     Returns
     -------
     sheets : list of Sheet
-        Numbers are numbers; labels stay text, also where they look like a number.
+        Numbers are numeric; labels stay text, even if they look like a number.
 
     Raises
     ------
@@ -176,7 +176,7 @@ def _read(path: Path) -> list[list[str]]:
 
 
 def _cell(text: str) -> Cell:
-    """A number where the text is one.
+    """The cell as a number if its text is one.
 
     Examples
     --------

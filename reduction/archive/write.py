@@ -1,8 +1,8 @@
-"""Writes archives: a netCDF file appears whole or not at all.
+"""Writes archives: a netCDF file is written completely or not at all.
 
-Who, what, when and with which limits stands apart from the archives: no number depends on it, so
-that a report can be amended while every archive stays what it was.  A text that is empty was not
-stated; a report shows it as such and never leaves it out.
+Statements on persons, dates, instruments and limits are separate from the archives. They affect no
+number, so that a report can be amended without changing any archive.  An empty text was not stated;
+a report shows it as such and never omits it.
 
 References
 ----------
@@ -39,13 +39,13 @@ from reduction.record.errors import ArchiveError
 from reduction.record.samples import release_pages, sample_blocks
 from reduction.uncertainty.budget import DecisionRule
 
-_BLOCK = 1 << 20  # values of the last dimension at a time: whole chunks
+_BLOCK = 1 << 20  # values along the last dimension written together: whole chunks
 
 _CACHE = 1 << 19  # bytes of the largest chunk: each is written once
 
 
 def _write_netcdf(dataset: xr.Dataset, path: Path) -> str:
-    """Write a dataset of `build_dataset`, and return the sum of its values."""
+    """Write a dataset from `build_dataset`, and return the checksum of its values."""
     with netCDF4.Dataset(path, "w", format="NETCDF4") as file:
         file.setncatts(dataset.attrs)
         for name, size in dataset.sizes.items():
@@ -73,7 +73,7 @@ def _write_netcdf(dataset: xr.Dataset, path: Path) -> str:
 
 
 def _placed(dataset: xr.Dataset) -> Iterator[tuple[str, str]]:
-    """Group and name of each variable; a group has the coordinates that the root lacks."""
+    """Group and name of each variable; a group has the coordinates missing from the root."""
     groups_of: dict[Hashable, dict[str, None]] = {}
     for variable in dataset.variables.values():
         for dim in variable.dims:
@@ -95,7 +95,7 @@ def _placed(dataset: xr.Dataset) -> Iterator[tuple[str, str]]:
 
 
 def values_sha256(path: Path) -> str:
-    """Sum of the names and values of all variables, as a file holds them now."""
+    """Checksum of the names and values of all variables currently in a file."""
     found = hashlib.sha256()
     with netCDF4.Dataset(path) as file:
         for group in (file, *file.groups.values()):
@@ -109,7 +109,7 @@ def values_sha256(path: Path) -> str:
 
 
 def _defined(file: netCDF4.Dataset, name: str, variable: xr.Variable) -> netCDF4.Variable[Any]:
-    """Define a variable as its encoding says."""
+    """Define a variable according to its encoding."""
     encoding, dims = variable.encoding, tuple(str(dim) for dim in variable.dims)
     attributes = dict(variable.attrs)
     kind: Any = variable.dtype
@@ -125,8 +125,8 @@ def _defined(file: netCDF4.Dataset, name: str, variable: xr.Variable) -> netCDF4
         for key in ("zlib", "complevel", "shuffle", "chunksizes")
         if key in encoding
     }
-    # with the sum of each chunk the library refuses values that are not as they were written; a
-    # short variable would take several times its size in chunks
+    # with a checksum per chunk the library refuses corrupted values; a short variable would take
+    # several times its size in chunks
     place = file.createVariable(
         name, kind, dims, fill_value=encoding.get("_FillValue"), fletcher32=bool(options), **options
     )
@@ -139,14 +139,14 @@ def _defined(file: netCDF4.Dataset, name: str, variable: xr.Variable) -> netCDF4
 
 
 def _characters(values: NDArray[Any]) -> NDArray[np.bytes_]:
-    """Text as bytes of UTF-8 along one more dimension."""
+    """Text as UTF-8 bytes along an additional dimension."""
     encoded = np.char.encode(values.astype(np.str_, copy=False), "utf-8")
     letters = encoded.astype(f"S{max(encoded.dtype.itemsize, 1)}")
     return np.ascontiguousarray(letters).view("S1").reshape(*values.shape, letters.dtype.itemsize)
 
 
 def _parts(shape: tuple[int, ...], *arrays: NDArray[Any]) -> Iterator[tuple[Any, ...]]:
-    """Blocks of each series in the order of its values, or all of what is short."""
+    """Blocks of each series in order, or the whole array if it is short."""
     if not shape or shape[-1] <= _BLOCK:
         yield (...,)
         return
@@ -156,9 +156,9 @@ def _parts(shape: tuple[int, ...], *arrays: NDArray[Any]) -> Iterator[tuple[Any,
 
 
 def write_archive(dataset: xr.Dataset, path: Path) -> xr.Dataset:
-    """Write a dataset of `reduction.archive.test_dataset.to_dataset` as one netCDF file.
+    """Write a dataset from `reduction.archive.test_dataset.to_dataset` as one netCDF file.
 
-    Returns it with the attribute that writing adds: the sum of its values.
+    Returns it with the attribute added in writing: the checksum of its values.
     """
     try:
         with atomic_file(path) as part:
@@ -171,7 +171,7 @@ def write_archive(dataset: xr.Dataset, path: Path) -> xr.Dataset:
 
 
 def write_text_atomically(path: Path, *pieces: str | bytes) -> None:
-    """Write a text file in UTF-8, line ends as they are in its pieces, whole or not at all."""
+    """Write a UTF-8 text file completely or not at all, with line ends unchanged."""
     with append_atomically(path) as append:
         for one in pieces:
             append(one)
@@ -179,7 +179,7 @@ def write_text_atomically(path: Path, *pieces: str | bytes) -> None:
 
 @contextmanager
 def append_atomically(path: Path) -> Iterator[Callable[[str | bytes], None]]:
-    """Give what adds text to a file that appears whole when the block ends well, or not at all."""
+    """Yield a function that appends to a file, which appears only if the block succeeds."""
     is_in_block = False
     remove_abandoned(path)
     try:
@@ -188,7 +188,7 @@ def append_atomically(path: Path) -> Iterator[Callable[[str | bytes], None]]:
             yield partial(_append, part, path)
             is_in_block = False
     except OSError as error:
-        if is_in_block or isinstance(error, ArchiveError):  # says nothing of this file, or all
+        if is_in_block or isinstance(error, ArchiveError):  # of another file, or complete
             raise
         raise _not_written(path, error) from error
 
@@ -204,7 +204,7 @@ def _append(part: Path, path: Path, text: str | bytes) -> None:
 def _not_written(path: Path, error: Exception) -> ArchiveError:
     found = getattr(error, "strerror", None)
     if not isinstance(found, str) or (getattr(error, "errno", None) or 0) < 0:
-        # numbers of the netCDF library, which does not pass on what the system said
+        # netCDF library error numbers, which hide the system's message
         with suppress(OSError):
             free = shutil.disk_usage(path.parent).free
             found = f"{error}, with {free / 1e6:.0f} MB free on the disk"
@@ -223,12 +223,12 @@ ReportText = Annotated[str, StringConstraints(max_length=4000, strip_whitespace=
 
 
 def _as_text(value: object) -> object:
-    """A date of TOML as it is written there."""
+    """A date of TOML as text, unchanged."""
     return value.isoformat() if isinstance(value, datetime.date) else value
 
 
 Date = Annotated[ReportText, BeforeValidator(_as_text)]
-"""A date of TOML, or text: ``2026-03-05``, ``"2 to 5 March 2026"``."""
+"""A TOML date, or text: ``2026-03-05``, ``"2 to 5 March 2026"``."""
 
 
 class ReportSection(BaseModel):
@@ -244,7 +244,7 @@ class Laboratory(ReportSection):
     address: ReportText = ""
     contact: ReportText = ""
     location: ReportText = ""
-    """Where the tests were made, where that is not the address."""
+    """Place of the tests, if it is not the address."""
     accreditation: ReportText = ""
 
 
@@ -258,13 +258,13 @@ class Client(ReportSection):
 
 
 class ReportItem(ReportSection):
-    """``[report.items.SPECIMEN]``: what came in."""
+    """``[report.items.SPECIMEN]``: an item received."""
 
     identification: ReportText = ""
-    """What is written on it: a serial number, a tag."""
+    """Marking on it: a serial number, a tag."""
     description: ReportText = ""
     condition: ReportText = ""
-    """On receipt."""
+    """Condition on receipt."""
     received: Date = ""
 
 
@@ -288,20 +288,20 @@ class Instrument(ReportSection):
 
 
 class ReportLimit(ReportSection):
-    """A limit that a number of a test is held against; at least one end is given.
+    """A limit for a number of a test, with at least one end.
 
     Parameters
     ----------
     quantity : str
-        Name of the vocabulary.
+        Name in the vocabulary.
     test : str
-        Id of the product: of a test, or of a step of one.
+        Id of the product of a test or a step.
     at : dict of str to str
-        Place of the number along each dimension, as `reduction budget` takes it.
+        Place of the number along each dimension, as for `reduction budget`.
     lower, upper : float or None
-        In SI. [unit of the quantity]
+        Ends in SI. [unit of the quantity]
     source : str
-        Where the limit stands.
+        Source of the limit.
     """
 
     quantity: str
@@ -316,25 +316,25 @@ AnyLimit = TypeVar("AnyLimit")
 
 
 class Statement(ReportSection, Generic[AnyLimit]):
-    """``[report]``: every key may be left out; the report then says that it is not stated."""
+    """``[report]``: all keys are optional; the report says which are not stated."""
 
     number: ReportText = ""
     revision: int = Field(default=0, ge=0)
     amendment: ReportText = ""
-    """What this revision changed, and which report it replaces."""
+    """Changes in this revision, and the report it replaces."""
     issued: Date = ""
     received: Date = ""
-    """When the items came in, where they came together."""
+    """Date of receipt, if the items arrived together."""
     tested: Date = ""
     method: ReportText = ""
     deviations: ReportText = ""
-    """From the method: ``"none"`` where there were none."""
+    """Deviations from the method: ``"none"`` if there were none."""
     sampling: ReportText = ""
     environment: ReportText = ""
     opinions: ReportText = ""
-    """Opinions and interpretations, which the report marks as such."""
+    """Opinions and interpretations, marked as such in the report."""
     decision_rule: DecisionRule | None = None
-    """Required where a limit is given."""
+    """Required if a limit is given."""
     paper: Paper = "A4"
     laboratory: Laboratory = Laboratory()
     client: Client = Client()
@@ -345,11 +345,11 @@ class Statement(ReportSection, Generic[AnyLimit]):
 
 
 class ReportDetails(Statement[ReportLimit]):
-    """What the laboratory states, with limits in SI."""
+    """Statements of the laboratory, with limits in SI."""
 
 
 def keep_details(folder: Path, details: ReportDetails | None) -> None:
-    """Write what the laboratory states, or take away what an earlier run kept."""
+    """Write the statements of the laboratory, or remove those of an earlier run."""
     path = folder / FILE_NAME
     if details is None:
         take_away(path)
@@ -358,7 +358,7 @@ def keep_details(folder: Path, details: ReportDetails | None) -> None:
 
 
 def read_details(folder: Path) -> ReportDetails | None:
-    """Read what the laboratory states."""
+    """Read the statements of the laboratory."""
     path = folder / FILE_NAME
     if not path.is_file():
         return None

@@ -1,1 +1,1 @@
-"""A campaign from its logs to its products."""
+"""Runs a campaign from its logs to its products."""

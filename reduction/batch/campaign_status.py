@@ -1,4 +1,4 @@
-"""Status of each test and each part of a campaign, and progress while it runs."""
+"""Status of each test and each part of a campaign, and progress during the run."""
 
 from __future__ import annotations
 
@@ -17,28 +17,28 @@ Status = Literal["reduced", "check", "unchanged", "no_work", "failed"]
 
 @dataclass(frozen=True)
 class TestStatus:
-    """What became of one test.
+    """Result of one test.
 
     Parameters
     ----------
     test : str
-        Its id.
+        Id of the test.
     status : Status
-        ``no_work`` where the campaign asked for something else.
+        Status; ``no_work`` if the test was not requested.
     exit_status : int
-        As the command line defines it.
+        Exit status as on the command line.
     message : str
-        The error, or what could move an answer most.
+        The error, or the note with the largest effect on an answer.
     n_rows, n_cycles : int
-        Rows of the log; whole cycles found.
+        Number of log rows; number of complete cycles.
     raw_sha256 : str
-        Hashes of its raw files, parted by blanks.
+        Hashes of its raw files, separated by blanks.
     seconds : float
         Wall time; not part of any product.
     found : dict
-        What `check` prints: rate, gaps, flags.
+        Output of `check`: rate, gaps, flags.
     worker : str
-        Address of the worker that reduced it, where there are several.
+        Address of the worker that reduced it, if there are several.
     """
 
     __test__ = False  # a test of a tether, not of this software
@@ -55,7 +55,7 @@ class TestStatus:
     worker: str = ""
 
     def document(self) -> dict[str, Any]:
-        """The entry of ``tests`` in the JSON answer."""
+        """The entry in ``tests`` of the JSON answer."""
         entry = asdict(self)
         entry["id"] = entry.pop("test")
         return entry
@@ -63,10 +63,10 @@ class TestStatus:
 
 @dataclass(frozen=True)
 class PartStatus:
-    """What became of an experiment, a hose or a comparison.
+    """Result of an experiment, a hose or a comparison.
 
-    ``status`` is ``fitted``, ``predicted`` or ``compared``; ``check`` where something could move
-    its answer; ``failed``; or ``no_work``.
+    ``status`` is ``fitted``, ``predicted`` or ``compared``; ``check`` if something may affect its
+    answer; ``failed``; or ``no_work``.
     """
 
     id: str
@@ -98,7 +98,7 @@ def status_csv(rows: Sequence[TestStatus]) -> str:
 
 
 def read_status(path: Path) -> dict[str, TestStatus]:
-    """Rows of an earlier status.csv by test; empty where there is none that can be read."""
+    """Rows of an earlier status.csv by test; empty if it is missing or unreadable."""
     try:
         with path.open(encoding="utf-8", newline="") as file:
             rows = list(csv.DictReader(file))
@@ -116,12 +116,12 @@ def read_status(path: Path) -> dict[str, TestStatus]:
             for row in rows
         }
     except (OSError, KeyError, ValueError, TypeError):
-        return {}  # it is made anew, from what this run did
+        return {}  # it is written again from this run
 
 
 @dataclass(frozen=True)
 class ShownTable:
-    """A table as it is printed: texts alone, ``number_columns`` flush right."""
+    """A table in printed form: texts only, ``number_columns`` right-aligned."""
 
     caption: str
     columns: Sequence[str]
@@ -131,7 +131,7 @@ class ShownTable:
 
 @dataclass(frozen=True)
 class ShownAnswers:
-    """What a run shows first: tables of answers, doubts with their tests, tests with a row."""
+    """First output of a run: tables of answers, doubts with their tests, tests with a row."""
 
     tables: Sequence[ShownTable]
     doubts: Sequence[tuple[str, str]]
@@ -141,13 +141,12 @@ class ShownAnswers:
 
 @dataclass(frozen=True)
 class CampaignResult:
-    """What a run did: one status a test and a part, and what it wrote.
+    """Result of a run: the status of each test and part, and the files written.
 
-    ``parts`` are those that are no tests: ``experiments``, ``hoses`` and ``comparisons``.
-    ``superseded`` are archives of earlier runs that nothing in the campaign makes now, where they
-    were put; ``stray`` those that stay, since a log could not be read.  ``results`` is what the
-    table of results holds, ``read`` the SHA-256 of each file of the campaign that was read, by
-    name.
+    ``parts`` are ``experiments``, ``hoses`` and ``comparisons``, as opposed to tests.
+    ``superseded`` are archives of earlier runs that the campaign no longer makes, at their new
+    location; ``stray`` are those left in place because a log could not be read.  ``results`` is the
+    content of the table of results, ``read`` the SHA-256 of each campaign file read, by name.
     """
 
     tests: tuple[TestStatus, ...]
@@ -163,45 +162,45 @@ class CampaignResult:
 
     @property
     def exit_status(self) -> int:
-        """The highest seen."""
+        """The highest exit status of the tests and parts."""
         seen = [test.exit_status for test in self.tests]
         seen += [one.exit_status for parts in self.parts.values() for one in parts]
         return max(seen, default=0)
 
 
 def note_message(notes: Sequence[Note]) -> str:
-    """The one thing that could move an answer most; nothing where there is none.
+    """The note with the largest effect on an answer; empty if there is none.
 
-    What else is known stands in the archive, and in the report behind a fold.
+    The other notes are in the archive, and in a collapsed part of the report.
     """
     doubts = [one for one in by_severity(notes) if one.severity == "warning"]
     return full_note(doubts[0].stage, str(doubts[0])) if doubts else ""
 
 
 class Progress(Protocol):
-    """One who is told how far a campaign is."""
+    """Receiver of the progress of a campaign."""
 
     def stage(self, name: str, n_tests: int) -> None:
-        """A stage begins that works on so many tests; none for tables and report."""
+        """A stage starts with this number of tests; none for tables and report."""
         ...
 
     def begun(self, test: str) -> None:
-        """Work on a test began in this process."""
+        """Work on a test has started in this process."""
         ...
 
     def ended(self, test: str, status: TestStatus | None = None) -> None:
-        """Work on a test ended in this stage; with its status where nothing more comes."""
+        """Work on a test has ended in this stage; with its status if it is final."""
         ...
 
 
 class Silent:
-    """Nobody listens."""
+    """Ignores progress."""
 
     def stage(self, name: str, n_tests: int) -> None:
-        """Nothing."""
+        """Do nothing."""
 
     def begun(self, test: str) -> None:
-        """Nothing."""
+        """Do nothing."""
 
     def ended(self, test: str, status: TestStatus | None = None) -> None:
-        """Nothing."""
+        """Do nothing."""

@@ -1,4 +1,4 @@
-"""The catalogue: tests, conditions and numbers of all campaigns."""
+"""The catalogue of the tests, conditions and numbers of all campaigns."""
 
 from __future__ import annotations
 
@@ -32,24 +32,24 @@ TEXTS: Final = (
     "specimen_kind", "specimen_material", "specimen_construction", "specimen_condition",
     "synthetic", "archive",
 )  # fmt: skip
-"""What is said of a test in words."""
+"""Text conditions of a test."""
 
 NUMBERS: Final = (
     "n_cycles", "test_frequency", "test_mean_tension", "test_tension_amplitude",
     "test_mean_strain", "test_strain_amplitude", "least_strain", "greatest_strain", "diameter",
     "rated_break_strength",
 )  # fmt: skip
-"""What is said of a test in numbers, SI."""
+"""Numeric conditions of a test, in SI."""
 
 CONDITIONS: Final = (*TEXTS[:-2], *NUMBERS, *TEXTS[-2:])
-"""Columns of a table of tests, in order."""
+"""Columns of a table of tests in order."""
 
 NUMBER: Final = ("quantity", "value", "standard_uncertainty")
-"""Columns of a number; a row of a test has none."""
+"""Columns of a number; empty in a row for a test."""
 
 
 def _column_type(name: str) -> Any:
-    """Arrow type of a column by its row in the vocabulary: text where it has no unit."""
+    """Arrow type of a column from its row in the vocabulary: text if it has no unit."""
     if name == "quantity":
         return pyarrow.string()
     row = QUANTITIES.get(name)
@@ -57,7 +57,7 @@ def _column_type(name: str) -> Any:
 
 
 def _standing_for(name: str) -> str:
-    """Name of the mean over a test, where a quantity of the cycles has one.
+    """Name of the mean over a test, if a cycle quantity has one.
 
     Examples
     --------
@@ -92,13 +92,13 @@ class Catalogue:
     Parameters
     ----------
     tests : pandas.DataFrame
-        A row for each specimen of each archive, and one before them for the whole archive; the
-        index is counted through.
+        A row for each specimen of each archive, after one for the whole archive; the index is
+        consecutive.
     numbers : pandas.DataFrame
         ``row`` of ``tests``, ``quantity``, ``value``, ``standard_uncertainty`` (SI), and a column
-        for each dimension along which numbers stand.
+        for each dimension of the numbers.
     unreadable : dict of str to str
-        Campaigns and archives that are not in it, each with the reason.
+        Reasons for campaigns and archives left out.
     """
 
     tests: pd.DataFrame
@@ -107,7 +107,7 @@ class Catalogue:
 
 
 def _mark() -> bytes:
-    """What a catalogue of this version says of itself."""
+    """Version mark of a catalogue."""
     return f"{_FORMAT} {__version__}".encode()
 
 
@@ -117,19 +117,19 @@ def load_catalogue(folder: Path, quantities: Sequence[str] | None = None) -> Cat
     Parameters
     ----------
     folder : pathlib.Path
-        Holds a folder for each campaign.
+        Folder with one folder per campaign.
     quantities : sequence of str, optional
-        Whose numbers are read; left out: all.
+        Quantities to read; default all.
 
     Returns
     -------
     catalogue : Catalogue
-        Archives that are gone are not in it.
+        Deleted archives are not included.
 
     Raises
     ------
     SettingsError
-        If the folder is none of processed campaigns.
+        If the folder is not one of processed campaigns.
     """
     tests, values, unreadable = [_NO_TESTS], [_NO_VALUES], {}
     n_rows = 0
@@ -160,8 +160,8 @@ def load_catalogue(folder: Path, quantities: Sequence[str] | None = None) -> Cat
 
 
 def _tables_of(path: Path, quantities: Sequence[str] | None) -> tuple[Any, Any]:
-    """Rows of tests, and of numbers without what their tests say."""
-    # opened here: a path may be no text; in one thread: of many small files each is quickest so
+    """Rows of tests, and of numbers without the conditions of their tests."""
+    # opened here: a path may not be valid text; one thread is fastest for many small files
     with path.open("rb") as opened, pyarrow.parquet.ParquetFile(opened) as file:
         names = file.schema_arrow.names
         if (file.schema_arrow.metadata or {}).get(MARK) != _mark():
@@ -184,7 +184,7 @@ def _counted_from(first: int, table: Any) -> Any:
 
 
 def _shown_path(path: str) -> str:
-    r"""A path as text that any file takes: bytes that are no text stand as ``\\xff``.
+    r"""A path as text for any file; bytes that are not text become ``\\xff``.
 
     Examples
     --------
@@ -195,27 +195,27 @@ def _shown_path(path: str) -> str:
 
 
 def _archives_of(campaign: Path) -> list[Path]:
-    """Archives of a campaign, by name; what begins with a dot is none."""
+    """Archives of a campaign by name, except those that begin with a dot."""
     return [path for path in archives_in(campaign) if not path.name.startswith(".")]
 
 
 def campaigns_below(folder: Path) -> list[Path]:
-    """Folders of the campaigns of a folder of products.
+    """Folders of the campaigns in a folder of products.
 
     Parameters
     ----------
     folder : pathlib.Path
-        Holds one folder for each campaign.
+        Folder with one folder per campaign.
 
     Returns
     -------
     campaigns : list of pathlib.Path
-        In order of their names; those whose names begin with a dot are left out.
+        In order of name; names that begin with a dot are left out.
 
     Raises
     ------
     SettingsError
-        If there is no such folder, it cannot be read, or it is that of one campaign.
+        If the folder is missing or unreadable, or belongs to one campaign.
     """
     if not folder.is_dir():
         raise SettingsError(
@@ -256,18 +256,18 @@ _EXAMPLE = 'such as "frequency >= 0.1 Hz" or "medium = wet"'
 
 @dataclass(frozen=True)
 class _Condition:
-    """What has to hold of a row.
+    """Condition on a row.
 
     Parameters
     ----------
     name : str
-        Quantity, as it was written.
+        Quantity, unchanged.
     operator : str
-        ``<``, ``<=``, ``>``, ``>=``, ``=`` or ``!=``; a text has the last two.
+        ``<``, ``<=``, ``>``, ``>=``, ``=`` or ``!=``; for text only the last two.
     value : float or str
-        In the unit of the vocabulary, or a text.
+        Number in the unit of the vocabulary, or a text.
     is_share : bool
-        The value is a share of the rated break strength of the row.
+        Whether the value is a share of the rated break strength of the row.
     """
 
     name: str
@@ -277,22 +277,22 @@ class _Condition:
 
 
 def condition_of(text: str) -> _Condition:
-    """Read a condition.
+    """Parse a condition.
 
     Parameters
     ----------
     text : str
-        Name, operator, value with its unit.
+        Name, operator, value with unit.
 
     Returns
     -------
     condition : _Condition
-        In SI.
+        Condition in SI.
 
     Raises
     ------
     SettingsError
-        If it has another form, the vocabulary lacks the name, or the unit is of another dimension.
+        If the form is wrong, the name is unknown, or the unit has another dimension.
 
     Examples
     --------
@@ -360,22 +360,22 @@ _OWN = ("row", *NUMBER)
 
 
 def rows_with(catalogue: Catalogue, tests: pd.DataFrame, asked: Sequence[str]) -> pd.DataFrame:
-    """Rows of tests with the numbers that are asked for.
+    """Rows of tests with the requested numbers.
 
     Parameters
     ----------
     catalogue : Catalogue
-        With those numbers.
+        Catalogue with those numbers.
     tests : pandas.DataFrame
-        Rows of ``catalogue.tests`` that count.
+        Selected rows of ``catalogue.tests``.
     asked : sequence of str
-        Quantities; without one each specimen of each test is a row.
+        Quantities; without any, each specimen of each test is a row.
 
     Returns
     -------
     table : pandas.DataFrame
-        `CONDITIONS`, a column for each dimension, each quantity and its standard uncertainty, and
-        ``row`` of ``catalogue.tests``; in the order of tests, places as in their archives.
+        `CONDITIONS`, a column for each dimension, each quantity with its standard uncertainty, and
+        ``row`` of ``catalogue.tests``; tests in order, places as in their archives.
     """
     values = catalogue.numbers[catalogue.numbers["row"].isin(tests.index)]
     parts = {name: _numbers_of(values, name) for name in asked}
@@ -390,7 +390,7 @@ def rows_with(catalogue: Catalogue, tests: pd.DataFrame, asked: Sequence[str]) -
         rows = together.groupby(keys, sort=False, dropna=False)[numbers].max().reset_index()
     places = [name for name in rows.columns if name != "row" and not _is_number(name, asked)]
     if of_tests:
-        # one row without place for tests that have none
+        # one row without a place for tests that have none
         known = pd.concat([one.dropna(subset=name)["row"] for name, one in of_tests.items()])
         others = pd.DataFrame({"row": sorted(set(known) - set(rows["row"]))}, dtype=np.int64)
         rows = pd.concat([rows, others], ignore_index=True) if len(rows) else others
@@ -400,14 +400,14 @@ def rows_with(catalogue: Catalogue, tests: pd.DataFrame, asked: Sequence[str]) -
         rows = rows.dropna(subset=list(asked), how="all")
     rows = rows.reindex(columns=["row", *places, *(n for name in asked for n in _columns_of(name))])
     rows = rows.sort_values("row", kind="stable", ignore_index=True)
-    # a condition that is asked for as a quantity stands once, with its uncertainty
+    # a condition requested as a quantity is included once, with its uncertainty
     names = [name for name in CONDITIONS if name not in asked]
     about = tests.loc[rows["row"], names].reset_index(drop=True)
     return pd.concat([about, rows], axis=1)
 
 
 def _with_quantity(table: pd.DataFrame, catalogue: Catalogue, name: str) -> pd.DataFrame:
-    """The same rows with a quantity of their tests."""
+    """The same rows with a quantity of their tests added."""
     part = _numbers_of(catalogue.numbers, name)
     places = _places(part, name)
     if places:
@@ -420,7 +420,7 @@ def _with_quantity(table: pd.DataFrame, catalogue: Catalogue, name: str) -> pd.D
 
 
 def _numbers_of(values: pd.DataFrame, name: str) -> pd.DataFrame:
-    """Numbers of a quantity with their places, under its names."""
+    """Numbers of a quantity with their places, in columns named after it."""
     part = values[values["quantity"] == name]
     places = [one for one in part.columns if one not in _OWN and part[one].notna().any()]
     part = part[["row", *places, "value", "standard_uncertainty"]]
@@ -428,7 +428,7 @@ def _numbers_of(values: pd.DataFrame, name: str) -> pd.DataFrame:
 
 
 def _places(part: pd.DataFrame, name: str) -> list[str]:
-    """Dimensions along which the numbers stand."""
+    """Dimensions of the numbers."""
     return [one for one in part.columns if one not in ("row", *_columns_of(name))]
 
 
@@ -441,22 +441,22 @@ def _is_number(name: str, asked: Sequence[str]) -> bool:
 
 
 def _is_listed(tests: pd.DataFrame) -> NDArray[np.bool_]:
-    """A row for each specimen, and for each archive that has none."""
+    """A row for each specimen, and for each archive without specimens."""
     is_whole = tests["is_whole"].to_numpy(bool)
-    # the row of the whole stands before those of its specimens
+    # the row of the whole archive precedes those of its specimens
     listed: NDArray[np.bool_] = ~is_whole | np.append(is_whole[1:], True)[: is_whole.size]
     return listed
 
 
 def _beside(rows: pd.DataFrame, part: pd.DataFrame, name: str) -> pd.DataFrame:
-    """Numbers of tests beside each of their rows."""
+    """Join the numbers of tests to each of their rows."""
     of_row = part.set_index("row")
     return rows.assign(**{one: rows["row"].map(of_row[one]) for one in _columns_of(name)})
 
 
 _WORD = re.compile(r"[\w.]+")
 
-# a value that came by way of another unit is not the same to the last bit
+# a value converted from another unit may differ in the last bit
 _ALIKE = 1e-9
 
 _COMPARE: Final[dict[str, Callable[[Any, float], NDArray[np.bool_]]]] = {
@@ -471,30 +471,30 @@ _COMPARE: Final[dict[str, Callable[[Any, float], NDArray[np.bool_]]]] = {
 
 @dataclass(frozen=True)
 class Query:
-    """What is asked.
+    """Query of the catalogue.
 
     Parameters
     ----------
     names : dict of str to tuple of str
-        Column (``campaign``, ``test``, ``test_kind``, ``specimen``) to patterns with ``*``, ``?``
-        and ``[...]``; one of them has to fit, in any case of letters.
+        Patterns with ``*``, ``?`` and ``[...]`` by column (``campaign``, ``test``, ``test_kind``,
+        ``specimen``); one of them must match, ignoring case.
     words : dict of str to str
-        Column (``medium``, ``specimen_material``, ...) to words, each of which begins a word
-        of the text.
+        Words by column (``medium``, ``specimen_material``, ...), each of which must begin a word of
+        the text.
     synthetic : bool, optional
-        Only synthetic data, or only measured data.
+        Only synthetic, or only measured data.
     where : tuple of _Condition
-        All have to hold; a number that is missing fits none.
+        All must hold; a missing number meets none.
     quantity : tuple of str
-        Numbers that are shown; a row needs one of them.
+        Quantities to show; a row needs at least one of them.
     by_cycle : bool
-        A quantity of the cycles is not its mean over the test, but that of each cycle kept.
+        Show a cycle quantity for each cycle kept instead of its mean over the test.
     sort : tuple of str
-        Columns by which rows are sorted.
+        Columns to sort by.
     descending : bool
-        From the greatest.
+        Largest first.
     limit : int, optional
-        Rows that are given at most.
+        Maximum number of rows.
     """
 
     names: dict[str, tuple[str, ...]] = field(default_factory=dict)
@@ -509,22 +509,22 @@ class Query:
 
     @property
     def asked(self) -> tuple[str, ...]:
-        """Quantities by the names of the catalogue."""
+        """Requested quantities by their names in the catalogue."""
         names = self.quantity if self.by_cycle else map(_standing_for, self.quantity)
         return tuple(dict.fromkeys(names))
 
     def column(self, name: str) -> str:
-        """Name of the column that a condition or an order means."""
+        """Column of a condition or sort key."""
         return name if name in self.asked else _standing_for(name)
 
 
 def needed_quantities(query: Query) -> tuple[str, ...]:
-    """Quantities whose numbers a question needs.
+    """Quantities needed to answer a query.
 
     Raises
     ------
     SettingsError
-        If the vocabulary lacks a name.
+        If a name is not in the vocabulary.
     """
     for option, names in (("--quantity", query.quantity), ("--sort", query.sort)):
         for name in names:
@@ -540,14 +540,14 @@ def needed_quantities(query: Query) -> tuple[str, ...]:
 
 
 def answer(catalogue: Catalogue, query: Query) -> Any:
-    """Rows that fit a question.
+    """Rows that match a query.
 
     Parameters
     ----------
     catalogue : Catalogue
-        With the numbers of `needed_quantities`.
+        Catalogue with the numbers of `needed_quantities`.
     query : Query
-        What is asked.
+        Query to answer.
 
     Returns
     -------
@@ -558,8 +558,8 @@ def answer(catalogue: Catalogue, query: Query) -> Any:
     Raises
     ------
     SettingsError
-        If the vocabulary lacks a name, or a condition or an order is about numbers that stand in
-        several places of a test and are not asked for.
+        If a name is not in the vocabulary, or a condition or sort key has numbers at several places
+        of a test and is not requested.
     """
     others = [name for name in needed_quantities(query) if name not in query.asked]
     table = rows_with(catalogue, catalogue.tests[_fits(catalogue.tests, query)], query.asked)
@@ -568,7 +568,7 @@ def answer(catalogue: Catalogue, query: Query) -> Any:
             table = _with_quantity(table, catalogue, name)
     for condition in query.where:
         table = table[_holds(table, query.column(condition.name), condition)]
-    if query.sort:  # stable: rows that are alike stay in the order of their tests
+    if query.sort:  # stable: equal rows keep the order of their tests
         names = [query.column(name) for name in query.sort]
         table = _sorted(table, names, descending=query.descending)
     table = table.drop(columns="row").iloc[: query.limit]
@@ -580,13 +580,13 @@ def answer(catalogue: Catalogue, query: Query) -> Any:
 
 
 def quantities_there(catalogue: Catalogue) -> dict[str, int]:
-    """Quantities of a catalogue with all its numbers, and how many numbers each has, by name."""
+    """Number of values of each quantity in a full catalogue, by name."""
     known = catalogue.numbers.dropna(subset="value")
     return {str(name): int(n) for name, n in known["quantity"].value_counts().sort_index().items()}
 
 
 def _fits(tests: pd.DataFrame, query: Query) -> NDArray[np.bool_]:
-    """Rows of tests that fit names and words."""
+    """Rows of tests that match names and words."""
     fits = np.ones(len(tests), np.bool_)
     for column, patterns in query.names.items():
         wanted = [pattern.casefold() for pattern in patterns]
@@ -609,12 +609,12 @@ def _fits(tests: pd.DataFrame, query: Query) -> NDArray[np.bool_]:
 
 
 def _texts_that(column: pd.Series[Any], fits: Callable[[str], bool]) -> NDArray[np.bool_]:
-    """Entries of a column whose text fits; each text is asked once."""
+    """Entries of a column whose text matches; each text is tested once."""
     return column.isin([text for text in column.dropna().unique() if fits(text)]).to_numpy()
 
 
 def _holds(table: pd.DataFrame, name: str, condition: _Condition) -> NDArray[np.bool_]:
-    """Rows of which a condition holds; a number or text that is missing fits none."""
+    """Rows that meet a condition; a missing number or text does not."""
     column = table[name]
     holds: NDArray[np.bool_]
     if isinstance(condition.value, str):
@@ -631,7 +631,7 @@ def _holds(table: pd.DataFrame, name: str, condition: _Condition) -> NDArray[np.
 
 
 def _sorted(table: pd.DataFrame, names: list[str], *, descending: bool) -> pd.DataFrame:
-    """Rows in an order; those without the number last."""
+    """Sorted rows, those without the number last."""
     for name in reversed(names):
         table = table.sort_values(name, ascending=not descending, kind="stable")
     return table
@@ -653,7 +653,7 @@ def unit_of(name: str) -> str:
 
 
 def meaning_of(name: str) -> str:
-    """What a column holds, in words."""
+    """Description of a column."""
     row = QUANTITIES.get(name)
     if row is not None:
         return row.long_name
@@ -662,12 +662,12 @@ def meaning_of(name: str) -> str:
 
 
 def check_ending(path: Path) -> None:
-    """Refuse a file that is neither CSV nor Parquet, before the work is done.
+    """Refuse a file that is neither CSV nor Parquet before the work is done.
 
     Raises
     ------
     SettingsError
-        If the name ends otherwise.
+        If the name has another suffix.
     """
     if path.suffix.lower() not in (".csv", ".parquet"):
         raise SettingsError(
@@ -678,19 +678,19 @@ def check_ending(path: Path) -> None:
 
 
 def write_answer(table: Any, path: Path) -> None:
-    """Write a table of `reduction.batch.catalogue.answer`, SI, whole or not at all.
+    """Write a table from `reduction.batch.catalogue.answer` in SI, completely or not at all.
 
     Parameters
     ----------
     table : pyarrow.Table
-        Its columns have names of the vocabulary.
+        Its columns are named as in the vocabulary.
     path : pathlib.Path
-        Ends in ``.csv`` or ``.parquet``.
+        Path that ends in ``.csv`` or ``.parquet``.
 
     Raises
     ------
     SettingsError
-        If the name ends otherwise.
+        If the name has another suffix.
     ArchiveError
         If the disk refuses.
     """
@@ -714,7 +714,7 @@ def write_answer(table: Any, path: Path) -> None:
 
 @contextmanager
 def _whole_file(path: Path) -> Iterator[Path]:
-    """Give a temporary name for a file; `ArchiveError` where the disk refuses."""
+    """Yield a temporary name for a file; `ArchiveError` if the disk refuses."""
     try:
         with atomic_file(path) as part:
             yield part
@@ -729,7 +729,7 @@ def _whole_file(path: Path) -> Iterator[Path]:
 
 
 def _safe(table: Any) -> Any:
-    """The table with no text that a spreadsheet program takes for a formula."""
+    """The table without text that a spreadsheet program would take for a formula."""
     for place, column in enumerate(table.schema):
         if pyarrow.types.is_string(column.type) or pyarrow.types.is_large_string(column.type):
             texts = [None if one is None else safe_cell(one) for one in table[place].to_pylist()]

@@ -1,4 +1,4 @@
-"""Rows of the catalogue from the archives of a campaign, and the file that holds them."""
+"""Builds catalogue rows from the archives of a campaign, and writes the file."""
 
 from __future__ import annotations
 
@@ -40,16 +40,16 @@ LEFT_OUT: Final = frozenset(
     {"sample", "selected_cycle", "bound", "uncertainty_component", "uncertainty_source"}
 )
 
-"""Dimensions that stay in the archives: samples, curves by cycle, parts of uncertainties."""
+"""Dimensions not copied from the archives: samples, curves by cycle, parts of uncertainties."""
 
 _SAMPLES_AT_ONCE = 1_000_000
 
 _CYCLES_AT_ONCE = 10_000
 
-_ROWS_AT_ONCE = 16_384  # their conditions, and what the writer keeps of 60 columns, take 40 MB
+_ROWS_AT_ONCE = 16_384  # with conditions and writer buffers for 60 columns they take 40 MB
 
 _ARCHIVES_AT_ONCE = 100
-"""Whose numbers are sorted together, in some 30 MB."""
+"""Number of archives sorted together, in about 30 MB."""
 
 _WHOLE = -1
 
@@ -62,30 +62,30 @@ _TESTS = pyarrow.schema(
 
 @dataclass(frozen=True)
 class CatalogueEntry:
-    """What a catalogue keeps of one archive."""
+    """Catalogue data of one archive."""
 
     rows: list[dict[str, Any]]
     numbers: list[Any]
 
 
 class CatalogueEntries:
-    """Entries of archives, on disk until the catalogue is written: a thousand take 0.3 GB."""
+    """Entries of archives, kept on disk until the catalogue is written: a thousand take 0.3 GB."""
 
     def __init__(self) -> None:
         self._scratch = ScratchFile()
         self._places: dict[Path, slice] = {}
 
     def __contains__(self, path: Path) -> bool:
-        """Whether an archive has its entry."""
+        """Whether an archive has an entry."""
         return path in self._places
 
     def __getitem__(self, path: Path) -> CatalogueEntry:
-        """Give the entry of an archive."""
+        """Return the entry of an archive."""
         found: CatalogueEntry = pickle.loads(self._scratch.get(self._places[path]))  # noqa: S301
         return found
 
     def add(self, path: Path, archive: xr.Dataset) -> None:
-        """Keep the entry of an archive."""
+        """Store the entry of an archive."""
         self._places[path] = self._scratch.put(pickle.dumps(entry_of(path, archive)))
 
 
@@ -96,7 +96,7 @@ def write_catalogue(
     entries: CatalogueEntries | None = None,
     opener: Opener = reading,
 ) -> None:
-    """Write the catalogue of a campaign, whole or not at all; what has an entry is not opened."""
+    """Write the catalogue of a campaign completely or not at all; indexed archives stay closed."""
     entries = entries or CatalogueEntries()
     for one in archives:
         if one not in entries:
@@ -106,7 +106,7 @@ def write_catalogue(
 
 
 def rebuild(folder: Path) -> dict[str, str]:
-    """Write the catalogue of every campaign of a folder from the archives that are there."""
+    """Write the catalogue of every campaign in a folder from the existing archives."""
     left_out = {}
     for campaign in campaigns_below(folder):
         shown = _shown_path(campaign.name)
@@ -118,7 +118,7 @@ def rebuild(folder: Path) -> dict[str, str]:
                         entries.add(path, archive)
                     known.append(path)
                 except (ArchiveError, OSError, RuntimeError, ValueError, LookupError) as error:
-                    # one that opens may have parts that are damaged, or not those of an archive
+                    # an archive that opens may have damaged parts, or parts of something else
                     words = (str(error) or type(error).__name__).splitlines()[0]
                     left_out[f"{shown}/{_shown_path(path.name)}"] = _shown_path(words)
             if known:
@@ -129,7 +129,7 @@ def rebuild(folder: Path) -> dict[str, str]:
 
 
 def _write(entries: CatalogueEntries, archives: Sequence[Path], path: Path) -> None:
-    """Write the tests, then their numbers, a part of the archives at a time."""
+    """Write the tests, then their numbers, for some of the archives at a time."""
     parts = [
         archives[first : first + _ARCHIVES_AT_ONCE]
         for first in range(0, len(archives), _ARCHIVES_AT_ONCE)
@@ -144,14 +144,14 @@ def _write(entries: CatalogueEntries, archives: Sequence[Path], path: Path) -> N
         of_parts.append(pyarrow.Table.from_pylist(rows, schema=_TESTS))
     tests = pyarrow.concat_tables(of_parts)
     first_row = dict(zip(archives, ends, strict=False))
-    # each number with the conditions of its test: the file can be read by itself
+    # each number has the conditions of its test, so that the file is self-contained
     conditions = tests.select(["row", "is_whole", *CONDITIONS]).combine_chunks()
     types = {name: _TYPES.get(name) or _column_type(name) for name in names}
     schema = pyarrow.schema(types.items(), {MARK: _mark()})
     remove_abandoned(path)
     with (
         _whole_file(path) as new,
-        new.open("wb") as file,  # opened here: a path may be no text
+        new.open("wb") as file,  # opened here: a path may not be valid text
         pyarrow.parquet.ParquetWriter(file, schema, compression="zstd") as writer,
     ):
         writer.write_table(_complete(tests, schema), max(1, tests.num_rows))  # the first group
@@ -162,18 +162,18 @@ def _write(entries: CatalogueEntries, archives: Sequence[Path], path: Path) -> N
                     row = pyarrow.array(table["row"].to_numpy() + first_row[one], pyarrow.int32())
                     numbers.append(table.set_column(0, "row", row))
             for some in _by_quantity(numbers):
-                # in one piece: each piece of each column costs as much as some thousand rows
+                # in one piece: each piece of a column costs as much as some thousand rows
                 table = pyarrow.concat_tables(some, promote_options="default").combine_chunks()
                 of_test = conditions.take(table["row"]).drop_columns("row")
                 for name in of_test.column_names:
                     table = table.append_column(name, of_test[name])
                 writer.write_table(_complete(table, schema), table.num_rows)
-    # what the writer had is not needed again
+    # the memory of the writer is no longer needed
     pyarrow.default_memory_pool().release_unused()
 
 
 def _complete(table: Any, schema: Any) -> Any:
-    """The table with all columns of the file in their order, and texts as such."""
+    """The table with all columns of the file in order, and texts as text type."""
     columns = [
         table[one.name].cast(one.type)
         if one.name in table.column_names
@@ -184,7 +184,7 @@ def _complete(table: Any, schema: Any) -> Any:
 
 
 def _by_quantity(numbers: Sequence[Any]) -> Iterator[list[Any]]:
-    """Slices of tables that are sorted by quantity themselves, enough for a group of the file."""
+    """Parts of tables, each sorted by quantity, large enough for a group of the file."""
     slices: list[tuple[str, int, int, int]] = []
     for place, table in enumerate(numbers):
         names = table["quantity"].to_numpy(zero_copy_only=False)
@@ -204,7 +204,7 @@ def _by_quantity(numbers: Sequence[Any]) -> Iterator[list[Any]]:
 
 
 def _kept_cycles(n_cycles: int) -> NDArray[np.intp]:
-    """Index of the cycles whose numbers a catalogue keeps: 1, 2, 5, 10, 20, 50, ... and the last.
+    """Index of the cycles kept in a catalogue: 1, 2, 5, 10, 20, 50, ... and the last.
 
     Examples
     --------
@@ -216,7 +216,7 @@ def _kept_cycles(n_cycles: int) -> NDArray[np.intp]:
 
 
 def entry_of(path: Path, archive: xr.Dataset) -> CatalogueEntry:
-    """Return what a catalogue keeps of an archive."""
+    """Return the catalogue entry of an archive."""
     attributes = archive.attrs
     stem = path.stem
     whole: dict[str, Any] = {"synthetic": "no", "campaign": path.parent.name, "test": stem}
@@ -252,12 +252,12 @@ def _conditions(archive: xr.Dataset, place: int) -> dict[str, str | float]:
 
 
 def _known(found: dict[str, str | float]) -> dict[str, str | float]:
-    """Without numbers that are missing."""
+    """Remove missing numbers."""
     return {name: one for name, one in found.items() if isinstance(one, str) or np.isfinite(one)}
 
 
 def _strain_ends(archive: xr.Dataset) -> list[dict[str, str | float]]:
-    """Least and greatest strain of each specimen, of its samples, steps and cycles."""
+    """Minimum and maximum strain of each specimen over its samples, steps and cycles."""
     n_specimens = archive.sizes["specimen"]
     low, high = np.full(n_specimens, np.nan), np.full(n_specimens, np.nan)
     if "strain" in archive and archive.variables["strain"].dims in (
@@ -283,7 +283,7 @@ def _strain_ends(archive: xr.Dataset) -> list[dict[str, str | float]]:
 
 
 def _widened(low: Floats, high: Floats, strain: Floats) -> tuple[Floats, Floats]:
-    # fmin and fmax pass over samples that are missing
+    # fmin and fmax ignore missing samples
     return (
         np.fmin(low, np.fmin.reduce(strain, axis=-1, initial=np.nan)),
         np.fmax(high, np.fmax.reduce(strain, axis=-1, initial=np.nan)),
@@ -291,7 +291,7 @@ def _widened(low: Floats, high: Floats, strain: Floats) -> tuple[Floats, Floats]
 
 
 def _blocks(archive: xr.Dataset, names: list[str]) -> Iterator[Any]:
-    """Numbers of an archive, those on the same dimensions together."""
+    """Numbers of an archive, grouped by dimensions."""
     groups: dict[tuple[Hashable, ...], list[str]] = {}
     for name, variable in archive.variables.items():
         is_number = variable.dtype.kind in "fiu" and "flag_meanings" not in variable.attrs
@@ -318,8 +318,8 @@ def _block(
         if own is not None:
             missing = [axis for axis, dim in enumerate(dims) if dim not in own.dims]
             spread[row] = np.broadcast_to(np.expand_dims(_at_kept_cycles(own), missing), shape)
-    # where a quantity is known anywhere its other places stand as missing, so that all keep their
-    # order; a quantity of which nothing is known is not there
+    # a quantity known at any place has rows for all places, missing if unknown, so that the order
+    # is kept; a quantity without values is left out
     known = np.isfinite(values)
     has_any = known.reshape(len(group), -1).any(axis=1)
     found = np.nonzero(np.broadcast_to(has_any.reshape(-1, *[1] * len(dims)), values.shape))
@@ -342,7 +342,7 @@ def _block(
                 of_row = [number.get(str(name), _WHOLE) for name in archive.variables[whose].values]
                 specimen = np.array(of_row, np.int32)[index]
     columns = {
-        # the row of the whole test stands before those of its specimens
+        # the row of the whole test precedes those of its specimens
         "row": 1 + specimen,
         "quantity": np.array(group, object)[found[0]],
         "value": values[found],
@@ -352,15 +352,15 @@ def _block(
 
 
 def _column(name: str, values: NDArray[Any]) -> Any:
-    """A column of numbers as it is kept: of a text that stands in many rows there is one."""
+    """A stored column of numbers; repeated texts are stored once."""
     column = pyarrow.array(values, _TYPES.get(name) or _column_type(name), from_pandas=True)
     return column.dictionary_encode() if pyarrow.types.is_string(column.type) else column
 
 
 def _at_kept_cycles(variable: xr.Variable) -> Floats:
-    """Values of a variable at the cycles whose numbers are kept; of many the others are not read.
+    """Values of a variable at the cycles kept; the others are not read.
 
-    Xarray would ask Dask of each index whether it is its own, and import it for that.
+    Through xarray, each index would be checked for being a Dask array, which imports Dask.
     """
     n_cycles = variable.sizes.get("cycle", 0)
     if n_cycles > _CYCLES_AT_ONCE:
@@ -372,7 +372,7 @@ def _at_kept_cycles(variable: xr.Variable) -> Floats:
 
 
 def _labels(archive: xr.Dataset, dim: str) -> NDArray[Any]:
-    """Text or number of each place along a dimension; from 1 where the archive names none."""
+    """Text or number of each place along a dimension; counted from 1 if the archive has none."""
     is_text = _column_type(dim) == "string"
     if dim == "comparison" and {"ratio_numerator", "ratio_denominator"} <= set(archive.variables):
         pairs = zip(

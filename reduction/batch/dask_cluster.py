@@ -1,4 +1,4 @@
-"""Workers of a Dask cluster that the user has; Dask is imported with this module alone."""
+"""Workers of a user's Dask cluster; only this module imports Dask."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from distributed.comm.addressing import get_address_host_port
 from reduction.batch.workers import PATIENCE, Workers, _scheduler_lost
 from reduction.record.errors import SettingsError, WorkerError
 
-_ANSWER = 10.0  # how long a scheduler may take to answer [s]
+_ANSWER = 10.0  # time limit for an answer of the scheduler [s]
 
 _PORTS = 65_536
 
 
 @contextmanager
 def users_cluster(address: str) -> Iterator[Workers]:
-    """Use the workers of a scheduler that runs already."""
+    """Use the workers of a running scheduler."""
     with _silence(), _client(address) as client:
         try:
             client.wait_for_workers(1, timeout=PATIENCE)
@@ -41,13 +41,13 @@ def users_cluster(address: str) -> Iterator[Workers]:
 
 
 def _look(client: Client) -> None:
-    """Refuse to wait for workers that do not come."""
+    """Refuse to wait for workers that do not appear."""
     try:
         if client.status != "running":
             raise _scheduler_lost()
         if client.nthreads():
             return
-    except OSError as gone:  # the client does not know it yet
+    except OSError as gone:  # the client has not noticed it yet
         raise _scheduler_lost() from gone
     raise WorkerError(
         "no worker is left",
@@ -58,7 +58,8 @@ def _look(client: Client) -> None:
 
 
 def _client(address: str) -> Client:
-    # a client that fails before it asks waits at its end for an answer, and says so in its words
+    # a client that fails before it connects waits for an answer at its end, and prints its own
+    # message
     if not _is_address(address):
         raise _no_answer(address)
     is_encrypted = address.partition("://")[0] in ("tls", "wss")
@@ -92,7 +93,7 @@ def _no_answer(found: str) -> SettingsError:
 
 @contextmanager
 def _silence() -> Iterator[None]:
-    """Keep what Dask says of lost workers off the terminal: the run says it in its own words."""
+    """Suppress Dask's messages on lost workers: the run reports them itself."""
     loud = [
         logger
         for name, logger in logging.root.manager.loggerDict.items()

@@ -1,4 +1,4 @@
-"""Experiments of a campaign: surfaces.nc from the archives of the runs."""
+"""Fits the experiments of a campaign and writes surfaces.nc from the archives of the runs."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ from reduction.uncertainty.surface_errors import with_shared_surfaces
 
 
 def experiments_found(campaign: Campaign, tests: Sequence[TestStatus]) -> list[dict[str, Any]]:
-    """What a check says of every experiment."""
+    """Check results for every experiment."""
     is_read = {test.test: test.status != "failed" for test in tests}
     sums = {test.test: test.raw_sha256 for test in tests if is_read[test.test]}
     return [
@@ -64,7 +64,7 @@ def _specimens(campaign: Campaign, run: str) -> tuple[str, ...]:
 
 
 def _slack_runs(campaign: Campaign, plan: ExperimentPlan) -> list[dict[str, Any]]:
-    """Runs and specimens whose minimum tension is planned at or below zero."""
+    """Runs and specimens with a planned minimum tension at or below zero."""
     names = [factor.name for factor in plan.factors]
     if not {"mean_tension", "tension_amplitude"} <= set(names):
         return []
@@ -108,7 +108,7 @@ def _without_pull(campaign: Campaign, plan: ExperimentPlan) -> list[str]:
 def _same_logs(
     campaign: Campaign, plan: ExperimentPlan, raw_sha256: Mapping[str, str]
 ) -> list[Note]:
-    """Runs of different tests whose loads are those of one log, byte for byte."""
+    """Runs of different tests whose loads come from one log, byte for byte."""
     tests_of: dict[tuple[object, ...], dict[str, None]] = {}
     for run in plan.runs:
         if raw_sha256.get(run):
@@ -129,7 +129,7 @@ _NEEDS_LINE = {"dissipation_spring_constant", "relaxation_time", "dashpot_coeffi
 # key of REASONS: no quasi-static spring constant at the mean tension
 _NO_REST = 1
 
-# what one run and specimen gives, by name
+# results of one run and specimen, by name
 Row = dict[str, Any]
 
 
@@ -141,14 +141,14 @@ def _rows_of_run(
     path: Path | None,
     opener: Opener = reading,
 ) -> list[Row]:
-    """One row a specimen of a run; a run without an archive has one that says so."""
+    """One row per specimen of a run; a run without an archive has a row that states this."""
     log = run.partition(".")[0]
     specimens = campaign.tests[log].specimens
     about = {"run": run, "coded": coded, "order": _order(campaign, plan, run)}
     if path is None or not path.exists():
         missing = note("run-test-failed" if path is None else "run-without-product")
         return [about | {"remarks": (missing,), "specimen": name} for name in specimens]
-    # one that is there and cannot be read is no run that is missing: surfaces would be other ones
+    # an unreadable archive is not a missing run: without it the surfaces would change
     with opener(path) as archive:
         given = [str(name) for name in archive.variables["specimen"].values]
         return [
@@ -157,10 +157,10 @@ def _rows_of_run(
 
 
 def _order(campaign: Campaign, plan: ExperimentPlan, run: str) -> float:
-    """When a run was done among the others; NaN where the campaign does not state it."""
+    """Position of a run in time; NaN if the campaign does not state it."""
     log = run.partition(".")[0]
     test = campaign.tests[log]
-    # the steps of one log follow each other in it
+    # the steps of one log are in time order
     is_one_log = all(other.partition(".")[0] == log for other in plan.runs)
     start = test.order if test.order is not None else 0 if test.steps and is_one_log else np.nan
     steps = [step.product(log) for step in test.steps]
@@ -168,7 +168,7 @@ def _order(campaign: Campaign, plan: ExperimentPlan, run: str) -> float:
 
 
 def _row_of_archive(plan: ExperimentPlan, archive: xr.Dataset, place: int, specimen: str) -> Row:
-    """What the archive of a run holds of one specimen."""
+    """Contents of a run's archive for one specimen."""
 
     def of_test(name: str) -> float:
         stated = stored(archive, f"test_{name}")
@@ -177,7 +177,7 @@ def _row_of_archive(plan: ExperimentPlan, archive: xr.Dataset, place: int, speci
     remarks = _refusal(plan, archive, place, specimen) if _NEEDS_LINE & set(plan.responses) else []
     row: Row = {name: of_test(name) for name in (*MEASURED, *LINE, *plan.responses)}
     for name in plan.responses:
-        # what is shared is no scatter of the run: it goes another way, with its sign
+        # shared errors are not scatter of the run: they are propagated separately, with their sign
         row[f"u {name}"] = of_test(f"{name}_random_standard_uncertainty")
         row[f"whole u {name}"] = of_test(f"{name}_standard_uncertainty")
         if np.isnan(row[f"u {name}"]):
@@ -205,7 +205,7 @@ def _slack(is_slack: Bools) -> list[Note]:
 
 
 def _refusal(plan: ExperimentPlan, archive: xr.Dataset, place: int, specimen: str) -> list[Note]:
-    """Why a run has no K_1 and tau; empty where it has."""
+    """Reasons why a run has no K_1 and tau; empty if it has."""
     flags = stored(archive, "test_line_refusal")
     code = _NO_REST if flags is None else int(flags.values[place])
     if code == 0:
@@ -228,15 +228,15 @@ def _refusal(plan: ExperimentPlan, archive: xr.Dataset, place: int, specimen: st
 
 _UNITS = {"temperature": "K", "diameter": "m"}
 
-# notes of which the message tells the first: without that part there is little to read
+# the first of these notes is the message: without that part little remains to read
 _MAIN_PART = ("no-main-part", "no-effect", "no-surface")
 
 
-_MANY = 4  # runs that are named one by one
+_MANY = 4  # runs that are listed individually
 
 
 def _outdated_in_words(waiting: Collection[str], runs: Collection[str]) -> str:
-    """What has to be run before an experiment is fitted; empty where nothing has."""
+    """Runs needed before an experiment can be fitted, in words; empty if none."""
     listed = [run for run in runs if run in waiting]
     if not listed:
         return ""
@@ -254,7 +254,7 @@ def write_experiments(
     command: str,
     opener: Opener = reading,
 ) -> list[PartStatus]:
-    """Fit the experiments of a campaign of which no run waits, and write them as one archive."""
+    """Fit the experiments without pending runs, and write them as one archive."""
     if not campaign.experiments:
         return []
     held = {
@@ -305,7 +305,7 @@ def write_experiments(
 
 
 def settings_of_experiments(plans: Mapping[str, ExperimentPlan]) -> str:
-    """Every setting of experiments, as JSON: the attribute ``settings`` of their archive."""
+    """All settings of experiments as JSON: the attribute ``settings`` of their archive."""
     return json.dumps({name: asdict(plan) for name, plan in plans.items()}, sort_keys=True)
 
 
@@ -314,7 +314,7 @@ def _is_there(path: Path | None) -> bool:
 
 
 def _nothing_to_fit(plan: ExperimentPlan) -> FitError:
-    """What is wrong with an experiment none of whose runs gave a product."""
+    """Error of an experiment in which no run gave a product."""
     return FitError(
         "there is nothing to fit",
         found=f"no archive of any of its {len(plan.runs)} runs",
@@ -328,11 +328,11 @@ def _in_one_line(result: ExperimentResult) -> str:
 
 
 def _status(result: ExperimentResult) -> PartStatus:
-    """A design whose main part the runs do not carry has failed, as the error of it says."""
+    """Status of an experiment; it has failed if the runs do not support its main part."""
     failed = result.refusal_status != 0
     main = [one for one in result.notes if one.code in _MAIN_PART]
     ranked = by_severity(one for one in result.notes if one.code not in _MAIN_PART)
-    # what is missing, and the worst of what else there is to know
+    # the missing part, and the most serious other note
     message = "; ".join([_in_one_line(result), *map(str, (*main[:1], *ranked[:1]))])
     may_move = any(one.severity == "warning" for one in result.notes)
     status = "failed" if failed else "check" if may_move else "fitted"
@@ -359,7 +359,7 @@ def _fit_experiments(
             if path is not None and path.exists():
                 sources[path.name] = hash_source(path, path.name)
         result = _fit_rows(plan, rows)
-        # who names a slow pull waits for K_1 and tau: why there are none is said first
+        # a campaign with a slow pull expects K_1 and tau, so that their absence is explained first
         told = [
             replace(one, severity="warning")
             if one.code == "no-surface" and plan.quasi_static
@@ -377,7 +377,7 @@ def _column(rows: list[Row], name: str) -> Floats:
 def _levels(
     plan: ExperimentPlan, rows: list[Row]
 ) -> tuple[tuple[FactorLevels, ...], tuple[str, ...], Floats]:
-    """Factors in one unit, their units, and the levels as reached, shape (n_runs, n_factors)."""
+    """Factors in one unit, their units, and the achieved levels, shape (n_runs, n_factors)."""
     strengths = _column(rows, "strength")
     known = np.unique(strengths[np.isfinite(strengths)])
     factors, units, columns = [], [], []
@@ -390,7 +390,7 @@ def _levels(
         if factor.basis == "mean_tension":
             reached, unit = reached / _column(rows, "mean_tension"), "1"
         elif factor.basis == "rated_break_strength" and known.size == 1:
-            # lines of one strength: the surface is in newtons
+            # all lines have the same strength: the surface is in newtons
             factor = FactorLevels(name, factor.low * known[0], factor.high * known[0])
         elif factor.basis == "rated_break_strength":
             reached, unit = reached / strengths, "1"
@@ -401,7 +401,7 @@ def _levels(
 
 
 def _fit_rows(plan: ExperimentPlan, rows: list[Row]) -> ExperimentResult:
-    """Fit one experiment to what its runs gave, one row a run and specimen."""
+    """Fit one experiment to the results of its runs, one row per run and specimen."""
     factors, units, level = _levels(plan, rows)
     runs = RunTable(
         run=tuple(row["run"] for row in rows),
@@ -441,7 +441,7 @@ def _fit_rows(plan: ExperimentPlan, rows: list[Row]) -> ExperimentResult:
 
 
 def _shared(plan: ExperimentPlan, rows: list[Row]) -> Contributions | None:
-    """What errors that runs share add to their responses, and to the levels as reached."""
+    """Contributions of shared errors to the responses and achieved levels of the runs."""
     given = [row.get("shared", {}) for row in rows]
     component = tuple(sorted({one for row in given for own in row.values() for one in own}))
     if not component:
@@ -452,7 +452,7 @@ def _shared(plan: ExperimentPlan, rows: list[Row]) -> Contributions | None:
         for name in names
     }
     values = {name: tables[name] for name in plan.responses}
-    # the levels follow from means of the run, and are theirs or ratios of them
+    # levels are means over the run, or ratios of such means
     sides = [
         [
             _levels(plan, _moved(rows, {name: way * tables[name][place] for name in MEASURED}))[2]

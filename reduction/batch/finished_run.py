@@ -1,7 +1,7 @@
-"""What the last whole run of a campaign read, wrote and answered: a run that finds it so stops.
+"""Record of the last complete run of a campaign, to stop a new run if nothing has changed.
 
-The digests are of contents.  A file that changed, is missing or was added, another version of the
-package or another choice of units has the campaign run as if nothing were kept.
+The digests are of contents.  If a file is changed, missing or added, or the version of the package
+or the units differ, the campaign runs as if nothing had been kept.
 """
 
 from __future__ import annotations
@@ -30,13 +30,13 @@ from reduction.record.errors import ReductionError
 _NAME = "finished-run.json"
 
 _OF_ANY_RUN = (LOCK_NAME, _NAME, "status.csv")
-"""Files beside the products that say what the last run did, whatever it found."""
+"""Files beside the products that describe the last run, whatever its result."""
 
 
 def keep_finished(result: CampaignResult, choices: Mapping[str, str]) -> None:
-    """Write what a run did beside its products, or nothing where it did not end well.
+    """Write the record of a run beside its products, unless the run failed.
 
-    ``choices`` are what was asked of it that a product depends on.
+    ``choices`` are the options of the run that affect a product.
     """
     path = result.processed / _NAME
     if result.exit_status or result.stray or result.superseded or result.report is None:
@@ -61,7 +61,7 @@ def keep_finished(result: CampaignResult, choices: Mapping[str, str]) -> None:
 def finished_run(
     campaign: Path, processed: Path, reports: Path, choices: Mapping[str, str]
 ) -> CampaignResult | None:
-    """What the last run of a campaign did, if all that it read and wrote is as it was."""
+    """Result of the last run of a campaign if everything it read and wrote is unchanged."""
     with suppress(OSError, ValueError, LookupError, TypeError, ReductionError):
         name = tomllib.loads(campaign.read_text(encoding="utf-8-sig"))["campaign"]["id"]
         folder, report = processed / name, reports / name
@@ -110,7 +110,7 @@ def _names(folder: Path) -> Iterator[str]:
 
 
 def _digest(path: Path) -> str:
-    if not path.is_file():  # a pipe would be waited for
+    if not path.is_file():  # opening a pipe would block
         return ""
     with path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()

@@ -1,4 +1,4 @@
-"""Steps of a log that states none: its levels, as they would stand in campaign.toml."""
+"""Finds the steps of a log without stated ones: its levels, in the form of campaign.toml."""
 
 from __future__ import annotations
 
@@ -17,28 +17,28 @@ from reduction.stages.cycles.levels import Level, are_unlike, find_levels, sprea
 from reduction.stages.standstills import median_step
 
 FOUND = {"step_origin": "found in the record, where campaign.toml states no steps"}
-"""Attribute of the product of a step that was found."""
+"""Attribute of the product of a found step."""
 
-_CUT = ("cyclic",)  # the cycles of a fatigue test are counted to the failure, over its levels
+_CUT = ("cyclic",)  # cycles of a fatigue test are counted to failure across its levels
 
 _LOOKED_AT = (*_CUT, "fatigue")
 
 
 @dataclass(frozen=True)
 class _FoundSteps:
-    """Steps that were found, none in a log of one level, and what is to be said of the log."""
+    """Steps found (none in a log with one level), and the remark on the log."""
 
     steps: tuple[StepPlan, ...] = ()
     remark: Note | None = None
 
 
 def find_steps(plan: TestPlan, located: Located | None, campaign: Campaign) -> _FoundSteps:
-    """Find the levels of a cyclic log that states no steps.
+    """Find the levels of a cyclic log without stated steps.
 
     Raises
     ------
     DataError
-        If the log has several and the campaign names the test as one.
+        If the log has several and the campaign uses the test as a single one.
     """
     if located is None or located.cycles is None or plan.kind not in _LOOKED_AT:
         return _FoundSteps()
@@ -56,7 +56,7 @@ def find_steps(plan: TestPlan, located: Located | None, campaign: Campaign) -> _
 
 
 def remark_on_cycles(plan: TestPlan, located: Located) -> Note | None:
-    """What is to be said of a stated step whose cycles are unlike each other."""
+    """Remark on a stated step with dissimilar cycles."""
     if located.cycles is None or plan.kind not in _LOOKED_AT:
         return None
     control = control_channel(located.position, located.tension, plan.settings.cycles)
@@ -74,7 +74,7 @@ def _on_spread(time: Floats, control: Floats, cycles: Cycles, steps: str = "") -
 def _refuse_one_name(
     plan: TestPlan, levels: Sequence[Level], steps: str, campaign: Campaign
 ) -> None:
-    """Refuse several levels where the campaign names the test as one."""
+    """Refuse several levels if the campaign uses the test as a single one."""
     named = [
         f"experiment '{name}'" for name, one in campaign.experiments.items() if plan.id in one.runs
     ]
@@ -96,7 +96,7 @@ def _refuse_one_name(
 
 
 def _written(level: Level, step: float) -> tuple[str, str]:
-    """From and to in seconds, with digits enough that the rows of the level and no others lie in.
+    """Start and end in seconds, with enough digits to include exactly the rows of the level.
 
     Examples
     --------
@@ -105,7 +105,7 @@ def _written(level: Level, step: float) -> tuple[str, str]:
     """
     digits = max(0, 1 - math.floor(math.log10(step)))
     unit = 10.0**-digits
-    # a time on a boundary is kept by a thousandth of a unit, whichever way it is off
+    # a time on a boundary is kept within a thousandth of a unit
     low = math.floor(level.start / unit + 1e-3) * unit
     high = math.ceil(level.stop / unit - 1e-3) * unit
     return f"{low:.{digits}f}", f"{high:.{digits}f}"

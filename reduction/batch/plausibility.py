@@ -1,7 +1,7 @@
-"""Whether what is stated of a campaign can be true of its logs: units, sizes, levels, plans.
+"""Checks the statements of a campaign against its logs: units, sizes, levels, plans.
 
-Each test is held against bands of its kind of specimen, against what is stated of it, and against
-the other tests of its specimens.  What does not fit is a warning that names the reading that would;
+Each test is compared with bands for its kind of specimen, with the statements about it, and with
+the other tests of its specimens.  A mismatch gives a warning that names the reading that would fit;
 docs/plausibility.md lists them all.
 """
 
@@ -33,93 +33,93 @@ from reduction.stages.strain.stress import constant_volume_diameter
 
 Models = Mapping[tuple[str, str], StrainModel]
 
-_STRENGTH_REACHED = 1.02  # of the rated break strength, by a test that did not fail
+_STRENGTH_REACHED = 1.02  # of the rated break strength, reached by a test that did not fail
 
 _LITTLE_OF_STRENGTH = 0.004
 
-_RATE = 1.3  # found over stated, or stated over found
+_RATE = 1.3  # ratio of found to stated rate, or its inverse
 
 _TARGET = 1.17
 
-_LONGER = 1.05  # gauge length over the length at slack
+_LONGER = 1.05  # ratio of gauge length to length at slack
 
-_OF_HOSE = 0.75  # gauge length of a hose over the length between its flanges
+_OF_HOSE = 0.75  # ratio of a hose's gauge length to the length between its flanges
 
-_AT_SLACK = 0.03  # strain by the extensometer
+_AT_SLACK = 0.03  # strain from the extensometer
 
-_STROKE = 1.5  # strain by the extensometer over that of the stroke
+_STROKE = 1.5  # ratio of extensometer strain to strain from the stroke
 
-_JUMP = 1.85  # greatest tension over greatest strain, between like tests of one specimen
+_JUMP = 1.85  # ratio of peak tension over peak strain, between similar tests of one specimen
 
-_JUMP_OF_KINDS = 2.5  # between a slow pull and cycles
+_JUMP_OF_KINDS = 2.5  # the same between a slow pull and cycles
 
 _LIKE_STRAIN, _LIKE_RATE = 1.3, 2.2
 
-_FEWEST_ON_CURVE = 3  # tests, one of them held against the others
+_FEWEST_ON_CURVE = 3  # tests, including the one compared with the others
 
-_SPREAD, _BEYOND = 1.1, 1.5  # greatest strain of the others over their least, and beyond them
+_SPREAD, _BEYOND = 1.1, 1.5  # strain range of the other tests as a ratio, and how far beyond it
 
-_OFF_CURVE = 1.7  # peak tension over that of the others at its strain
+_OFF_CURVE = 1.7  # ratio of peak tension to that of the others at the same strain
 
-_SOFTENED = 3.0  # what rubber may lose by a greater stretch: half in WHOI-2005-10, more in others
+_SOFTENED = 3.0  # softening of rubber after a larger stretch: half in WHOI-2005-10, more in others
 
-_GREATER = 1.05  # stretch before a test over that of the test itself
+_GREATER = 1.05  # ratio of stretch before a test to that in the test
 
 _MOST_COMPARED = 40  # tests of one specimen
 
-_FALLEN = 0.5  # of the greatest tension, at the end
+_FALLEN = 0.5  # of the maximum tension, at the end
 
-_EARLY = 0.09  # of a cycle, by which no line lets tension lead
+_EARLY = 0.09  # of a cycle: no line lets tension lead by more
 
-_EARLY_ELASTOMER = 0.125  # the same of a damping polymer: a loss factor of 1
+_EARLY_ELASTOMER = 0.125  # the same for a damping polymer: a loss factor of 1
 
 _LATE = 0.01
 
 _BACKWARD = 0.25
 
-_COARSE = 0.015  # step of a load, of its greatest value
+_COARSE = 0.015  # step of a load relative to its maximum
 
 _DRIFT = 0.05  # of the mean tension
 
 _RAMP = 0.1  # of the mean tension
 
-_STEADY = 0.7  # of the fall over the first half of the cycles, by which the second half falls
+_STEADY = 0.7  # drop in the second half of the cycles relative to that in the first half
 
-_MOST_STROKES = 5  # of a pull or a hold, and what sets it up
+_MOST_STROKES = 5  # in a pull or a hold, including its set-up
 
-# tension of a hose over what its design gives: cords are 1.4 times as stiff at 0.1 Hz
+# ratio of measured hose tension to the design value: cords are 1.4 times as stiff at 0.1 Hz
 _AS_PREDICTED = {"static": 1.2, "dynamic": 1.45}
 
 _NOT_STATIC = 0.03  # Hz, between the 0.01 of slow cycles and the 0.1 of the dynamic tests
 
-_BY_LENGTH = 2.0  # length of a hose over that of the one that was tested
+_BY_LENGTH = 2.0  # ratio of hose length to that of the tested one
 
 _LBF, _PSI = 4.4482216, 6.8947573  # N, kPa
 
-# greatest over least diameter before stretch, by constant volume: twice what calipers squeeze
+# ratio of largest to smallest unstretched diameter, by constant volume: twice caliper squeeze
 _ONE_VOLUME = 1.1
 
-_BY_DESIGN = 1.25  # size of the tested hose over that of its design
+_BY_DESIGN = 1.25  # ratio of the tested hose's size to that of its design
 
 
 def implausible(
     campaign: Campaign, surveys: Sequence[Survey], models: Models
 ) -> dict[str, tuple[Note, ...]]:
-    """What cannot be true of each test, by its id.
+    """Inconsistencies of each test, by its id.
 
     Parameters
     ----------
     campaign : Campaign
-        What is stated.
+        Campaign with its statements.
     surveys : sequence of Survey
-        What the logs hold; tests that failed are passed over.
+        Contents of the logs; failed tests are skipped.
     models : mapping
-        Strain model of each test and specimen that has one.
+        Strain model by test and specimen, if there is one.
 
     Returns
     -------
     notes : dict of str to tuple of Note
-        Warnings; empty of a test of which all fits.
+        Warnings; empty for a consistent test.
     """
     read = [one for one in surveys if one.error is None]
     found: dict[str, list[Note]] = {one.plan.id: [] for one in read}
@@ -144,7 +144,7 @@ def implausible(
 def _of_specimen(
     campaign: Campaign, survey: Survey, specimen: Specimen, model: StrainModel | None
 ) -> Iterator[Note]:
-    """Sizes of a specimen, and how far the test went with it, against bands of its kind."""
+    """Compare the sizes of a specimen, and its strain and tension, with bands for its kind."""
     name = specimen.name
     words = " ".join((specimen.material, specimen.construction, specimen.condition))
     bands = bands_of(specimen.kind, words)
@@ -177,7 +177,7 @@ def _of_specimen(
 
 
 def _of_stretched(specimen: Specimen) -> Iterator[Note]:
-    """Diameters at several stretches that one volume of rubber does not have."""
+    """Check whether diameters at several stretches agree with constant rubber volume."""
     groups: dict[float, list[float]] = {}
     for stretch, reading in sorted(specimen.stretched_diameters):
         groups.setdefault(stretch, []).append(reading)
@@ -204,7 +204,7 @@ def _of_stretched(specimen: Specimen) -> Iterator[Note]:
 
 
 def _of_sizes(specimen: Specimen, bands: Bands | None) -> Iterator[Note]:
-    """Diameter, strength and mass of a specimen against each other."""
+    """Check diameter, strength and mass of a specimen against each other."""
     if not specimen.has_area:
         return
     yield from _of_stretched(specimen)
@@ -229,7 +229,7 @@ def _of_sizes(specimen: Specimen, bands: Bands | None) -> Iterator[Note]:
 
 
 def _load_unit(campaign: Campaign, survey: Survey, name: str) -> str:
-    """Unit in which the load of a specimen is declared."""
+    """Declared load unit of a specimen."""
     layout = campaign.layouts[survey.plan.files[0][1]]
     number = str(survey.plan.specimens.index(name) + 1)
     channel = layout.channels.get(f"tension.{number}")
@@ -237,13 +237,13 @@ def _load_unit(campaign: Campaign, survey: Survey, name: str) -> str:
 
 
 def _of_statements(campaign: Campaign, survey: Survey, models: Models) -> Iterator[Note]:
-    """What is stated of a test against what its log shows."""
+    """Compare the statements about a test with its log."""
     levels, plan = survey.levels, survey.plan
     if levels is None:
         return
     yield from _of_rate(survey)
     yield from _of_stated_levels(campaign, survey)
-    # a break test beds a new rope in before its pull
+    # a break test may start with the bedding-in of a new rope
     is_set_up = plan.kind == "tensile" and levels.ends_in_pull
     if plan.kind in ("tensile", "quasi-static", "relaxation", "creep") and (
         levels.n_strokes > _MOST_STROKES and not is_set_up
@@ -271,7 +271,7 @@ def _of_statements(campaign: Campaign, survey: Survey, models: Models) -> Iterat
         if share < _FALLEN and is_unsaid:
             yield note("load-falls-for-good", name, share=share)
         lead = float(levels.lead[index]) * levels.frequency
-        # by more than that a channel runs backward, which its sign says
+        # beyond a quarter cycle the channel is reversed, which its sign shows
         # a damper leads by up to a quarter of a cycle, as no line does
         specimen = campaign.specimens[name]
         early = _EARLY_ELASTOMER if specimen.kind == "elastomer" else _EARLY
@@ -297,14 +297,14 @@ def _of_statements(campaign: Campaign, survey: Survey, models: Models) -> Iterat
             yield note("channels-alike", name, others=", ".join(plan.specimens[:index]))
 
 
-# of the change of mean: cycles that grow from one valley have their half range grow by all of it
+# of the change in mean: for cycles growing from a fixed valley, half the range grows by as much
 _OF_GROWTH = 0.5
 
 
 def _of_mean(name: str, means: Floats) -> Iterator[Note]:
-    """A mean tension that goes as a drifting zero would take it, and a specimen might.
+    """Check for a mean tension that changes like a drifting zero, or possibly like the specimen.
 
-    Relaxation slows down: what falls as fast at the end is slower than the test, or none.
+    Relaxation slows down; an undiminished fall is a drift, or relaxation slower than the test.
     """
     first, middle, last = means
     steady = last > first or last - middle < _STEADY * (middle - first)
@@ -318,7 +318,7 @@ _STATED: tuple[tuple[str, Dimension], ...] = (
 
 
 def _of_stated_levels(campaign: Campaign, survey: Survey) -> Iterator[Note]:
-    """Frequency and mean tension that are stated of a test against those of its log."""
+    """Compare the stated frequency and mean tension of a test with its log."""
     levels = survey.levels
     for key, dimension in _STATED:
         text = survey.plan.attributes.get(key, "")
@@ -341,7 +341,7 @@ def _of_stated_levels(campaign: Campaign, survey: Survey) -> Iterator[Note]:
 
 
 def _stated_level(number: float, unit: str, dimension: Dimension, strength: float | None) -> float:
-    """A level that is stated in words, in SI; NaN where its unit says nothing here."""
+    """A level stated in words, in SI; NaN if its unit does not apply."""
     if dimension == "force" and unit in ("%RBS", "%MBL", "% RBS", "% MBL"):
         return number / 100 * strength if strength else np.nan
     try:
@@ -358,10 +358,10 @@ _NUMBER = re.compile(r"^\s*([-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?)\s*(.+?)\s*$")
 
 
 def _of_rate(survey: Survey) -> Iterator[Note]:
-    """The rate that is stated against the speed or the frequency of the log."""
+    """Compare the stated rate with the speed or the frequency of the log."""
     levels = survey.levels
     match = _NUMBER.match(survey.plan.attributes.get("rate", ""))
-    if match is None or levels is None or "%" in match[2]:  # a rate of strain is neither
+    if match is None or levels is None or "%" in match[2]:  # a strain rate is neither
         return
     shown: tuple[tuple[Dimension, float, str], ...] = (
         ("velocity", levels.speed, "m/s"), ("frequency", levels.frequency, "Hz"),
@@ -379,7 +379,7 @@ def _of_rate(survey: Survey) -> Iterator[Note]:
 def _of_length(
     campaign: Campaign, survey: Survey, index: int, model: StrainModel | None
 ) -> Iterator[Note]:
-    """Gauge length and extensometer against the length between the pins."""
+    """Compare gauge length and extensometer with the pin-to-pin length."""
     levels = survey.levels
     if levels is None or model is None:
         return
@@ -407,14 +407,14 @@ def _of_length(
 
 
 def _of_columns(campaign: Campaign, survey: Survey) -> Iterator[Note]:
-    """Columns whose name is that of another specimen."""
+    """Find columns that are named after another specimen."""
     plan = survey.plan
     layout = campaign.layouts[plan.files[0][1]]
     for number, name in enumerate(plan.specimens, start=1):
         channel = layout.channels.get(f"tension.{number}")
         column = str(channel.column).lower() if channel is not None else ""
         words = set(re.split(r"[\W_]+", column))
-        for key, beside in layout.channels.items():  # what stands before every column is no name
+        for key, beside in layout.channels.items():  # a prefix common to all columns is not a name
             if not key.startswith("tension"):
                 words -= set(re.split(r"[\W_]+", str(beside.column).lower()))
         others = [
@@ -426,7 +426,7 @@ def _of_columns(campaign: Campaign, survey: Survey) -> Iterator[Note]:
 
 
 def load_columns(layout: Layout) -> tuple[str, ...]:
-    """Where in a log its loads are: sheet, group or matrix, and columns."""
+    """Location of the loads in a log: sheet, group or matrix, and columns."""
     columns = (
         str(channel.column) for key, channel in layout.channels.items() if key.startswith("tension")
     )
@@ -434,9 +434,9 @@ def load_columns(layout: Layout) -> tuple[str, ...]:
 
 
 def _read_the_same(one: TestPlan, other: TestPlan) -> bool:
-    """Whether two tests take the same rows of a log, or of a copy of it, as their own.
+    """Whether two tests use the same rows of a log, or of a copy of it.
 
-    A machine that goes from position to load control has a test for each, of steps of one file.
+    Steps of one file may be separate tests if the machine changes from position to load control.
     """
     if one.log == other.log:
         return False
@@ -449,10 +449,10 @@ def _read_the_same(one: TestPlan, other: TestPlan) -> bool:
 def _of_pairs(
     campaign: Campaign, surveys: Sequence[Survey], models: Models
 ) -> Iterator[tuple[str, Note]]:
-    """Tests of one load, and tests of one specimen that pull unlike at one length."""
+    """Find tests with the same load, and tests of one specimen with different stiffness."""
     read: dict[tuple[tuple[str, ...], ...], list[TestPlan]] = {}
     for survey in surveys:
-        # several tests may stand side by side in one file
+        # one file may contain several tests side by side
         logs = tuple(
             (source.sha256, *load_columns(campaign.layouts[layout]))
             for source, (_, layout) in zip(survey.sources, survey.plan.files, strict=False)
@@ -477,7 +477,7 @@ def _of_pairs(
 
 
 def _strains(name: str, several: Sequence[Survey], models: Models) -> tuple[Floats, Floats]:
-    """Greatest strain of each test, and of the tests before it; that is 0 without an order."""
+    """Peak strain of each test, and of the tests before it (0 without a known order)."""
     strain = np.array([
         greatest_strain(one.extremes, name, models.get((one.plan.id, name))) for one in several
     ])  # fmt: skip
@@ -489,7 +489,7 @@ def _strains(name: str, several: Sequence[Survey], models: Models) -> tuple[Floa
 def _of_stiffness(
     name: str, several: Sequence[Survey], models: Models, *, softens: bool
 ) -> Iterator[tuple[str, Note]]:
-    """Tests of a specimen that are unlike most that should be like them; of two the later one."""
+    """Find tests that differ from most similar tests of the specimen; of two, the later one."""
     others: list[list[tuple[str, float, bool]]] = [[] for _ in several]
     strain, before = _strains(name, several, models)
     reached = np.fmax(strain, before)
@@ -520,12 +520,12 @@ def _of_stiffness(
 def _off_the_others(
     name: str, several: Sequence[Survey], models: Models, *, softens: bool
 ) -> Iterator[tuple[str, Note]]:
-    """The test of a specimen whose peak lies far off the curve through the peaks of the others.
+    """Find the test whose peak lies far off the curve through the other peaks of the specimen.
 
-    Tension as a power of strain, by least squares: runs at several means follow one such curve,
-    though none of them is like another.  Rubber that was stretched further before follows another
-    one: such tests are held against each other, and one alone may lie below those of the rest by
-    what rubber softens.
+    The curve is a least-squares power law of tension against strain: runs at several means follow
+    one such curve, although none resembles another.  Rubber stretched further before follows a
+    different curve: such tests are compared with each other, and a single one may lie below the
+    rest by the softening of rubber.
     """
     rows = [
         (survey.plan.id, strain, tension, softens and before > _GREATER * strain)
@@ -563,10 +563,10 @@ def _off_the_others(
 
 
 def _stiffness_ratio(one: Survey, other: Survey, name: str, models: Models) -> tuple[float, float]:
-    """Greatest tension over greatest strain of the other test over that of the one, and a limit.
+    """Ratio of peak tension over peak strain, other test to one, and the limit for it.
 
-    Rubber softens with what it has seen and ropes stiffen with load and rate: the ratio is NaN for
-    tests of unlike stretch or frequency, and its limit is wider for a slow pull beside cycles.
+    Rubber softens with previous stretch, and ropes stiffen with load and rate: the ratio is NaN for
+    tests of different stretch or frequency, and the limit is wider for a slow pull and cycles.
     """
     values = []
     for survey in (one, other):
@@ -591,7 +591,7 @@ def _stiffness_ratio(one: Survey, other: Survey, name: str, models: Models) -> t
 def _off_plan(
     campaign: Campaign, plan: ExperimentPlan, surveys: Sequence[Survey]
 ) -> Iterator[tuple[str, Note]]:
-    """Runs of an experiment whose levels are not those of its plan."""
+    """Find runs of an experiment whose levels differ from the plan."""
     names = [factor.name for factor in plan.factors]
     yield from _short_pulls(plan, surveys)
     read = {one.plan.id: one for one in surveys if one.levels is not None}
@@ -648,7 +648,7 @@ def _off_plan(
 
 
 def _short_pulls(plan: ExperimentPlan, surveys: Sequence[Survey]) -> Iterator[tuple[str, Note]]:
-    """Slow pulls that end below the mean tension of all runs."""
+    """Find slow pulls that end below the mean tension of all runs."""
     read = {one.plan.id: one for one in surveys}
     for specimen, test in plan.quasi_static.items():
         pull = read.get(test)
@@ -665,7 +665,7 @@ def _short_pulls(plan: ExperimentPlan, surveys: Sequence[Survey]) -> Iterator[tu
 
 
 def _pattern(names: list[str], coded: Floats, planned: Floats, reached: Floats) -> str:
-    """What all runs have in common in being off their plan, in words."""
+    """Common pattern in the deviations of all runs from the plan, in words."""
     found = []
     ratio = reached / planned
     for column, name in enumerate(names):
@@ -724,7 +724,7 @@ _DEAD = 0.3
 
 
 def _of_hoses(campaign: Campaign) -> Iterator[tuple[str, Note]]:
-    """Designs of hoses that no hose has, said with the tests that are held against them."""
+    """Find unrealistic hose designs, reported with the tests compared with them."""
     designs: dict[str, dict[str, set[str]]] = {}
     for plan in campaign.comparisons.values():
         of_test = designs.setdefault(plan.specimen, {}).setdefault(plan.measured, set())
@@ -735,7 +735,7 @@ def _of_hoses(campaign: Campaign) -> Iterator[tuple[str, Note]]:
             continue
         of_tests = designs[plan.specimen].values()
         others = sorted(set.union(*of_tests) - designs[plan.specimen][plan.measured])
-        # one test against several designs is meant; tests that share none are of two hoses
+        # a test may have several designs; tests without a common one are of different hoses
         if others and not set.intersection(*of_tests):
             yield plan.measured, note("two-designs-of-one", plan.specimen, hose=plan.predicted,
                                       other=" and ".join(others))  # fmt: skip
@@ -772,7 +772,7 @@ def _of_hoses(campaign: Campaign) -> Iterator[tuple[str, Note]]:
 
 
 def _of_predictions(campaign: Campaign, surveys: Sequence[Survey]) -> Iterator[tuple[str, Note]]:
-    """Hoses that pull unlike their design by a factor that a slip explains sooner than a hose."""
+    """Find hoses that differ from their design by a factor more likely due to an input error."""
     read = {one.plan.id: one for one in surveys}
     for plan in campaign.comparisons.values():
         survey, hose = read.get(plan.measured), campaign.hoses.get(plan.predicted)
@@ -796,7 +796,7 @@ def _of_predictions(campaign: Campaign, surveys: Sequence[Survey]) -> Iterator[t
         nodes, tension = _curve_at_nodes(strain, samples.tension)
         off = _misfit(hose.design, nodes, tension)
         if not off.size or not np.isfinite(off).all():
-            continue  # what is wrong with the design is said where it is predicted
+            continue  # faults of the design are reported by its prediction
         far = float(np.sqrt(np.mean(off**2)))
         if far > np.log(_AS_PREDICTED[loading]):
             ratio = float(np.exp(np.mean(off)))
@@ -808,7 +808,7 @@ def _of_predictions(campaign: Campaign, surveys: Sequence[Survey]) -> Iterator[t
 
 
 def _curve_at_nodes(strain: Floats, tension: Floats) -> tuple[Floats, Floats]:
-    """Mean tension of both ways at some strains, where it is positive on all of them."""
+    """Mean tension over loading and unloading at some strains, where it is positive."""
     top = float(np.nanmax(strain, initial=0.0))
     nodes, found = [], []
     for node in np.array(_NODES) * top:
@@ -821,7 +821,7 @@ def _curve_at_nodes(strain: Floats, tension: Floats) -> tuple[Floats, Floats]:
 
 
 def _misfit(design: HoseDesign, strain: Floats, tension: Floats) -> Floats:
-    """Logarithm of measured over predicted tension; empty where nothing is predicted."""
+    """Logarithm of measured over predicted tension; empty without a prediction."""
     if not strain.size:
         return np.empty(0)
     try:
@@ -832,7 +832,7 @@ def _misfit(design: HoseDesign, strain: Floats, tension: Floats) -> Floats:
 
 
 def _slips_that_fit(design: HoseDesign, strain: Floats, tension: Floats, far: float) -> str:
-    """Slips in one input of a hose by which its design would pull as the test did."""
+    """Errors in one hose input that would make the design match the test."""
     fits = {}
     for (key, factor), words in _SLIPS.items():
         try:
@@ -845,9 +845,9 @@ def _slips_that_fit(design: HoseDesign, strain: Floats, tension: Floats, far: fl
     return "; ".join(sorted(fits, key=lambda words: fits[words])[:_NAMED])
 
 
-_NODES = (0.4, 0.6, 0.8, 0.95)  # of the greatest strain
+_NODES = (0.4, 0.6, 0.8, 0.95)  # of the maximum strain
 
-_FITS = 0.15  # logarithm of measured over predicted tension that a design may be off by
+_FITS = 0.15  # tolerance on the logarithm of measured over predicted tension
 
 _NAMED = 3
 
@@ -868,4 +868,4 @@ _SLIPS = {
     ("rubber_modulus", _PSI): "rubber_modulus in psi, not kPa",
     ("rubber_modulus", 1 / _PSI): "rubber_modulus in kPa, not psi",
 }
-"""Slips that people make with the inputs of a hose, by what the input would be multiplied with."""
+"""Common errors in hose inputs, by the factor they apply to the input."""

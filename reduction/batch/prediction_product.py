@@ -1,4 +1,4 @@
-"""Predictions and comparisons of a campaign."""
+"""Writes the predictions and comparisons of a campaign."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ def hoses_dataset(
     source: Source,
     command: str,
 ) -> xr.Dataset:
-    """Predicted hoses in the form of the archive."""
+    """Predicted hoses as an archive dataset."""
     settings = {hose.plan.name: _settings_of_hose(hose.plan) for hose in hoses}
     return predictions_to_dataset(
         hoses,
@@ -104,7 +104,7 @@ def hoses_dataset(
 
 
 def _settings_of_hose(plan: HosePlan) -> dict[str, Any]:
-    """Every number of a plan, in SI, for JSON."""
+    """All numbers of a plan in SI, for JSON."""
     found: dict[str, Any] = _plain(asdict(plan))
     return found
 
@@ -137,7 +137,7 @@ def write_comparisons(
     command: str,
     opener: Opener = reading,
 ) -> list[PartStatus]:
-    """Compare what a campaign asks for, from the archives of its tests, and write one archive."""
+    """Make the requested comparisons from the archives of the tests, and write one archive."""
     held = all(plan.measured in waiting for plan in campaign.comparisons.values())
     stands = held and (folder / "comparisons.nc").exists()
     kept = "; comparisons.nc is of an earlier run" if stands else ""
@@ -186,7 +186,7 @@ def write_comparisons(
 def compare_archive(
     path: Path, hose: HosePlan, plan: ComparisonPlan, opener: Opener = reading
 ) -> NamedComparison:
-    """Hold the archive of a test against a hose."""
+    """Compare the archive of a test with a hose."""
     with opener(path) as archive:
         missing = [name for name in ("strain", "tension", "specimen") if name not in archive]
         if missing:
@@ -209,7 +209,7 @@ def compare_archive(
             loading=plan.loading or loading_of(kind),
             cycle_number=_numbers(archive) if "cycle_number" in archive else None,
             branch=archive.variables["branch"].values if "branch" in archive else None,
-            # a pull has no cycles to break in
+            # a pull has no break-in cycles
             break_in_cycles=_break_in(archive) if "cycle_number" in archive else 0,
             shared=shared,
             calibrate=plan.calibrate,
@@ -223,7 +223,7 @@ def compare_archive(
 
 
 def _pressure(archive: xr.Dataset, index: int) -> dict[str, Any]:
-    """Fill pressure of a test that logged it, and the zero error of its gauge."""
+    """Logged fill pressure of a test, and the zero error of its gauge."""
     if "fill_pressure" not in archive:
         return {}
     spread = float(archive.variables["fill_pressure_standard_uncertainty"].values[index])
@@ -234,7 +234,7 @@ def _pressure(archive: xr.Dataset, index: int) -> dict[str, Any]:
 
 
 def _numbers(archive: xr.Dataset) -> Integers:
-    """Cycle of each sample, 0 of one at the end of a cycle whose others are stored no longer."""
+    """Cycle of each sample; 0 at the end of a cycle whose other samples are no longer stored."""
     number: Integers = archive.variables["cycle_number"].values
     if "sample_index" not in archive:
         return number
@@ -242,7 +242,7 @@ def _numbers(archive: xr.Dataset) -> Integers:
 
 
 def _of_part(archive: xr.Dataset) -> tuple[Note, ...]:
-    """What a reader has to know where an archive holds a part of the samples."""
+    """Notes for an archive with only some of the samples."""
     if "sample_index" not in archive:
         return ()
     return (note("from-stored-samples", samples=archive.attrs["stored_samples"]),)

@@ -1,4 +1,4 @@
-"""Reduces each test of a campaign, or leaves it where nothing changed."""
+"""Reduces each test of a campaign, unless nothing has changed."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ def dataset_of(
     *,
     command: str,
 ) -> tuple[xr.Dataset, tuple[Note, ...]]:
-    """Reduce one surveyed test to all that its archive is to hold."""
+    """Reduce one surveyed test to the contents of its archive."""
     product = _reduce_survey(
         campaign, survey, basis.models, basis.history, basis.settings, basis.pulls,
         basis.pull_origins,
@@ -109,9 +109,9 @@ def _bring_up_to_date(
     command: str,
     before_writing: Callable[[], None],
 ) -> tuple[Status, str, xr.Dataset | None]:
-    """Write the archive of one test, unless one stands that is of the same logs and settings.
+    """Write the archive of one test, unless there is one from the same logs and settings.
 
-    Returns status, message and what was written.
+    Returns the status, the message and the dataset written.
     """
     if not force:
         notes = reusable_product(path, survey, basis.settings, remarks=basis.remarks)
@@ -126,7 +126,7 @@ def _bring_up_to_date(
 
 
 def _check_raw_files(campaign: Campaign, survey: Survey) -> None:
-    """Refuse an archive of a raw file that is another now, or gone, since it was read."""
+    """Refuse an archive if its raw file has changed or disappeared since it was read."""
     for (name, _), read in zip(survey.plan.files, survey.sources, strict=True):
         path = campaign.file(name)
         now = hash_source(path, read.name)
@@ -142,7 +142,7 @@ def _check_raw_files(campaign: Campaign, survey: Survey) -> None:
 
 @dataclass(frozen=True)
 class _Made:
-    """What became of one test where it was reduced."""
+    """Result of reducing one test."""
 
     status: Status
     message: str
@@ -167,7 +167,7 @@ def reduce_campaign(
     command: str,
     written: Callable[[Path, KeptArchive], None] = lambda path, archive: None,
 ) -> list[TestStatus]:
-    """Bring the archives of tests up to date; ``written`` is given those that are small."""
+    """Bring the archives of tests up to date; ``written`` receives the small ones."""
     progress.stage("reduce", len(chosen))
     known = {survey.plan.id: survey for survey in chosen}
     of_log = Counter(survey.plan.log for survey in chosen)
@@ -186,7 +186,7 @@ def reduce_campaign(
         for name, survey in known.items():
             log = survey.plan.log
             of_log[log] -= 1
-            # each record goes with the last task that takes it
+            # each record goes with the last task that uses it
             record = kept.get(log) if of_log[log] else kept.pop(log, None)
             error = survey.error or errors.get(name)
             try:
@@ -194,7 +194,7 @@ def reduce_campaign(
                     raise error
                 rests_on = basis(survey)
             except Exception as failure:
-                # a campaign goes on after a failed test, even where the failure is a defect here
+                # a campaign continues after a failed test, even for a defect of this program
                 end(name, _Made("failed", "", as_reduction_error(failure), 0.0))
                 continue
             given = (
@@ -222,7 +222,7 @@ def _make(
     force: bool,
     command: str,
 ) -> _Made:
-    """Bring one archive up to date, wherever this runs."""
+    """Bring one archive up to date, in any process."""
     lock.confirm()
     start = clock()
     status: Status
@@ -232,7 +232,7 @@ def _make(
             before_writing=lock.confirm,
         )  # fmt: skip
     except Exception as failure:
-        # a campaign goes on after a failed test, even where the failure is a defect here
+        # a campaign continues after a failed test, even for a defect of this program
         return _Made("failed", "", as_reduction_error(failure), clock() - start)
     as_found = None if written is None else as_kept(written)
     return _Made(status, message, None, clock() - start, as_found)

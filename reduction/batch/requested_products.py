@@ -1,4 +1,4 @@
-"""Which products a campaign asks for."""
+"""Finds the products that a campaign requests."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from reduction.stages.strain.stress import check_constant_volume
 
 
 def requested_parts(campaign: Campaign) -> set[str]:
-    """Names of the archives of the whole campaign that its campaign.toml asks for."""
+    """Names of the campaign-wide archives requested by campaign.toml."""
     asked = {
         "surfaces": bool(campaign.experiments),
         "predictions": bool(campaign.hoses),
@@ -34,7 +34,7 @@ def requested_parts(campaign: Campaign) -> set[str]:
 
 
 def requested_products(campaign: Campaign, folder: Path, *, has_lengths: bool) -> dict[str, Path]:
-    """Archives of the whole campaign that it asks for and that are there."""
+    """Requested campaign-wide archives that exist."""
     asked = requested_parts(campaign) | ({"change_in_length"} if has_lengths else set())
     paths = {name: folder / f"{name}.nc" for name in OF_CAMPAIGN if name in asked}
     return {name: path for name, path in paths.items() if path.exists()}
@@ -42,10 +42,10 @@ def requested_products(campaign: Campaign, folder: Path, *, has_lengths: bool) -
 
 @dataclass(frozen=True)
 class ReductionInputs:
-    """The tests after the first pass, and what the product of each rests on.
+    """The tests after the first pass, and the inputs of each product.
 
-    ``errors`` are of tests whose log was read and that cannot be reduced all the same, ``failed``
-    all that cannot.
+    ``errors`` are those of tests that were read but cannot be reduced; ``failed`` are all that
+    cannot.
     """
 
     first: FirstPass
@@ -61,7 +61,7 @@ def find_reduction_inputs(
     lock: RunLock | None = None,
     progress: Progress,
 ) -> ReductionInputs:
-    """Read every log of a campaign, and fit what its tests share."""
+    """Read every log of a campaign, and fit the models shared by its tests."""
     first = survey_campaign(campaign, workers=workers, lock=lock, progress=progress)
     return reduction_inputs(campaign, first, workers=workers, progress=progress)
 
@@ -73,7 +73,7 @@ def reduction_inputs(
     workers: Workers | None = None,
     progress: Progress,
 ) -> ReductionInputs:
-    """Fit what tests share whose logs are read."""
+    """Fit the models shared by tests whose logs are read."""
     models, errors = fit_strain_models(campaign, first.surveys)
     pulls, errors_of_pulls = fit_pulls(campaign, first, models, workers=workers, progress=progress)
     errors |= errors_of_pulls
@@ -86,10 +86,10 @@ def reduction_inputs(
 
 
 def refuse_unknown_tests(campaign: Campaign, tests: Sequence[str]) -> None:
-    """Refuse names that are of no test and of no step, before anything is read or written."""
+    """Refuse unknown names of tests and steps before anything is read or written."""
     known = set(campaign.tests)
     known |= {step.product(name) for name, plan in campaign.tests.items() for step in plan.steps}
-    # a level that is found in a log has the log's name before its own
+    # a level found in a log is named after the log
     unstated = {name for name, plan in campaign.tests.items() if not plan.steps}
     unknown = sorted(name for name in set(tests) - known if name.rpartition(".")[0] not in unstated)
     if unknown:
@@ -101,7 +101,7 @@ def refuse_unknown_tests(campaign: Campaign, tests: Sequence[str]) -> None:
 
 
 def selected_surveys(surveys: Sequence[Survey], tests: Sequence[str]) -> list[Survey]:
-    """The surveys that were asked for; a test's name stands for all its steps."""
+    """The requested surveys; the name of a test selects all its steps."""
     if not tests:
         return list(surveys)
     missing = set(tests) - {survey.plan.id for survey in surveys}
@@ -118,13 +118,13 @@ def selected_surveys(surveys: Sequence[Survey], tests: Sequence[str]) -> list[Su
 
 
 def _ready(survey: Survey, models: Mapping[tuple[str, str], StrainModel]) -> str:
-    """That a test can be reduced, and the most serious that is known against it before it is."""
+    """Message that a test can be reduced, with its most serious note so far."""
     known = [replace(one, stage="ingest") for one in survey.notes]
     for name in survey.plan.specimens:
         model = models.get((survey.plan.id, name))
         if model is not None:
             known += [replace(one, stage=f"strain {name}") for one in model.notes]
-    # of a level that was found how to state it
+    # for levels that were found, how to state them
     levels = [one for one in survey.remarks if one.code in ("levels-found", "cycles-unlike")]
     told = {str(one) for one in levels}
     other = [one for one in known if str(one) not in told]

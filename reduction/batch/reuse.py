@@ -1,4 +1,4 @@
-"""Whether the product of an earlier run still holds: same log, settings and version."""
+"""Checks whether the product of an earlier run is still valid: same log, settings and version."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from reduction.uncertainty.shared_contributions import PullOrigin
 
 
 def describe(campaign: Campaign, survey: Survey) -> TestDescription:
-    """What the laboratory kept about a test."""
+    """Laboratory information on a test."""
     plan = survey.plan
     attributes = campaign.attributes | plan.attributes
     if plan.part_of is not None:
@@ -48,12 +48,12 @@ def describe(campaign: Campaign, survey: Survey) -> TestDescription:
 
 
 def _plain(values: Floats) -> list[float | None]:
-    """Numbers as JSON has them: a missing one is null."""
+    """Numbers for JSON, with null for missing ones."""
     return [None if math.isnan(value) else value for value in values.tolist()]
 
 
 def _strain_document(campaign: Campaign, model: StrainModel) -> dict[str, Any]:
-    """A strain model, and all that its covariance and the errors of its load cells follow from."""
+    """A strain model with all inputs of its covariance and of its load-cell errors."""
     document: dict[str, Any] = {
         "method": model.method,
         "coefficients": model.coefficients,
@@ -71,7 +71,7 @@ def _strain_document(campaign: Campaign, model: StrainModel) -> dict[str, Any]:
         ],
     }
     if model.mark_test:
-        # every reading of the specimen: the covariance has no digit that these do not give again
+        # every reading of the specimen: the covariance follows from these exactly
         tape = campaign.marks[model.specimen]
         lengths = (tape.near_toe, tape.far_toe, tape.far_thimble)
         document["tape"] = {
@@ -91,7 +91,7 @@ def _settings_json(
     pulls: Sequence[SlowPull | None] | None = None,
     pull_origins: Sequence[PullOrigin | None] = (),
 ) -> str:
-    """Every setting that was in force, so that a product says how it can be made again."""
+    """All settings in force, so that a product states how to reproduce it."""
     plan = survey.plan
     document: dict[str, Any] = {
         "description": asdict(describe(campaign, survey)),
@@ -150,9 +150,9 @@ def _settings_json(
 
 @dataclass(frozen=True)
 class Basis:
-    """What a test's product rests on now; ``settings`` is all of it as JSON.
+    """Current inputs of a test's product; ``settings`` is all of them as JSON.
 
-    ``remarks`` is what the campaign leaves open about the test.
+    ``remarks`` are the open points about the test in the campaign.
     """
 
     history: History | None
@@ -171,7 +171,7 @@ def basis_of(
     pulls: Mapping[tuple[str, str], SlowPull],
     doubts: Mapping[str, tuple[Note, ...]] | None = None,
 ) -> Basis:
-    """Gather what one test rests on."""
+    """Collect the inputs of one test."""
     history = history_of(survey, past, campaign)
     of_run = pulls_of(campaign, survey, pulls)
     origins = () if of_run is None else origins_of(campaign, survey, past.surveys, past.models)
@@ -195,14 +195,14 @@ NOT_REDUCED = "not reduced yet from logs and settings as they stand now"
 def reusable_product(
     path: Path, survey: Survey, settings: str, *, remarks: Sequence[Note] = ()
 ) -> tuple[Note, ...] | None:
-    """Notes of the product of an earlier run that stands; None where it has to be made."""
+    """Notes of a valid product of an earlier run; None if it has to be made."""
     try:
         if not path.exists():
             return None
         wanted = {
             "software_version": __version__,
             "schema_version": SCHEMA_VERSION,
-            "test": survey.plan.id,  # that of another test may have been put in its place
+            "test": survey.plan.id,  # another test's product may have been put in its place
             "raw_file_sha256": "\n".join(source.sha256 for source in survey.sources),
             "key": key_of(settings),
         }
@@ -211,8 +211,8 @@ def reusable_product(
             return None
         notes = read_notes(archive)
     except OSError:
-        return None  # an archive that cannot be read is made again
-    # where it lacks a remark another test has failed than then
+        return None  # an unreadable archive is made again
+    # a missing remark means that a different test has failed since
     return notes if {str(one) for one in remarks} <= {str(one) for one in notes} else None
 
 

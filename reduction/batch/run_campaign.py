@@ -1,4 +1,4 @@
-"""Runs a campaign from its logs to its products; each test succeeds or fails by itself."""
+"""Runs a campaign from its logs to its products; a failed test does not affect the others."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ _Models = Callable[[Survey], Sequence[StrainModel]]
 
 @dataclass(frozen=True)
 class _Found:
-    """What the archives of the tests of one rope give."""
+    """Results from the archives of the tests of one rope."""
 
     steps: tuple[StepOfProgramme, ...]
     sources: tuple[Source, ...]
@@ -84,7 +84,7 @@ class _Found:
 
 
 def _tests_of_ropes(campaign: Campaign, surveys: Sequence[Survey]) -> set[str]:
-    """Tests that may be steps of the programme of a rope."""
+    """Tests that may be steps of a rope programme."""
     return {
         entry.plan.id
         for entry in surveys
@@ -156,7 +156,7 @@ def _write_change_in_length(
 
 
 def _in_order(surveys: Sequence[Survey], name: str) -> tuple[list[Survey], bool]:
-    """Tests of a specimen, oldest first, and whether that order is known."""
+    """Tests of a specimen, oldest first, and whether the order is known."""
     own = [
         entry for entry in surveys if name in entry.plan.specimens and entry.plan.part_of is None
     ]
@@ -172,7 +172,7 @@ def _in_order(surveys: Sequence[Survey], name: str) -> tuple[list[Survey], bool]
 def _loaded_before(
     specimen: Specimen, own: Sequence[Survey], steps: Sequence[StepOfProgramme]
 ) -> str:
-    """What a rope carried before the first step of which there are numbers; empty of a new one."""
+    """Loads on a rope before its first step with numbers; empty for a new rope."""
     first = own[0].plan
     count = (specimen.earlier_cycles or 0) + (first.unlogged_cycles or 0)
     if count:
@@ -200,7 +200,7 @@ def _read(
             missing.append(f"{test} {'failed' if test in failed else NOT_REDUCED}")
             continue
         path = folder / f"{test}.nc"
-        # a test that neither failed nor waits has an archive of this run or as good as one
+        # a test that neither failed nor is pending has an archive that is up to date
         with opener(path) as archive:
             found = step_of_archive(archive, specimen, *known[test])
             steps.append(found.step)
@@ -218,7 +218,7 @@ def _read(
 def _instruments(
     campaign: Campaign, survey: Survey, specimen: str, models: Sequence[StrainModel]
 ) -> tuple[InstrumentErrors, StrainModel] | tuple[None, None]:
-    """What is stated of the instruments of a specimen, and its strain; of weights neither."""
+    """Stated instrument errors of a specimen and its strain model; None for weights."""
     errors = instruments_of(campaign, survey, models)
     pairs = zip(errors, models, strict=True)
     return next((pair for pair in pairs if pair[1].specimen == specimen), (None, None))
@@ -230,7 +230,7 @@ def _properties_in_one_line(name: str, own: Sequence[ChangeInLength]) -> str:
 
 
 def results_found(campaign: Campaign) -> dict[str, Any] | None:
-    """What the table of results holds, as `check` prints it."""
+    """Contents of the table of results, as printed by `check`."""
     if campaign.results is None:
         return None
     uses: dict[str, Counter[str]] = {}
@@ -297,49 +297,48 @@ def run_campaign(
     progress: Progress | None = None,
     opener: Opener | None = None,
 ) -> CampaignResult:
-    """Reduce a campaign: archives, tables, catalogue, status, report.
+    """Reduce a campaign to archives, tables, catalogue, status and report.
 
-    No other run may be at work on the same products.  Tests whose archives stand are left as
-    they are, so that a run that was ended goes on where it was.
+    No other run may use the same products.  Tests with current archives are left alone, so that an
+    interrupted run continues from where it stopped.
 
     Parameters
     ----------
     campaign : Campaign
-        As loaded.
+        Loaded campaign.
     processed, reports : pathlib.Path
-        Folders of the products and of the report; the campaign's id is added.
+        Parent folders of the products and the report; the campaign's id is added.
     clock : callable
-        Seconds, for the status table only; no product depends on it.
+        Clock in seconds, for the status table only; no product depends on it.
     tests : sequence of str
-        Only these; all where empty.
+        Tests to reduce; all if empty.
     force : bool
-        Redo tests whose raw files, settings and version have not changed.
+        Redo tests even if raw files, settings and version are unchanged.
     command : str
-        For the product's ``command`` attribute, without paths.
+        Value of the product's ``command`` attribute, without paths.
     units : {"si", "us"}
-        What the report shows; files are SI.
+        Units of the report; files are SI.
     values_page : str
-        Address of the design-value page from the folder of the report, where one is written.
+        Address of the design-value page from the report folder, if one is written.
     workers : Workers, optional
-        Where the tests are worked on; one after another in this process where left out.  No
-        product depends on it.
+        Workers for the tests; by default they run one after another in this process.  No product
+        depends on it.
     progress : Progress, optional
-        Told how far it is.
+        Receives progress.
     opener : Opener, optional
-        How archives are opened once they are made; by this run alone, and kept in memory while it
-        lasts, where left out.
+        Opens finished archives; by default `ReadOnce`, which reads a small one once.
 
     Returns
     -------
     result : CampaignResult
-        A failed test is a row in it, not an exception; its older product is kept.
+        A failed test is a row here, not an exception; its older product is kept.
 
     Raises
     ------
     SettingsError
-        If ``tests`` names a test that the campaign lacks.
+        If ``tests`` contains an unknown test.
     ArchiveError
-        If the folder or a table cannot be written, or another run holds the folder.
+        If the folder or a table cannot be written, or another run uses the folder.
     WorkerError
         If the workers or their scheduler are lost.
     """
@@ -354,13 +353,13 @@ def run_campaign(
                 workers=workers, progress=progress, opener=opener or ReadOnce(),
             )  # fmt: skip
         except BaseException:
-            if workers is not None:  # nobody writes once the lock is given back
+            if workers is not None:  # no one writes after the lock is released
                 workers.end()
             raise
 
 
 def _refuse_name(folder: Path) -> None:
-    """Refuse a folder that the netCDF library cannot name, before anything is reduced for it."""
+    """Refuse a folder name that netCDF does not support, before anything is reduced."""
     name = str(folder.absolute())
     try:
         name.encode(sys.getfilesystemencoding())
@@ -400,8 +399,8 @@ def _run(
         written=partial(keep_written, opener),
     )  # fmt: skip
     if workers is not None:
-        workers.executor.shutdown()  # what is made of all tests takes the memory that they had
-    lock.confirm()  # before what is made of all tests
+        workers.executor.shutdown()  # frees the memory of the tests for the products of all tests
+    lock.confirm()  # before products of all tests are written
     if archives_of_tests(folder):
         record_campaign(folder, campaign.path)
     failed = {status.test for status in statuses if status.status == "failed"}
@@ -418,10 +417,10 @@ def _run(
         opener=opener,
     )
     names = [survey.plan.id for survey in surveys]
-    # of a log that failed nobody knows which steps it has now
+    # the steps of a failed log are unknown
     unknown = tuple(f"{survey.plan.id}." for survey in surveys if survey.error is not None)
     read = {source.name: source.sha256 for survey in surveys for source in survey.sources}
-    # what else is known of the logs is 0.1 MB a test, which the tables and pages need
+    # the remaining log data take 0.1 MB a test, which the tables and pages need
     del wanted, first, basis, surveys, chosen
     trim_heap()
     progress.stage("tables", 0)
@@ -445,13 +444,13 @@ def _run(
             entries.add(path, archive)
             page.add(path, archive)
 
-        # of a thousand archives each is opened once for all that is made of it
+        # each of up to a thousand archives is opened only once for everything made from it
         tables = write_tables(archives, folder / "tables", opener=opener, each=each, **products)
         write_catalogue(
             [*archives, *products.values()], folder / FILE_NAME, entries=entries, opener=opener
         )
         trim_heap()
-    if archives or products or statuses:  # where all tests failed the page says that and why
+    if archives or products or statuses:  # if all tests failed, the page states this and the reason
         progress.stage("report", 0)
         made = {one.test for one in statuses if one.status not in ("failed", "no_work")}
         report, found = page.write(
@@ -475,7 +474,7 @@ def _run(
 
 
 def _shown(found: CampaignAnswers) -> ShownAnswers:
-    """Answers and doubts as they are printed."""
+    """Answers and doubts in printed form."""
     return ShownAnswers(
         [
             ShownTable(
@@ -493,7 +492,7 @@ def _shown(found: CampaignAnswers) -> ShownAnswers:
 
 
 def _put_aside(products: Sequence[Path], folder: Path) -> list[Path]:
-    """Move products that the campaign no longer makes to where nothing answers from them."""
+    """Move products that the campaign no longer makes to where no query reads them."""
     moved = []
     for path in filter(Path.is_file, products):
         target = folder / SUPERSEDED / path.name
@@ -504,7 +503,7 @@ def _put_aside(products: Sequence[Path], folder: Path) -> list[Path]:
 
 
 def _keep_pages(ours: Sequence[Path], name: str, why: str) -> None:
-    """Leave the older pages as they are where new ones would lack what the run has made."""
+    """Keep the older pages if new ones would lack results of the run."""
     for path in ours:
         if path.name == name:
             raise ArchiveError(
@@ -525,9 +524,9 @@ def _write_parts(
     command: str,
     opener: Opener,
 ) -> tuple[dict[str, list[PartStatus]], bool]:
-    """Write the archives of the whole campaign, from those of its tests that are up to date.
+    """Write the campaign-wide archives from those of its up-to-date tests.
 
-    Returns what became of its parts, and whether a rope changed its length.
+    Returns the status of its parts, and whether a rope changed in length.
     """
     runs = {run for plan in campaign.experiments.values() for run in plan.runs}
     compared = {plan.measured for plan in campaign.comparisons.values()}
@@ -561,7 +560,7 @@ def _write_parts(
 
 
 def _all_rows(path: Path, names: Sequence[str], statuses: Sequence[TestStatus]) -> list[TestStatus]:
-    """One row for each test of the campaign; a test that was not asked for keeps its own."""
+    """One row for each test of the campaign; tests not requested keep their old row."""
     new = {status.test: status for status in statuses}
     before = read_status(path) if len(new) < len(names) else {}
     rows = [new.get(name) or before.get(name) for name in names]

@@ -1,8 +1,7 @@
-"""One run at a time on the products of a campaign, held by a lock of the system.
+"""Allows one run at a time on the products of a campaign, by an operating-system lock.
 
-The system frees it when the process ends, however that comes about.  The file stays: two runs that
-find it gone could each make and lock one of their own.  It names a run while one is at work, and
-still does after one that was killed.
+The system releases the lock whenever the process ends.  The file is kept, because two runs that
+find it gone could each create and lock their own.  It names the active run, or one that was killed.
 """
 
 from __future__ import annotations
@@ -25,7 +24,7 @@ if sys.platform == "win32":
     import msvcrt
 
     _HELD = PermissionError
-    _FAR = 1 << 30  # a byte that is locked cannot be read, and the text of the file is to be
+    _FAR = 1 << 30  # a locked byte cannot be read, but the text of the file must be readable
 
     def _take(file: BinaryIO) -> None:
         file.seek(_FAR)
@@ -44,13 +43,13 @@ LOCK_NAME = "run.lock"
 
 @dataclass(frozen=True)
 class RunLock:
-    """A lock as the workers of a run know it; ``holder`` is what its file says of the run."""
+    """A lock as passed to the workers of a run; ``holder`` is the run named in its file."""
 
     path: Path
     holder: str
 
     def confirm(self) -> None:
-        """Refuse to go on where the lock is not this run's, or is not seen."""
+        """Raise an error if the lock is not this run's, or is not visible."""
         try:
             text = self.path.read_text(encoding="utf-8", errors="replace")
         except FileNotFoundError:
@@ -68,7 +67,7 @@ class RunLock:
 
 @contextmanager
 def run_lock(folder: Path) -> Iterator[RunLock]:
-    """Hold the folder of a campaign's products for one run."""
+    """Lock the folder of a campaign's products for one run."""
     lock = RunLock(folder / LOCK_NAME, _own())
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -77,14 +76,14 @@ def run_lock(folder: Path) -> Iterator[RunLock]:
         raise _refused(lock.path, error) from error
     with file:
         _hold(file, lock)
-        _remove_begun(folder)  # by a run that was killed
+        _remove_begun(folder)  # left by a killed run
         try:
             yield lock
         finally:
-            # where a person has removed the file the folder may be another run's
+            # if the file was removed, the folder may belong to another run
             if _run_named(folder) == lock.holder:
-                _remove_begun(folder)  # by a worker that was killed
-                with suppress(OSError):  # a disk that is gone
+                _remove_begun(folder)  # left by a killed worker
+                with suppress(OSError):  # a lost disk
                     file.truncate(0)
 
 
@@ -99,14 +98,14 @@ def _hold(file: BinaryIO, lock: RunLock) -> None:
             needed="one run at a time in a folder of archives",
             hint="Wait for it or end it; archives that it finished are kept.",
         ) from None
-    except OSError as error:  # a disk of the network that keeps no locks
+    except OSError as error:  # a network disk without locks
         raise _refused(lock.path, error) from error
     try:
         file.truncate(0)
         file.write(lock.holder.encode())
         os.fsync(file.fileno())
     except OSError as error:
-        with suppress(OSError):  # half of its text names nobody
+        with suppress(OSError):  # half of its text names no run
             file.truncate(0)
         raise _refused(lock.path, error) from error
 
@@ -120,7 +119,7 @@ def _refused(path: Path, error: OSError) -> ArchiveError:
 
 
 def _run_named(folder: Path) -> str:
-    """The run that is at work in a folder of products, or was killed there; empty without one."""
+    """The run that is active in a folder of products, or was killed there; empty without one."""
     try:
         return (folder / LOCK_NAME).read_text(encoding="utf-8", errors="replace")
     except OSError:
@@ -129,13 +128,13 @@ def _run_named(folder: Path) -> str:
 
 def _own() -> str:
     command = without_secrets(shlex.join([Path(sys.argv[0]).name, *sys.argv[1:]]))
-    command = command.encode("utf-8", "backslashreplace").decode()  # of names in other letters
+    command = command.encode("utf-8", "backslashreplace").decode()  # for names in other alphabets
     started = datetime.now(UTC).isoformat(sep=" ", timespec="seconds")
     return f"'{command}', process {os.getpid()} on {platform.node()}, since {started}"
 
 
 def _remove_begun(folder: Path) -> None:
-    """Take files away that were begun and have no name yet."""
-    with suppress(OSError):  # they are in nobody's way, and the next run tries again
+    """Remove unfinished files that have no final name yet."""
+    with suppress(OSError):  # they are harmless, and the next run tries again
         for part in folder.rglob(".*.part"):
             part.unlink(missing_ok=True)

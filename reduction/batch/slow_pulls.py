@@ -1,4 +1,4 @@
-"""Slow pulls of a campaign: the quasi-static spring constant of each experiment."""
+"""Fits the slow pulls of a campaign: the quasi-static spring constant for each experiment."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _Found = tuple[list[SlowPull | None], ReductionError | None]
 
 
 def pull_conditions(campaign: Campaign, survey: Survey) -> PullConditions:
-    """What the campaign says about a slow pull."""
+    """Conditions of a slow pull stated in the campaign."""
     waiting = survey.plan.attributes.get("rest", "")
     try:
         waiting_time = parse_quantity(waiting, "time") if waiting else None
@@ -62,7 +62,7 @@ def fit_pulls(
     workers: Workers | None = None,
     progress: Progress,
 ) -> tuple[dict[tuple[str, str], SlowPull], dict[str, ReductionError]]:
-    """Fit every slow pull that an experiment names."""
+    """Fit every slow pull named by an experiment."""
     named = {test for plan in campaign.experiments.values() for test in plan.quasi_static.values()}
     specimens_of: dict[str, tuple[str, ...]] = {}
     tasks: list[Task] = []
@@ -97,7 +97,7 @@ def _fit(
     kept: Sequence[Survey] | None,
     models: Sequence[StrainModel],
 ) -> _Found:
-    """Slow pull of each specimen of a test, or what was wrong with it."""
+    """Slow pull of each specimen of a test, or the error."""
     try:
         located = located_again(campaign, with_record(survey, kept))
         position, tension = located.position, located.tension
@@ -106,13 +106,13 @@ def _fit(
             located, strain, tension, pull_conditions(campaign, survey), models=models
         )  # fmt: skip
     except Exception as error:
-        # one test's failure, even where it is a defect here
+        # fails only this test, even for a defect of this program
         return [], as_reduction_error(error)
     return list(found), None
 
 
 def pull_tests(campaign: Campaign, run: str) -> dict[str, str]:
-    """Test of the slow pull by specimen, as the experiments say that the run is in."""
+    """Test with the slow pull by specimen, according to the experiments of the run."""
     return {
         specimen: test
         for plan in campaign.experiments.values()
@@ -122,7 +122,7 @@ def pull_tests(campaign: Campaign, run: str) -> dict[str, str]:
 
 
 def pulls_of(campaign: Campaign, survey: Survey, pulls: Pulls) -> list[SlowPull | None] | None:
-    """Slow pull of each specimen of a run; None where the test is a run of no experiment."""
+    """Slow pull of each specimen of a run; None if the test is not in any experiment."""
     if not any(survey.plan.id in plan.runs for plan in campaign.experiments.values()):
         return None
     test_of = pull_tests(campaign, survey.plan.id)
@@ -135,7 +135,7 @@ def origins_of(
     surveys: Sequence[Survey],
     models: Mapping[tuple[str, str], StrainModel],
 ) -> tuple[PullOrigin | None, ...]:
-    """With what the slow pull of each specimen of a run was read; None where it has none."""
+    """Instruments of the slow pull of each specimen of a run; None without a pull."""
     test_of = pull_tests(campaign, survey.plan.id)
     by_test = {entry.plan.id: entry for entry in surveys}
     found: list[PullOrigin | None] = []

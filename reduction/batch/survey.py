@@ -1,4 +1,4 @@
-"""First pass over a campaign: what each log holds."""
+"""First pass over a campaign, which records the contents of each log."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ from reduction.stages.three_parameter_line.rope_programme import tensile_pull
 
 
 def _log_summary(located: Located) -> dict[str, Any]:
-    """Rate, gaps, standstills, flags and notes of a record, beside its rows and cycles."""
+    """Rate, gaps, standstills, load at slack, flags and notes of a record."""
     record = located.record
     n_flagged = account_rows(record).n_flagged
     return {
@@ -77,7 +77,7 @@ def _log_summary(located: Located) -> dict[str, Any]:
 
 
 def _slice(record: Record, first: int, stop: int) -> Record:
-    """The rows from ``first`` up to ``stop``, as a record of its own."""
+    """The rows from ``first`` up to ``stop`` as a separate record."""
     part = slice(first, stop)
     return replace(
         record,
@@ -117,7 +117,7 @@ def _step_record(record: Record, step: StepPlan, plan: TestPlan) -> Record:
 
 
 def _step_plan(plan: TestPlan, step: StepPlan, place: int) -> TestPlan:
-    """The plan of one step as that of a test."""
+    """The plan of one step in the form of a test plan."""
     cycles = replace(
         plan.settings.cycles, expected_cycles=step.expected_cycles, waveform=plan.waveform
     )
@@ -145,7 +145,7 @@ class SpliceSlip:
 
 
 Reader = Callable[..., tuple[Record, tuple[Source, ...]]]
-"""Gives the record of a log, as `reduction.readers.read_log.read_record` does."""
+"""Reads the record of a log, like `reduction.readers.read_log.read_record`."""
 
 
 @dataclass
@@ -153,14 +153,14 @@ class Survey:
     """One test after the first pass.
 
     ``mark_tension`` and ``mark_tension_at_start`` hold, by specimen, one tension [N] for each
-    pooled mark that was read in this test, in the order of the marks; ``mark_errors`` what of
-    these marks the crosshead contradicts.  ``zero_strain`` is where strain is zero, by specimen,
-    ``reference_length`` [m] the length at displacement zero where it is stated.  ``extremes`` is
-    how far the test went and ``levels`` what it was run at; ``found`` and ``notes`` what a person
-    is told of the log, ``remarks`` what of its levels.  ``first_time`` is that of the first row
-    [s]; ``broken`` names the specimens that broke, as stated or by the log of a pull, and
-    ``slips`` holds those of the splices, by specimen, where a later test is to know of them.
-    ``n_cycles_between`` is how many the machine counted between those of the log.
+    pooled mark read in this test, in the order of the marks; ``mark_errors`` holds the marks that
+    the crosshead contradicts.  ``zero_strain`` is the position of zero strain, by specimen, and
+    ``reference_length`` [m] the length at displacement zero, if stated.  ``extremes`` is the range
+    covered by the test and ``levels`` its operating levels; ``found`` and ``notes`` are reported on
+    the log, ``remarks`` on its levels.  ``first_time`` is that of the first row [s]; ``broken``
+    names the specimens that broke, as stated or according to the log of a pull, and ``slips`` holds
+    the splice slips by specimen that matter to a later test.  ``n_cycles_between`` is the number of
+    cycles counted by the machine between those of the log.
     """
 
     plan: TestPlan
@@ -187,7 +187,7 @@ class Survey:
 
 
 def _read_test(campaign: Campaign, plan: TestPlan, *, reader: Reader = read_record) -> list[Survey]:
-    """Read one log and locate what it holds: one survey a test, or one a step."""
+    """Read one log and locate its contents: one survey per test, or one per step."""
     files = [(campaign.file(name), campaign.layouts[layout], name) for name, layout in plan.files]
     if plan.kind == "stepwise":
         readings, sources = read_step_readings(files, test_id=plan.id, limits=campaign.limits)
@@ -230,8 +230,8 @@ def _read_test(campaign: Campaign, plan: TestPlan, *, reader: Reader = read_reco
             _measure_marks(survey, located, campaign)
             return [survey]
         plan = replace(plan, steps=found.steps, attributes=plan.attributes | FOUND)
-    # a mark, and the position of zero strain, belong to the whole log and not to a step of it;
-    # of a pull, because that has no cycles to look for
+    # marks and the position of zero strain belong to the whole log, not to a step; it is located as
+    # a pull, which has no cycles to search for
     whole = locate(
         record, kind="quasi-static", settings=plan.settings, specimens=_specimens(campaign, plan)
     )
@@ -273,7 +273,7 @@ def _layouts(campaign: Campaign, plan: TestPlan) -> list[Layout]:
 
 
 def _find_zero_strain(survey: Survey, located: Located, campaign: Campaign, plan: TestPlan) -> None:
-    """Set where strain of each specimen is zero, and whether that is a position of the log."""
+    """Set the zero of strain for each specimen, and whether that is a position in the log."""
     layouts = _layouts(campaign, plan)
     is_length = located.record.position_is_length
     length, tension_of_layout = reference_of(layouts)
@@ -302,16 +302,16 @@ def _find_zero_strain(survey: Survey, located: Located, campaign: Campaign, plan
         )
 
 
-# where a tape reads the slack length the crosshead stands within this; tension begins beyond it
+# at the slack length read by tape the crosshead is within this; tension starts beyond it
 _AT_SLACK_LENGTH = 4 * TAPE_UNCERTAINTY
 
-# of the greatest load: what a wrong zero may be, while a hold under tension is more
+# of the maximum load: possible size of a wrong zero; a hold under tension is larger
 _LITTLE = 0.1
 
-# the same where a tape read that length slack: a stretch within its tolerance pulls little
+# the same for a length read slack by tape, where a stretch within tolerance pulls little
 _LITTLE_BY_TAPE = 0.5
 
-_SHORT = 0.01  # of the slack length: a tolerance within which a specimen pulls little
+_SHORT = 0.01  # of the slack length: tolerance within which the tension is small
 
 
 def _with_load_at_slack(
@@ -322,7 +322,7 @@ def _with_load_at_slack(
     *,
     earlier: Sequence[Note] = (),
 ) -> Located:
-    """Say what each load cell reads at the slack rests of the whole log."""
+    """Add the load-cell readings at the slack rests of the whole log."""
     layouts, stands = _layouts(campaign, plan), whole.standstills
     slack_length, tension_of_layout = length_at_slack(layouts), reference_of(layouts)[1]
     found, zeros = [], []
@@ -367,7 +367,7 @@ def _with_load_at_slack(
     of_record = [
         one
         for one in located.record.notes
-        # where an extensometer measures strain, no strain rests on the length
+        # with an extensometer, strain does not depend on the length
         if not (one.code.startswith("reference-length") and _is_measured(whole, campaign, plan))
     ]
     record = replace(located.record, notes=(*notes, *jumps, *earlier, *of_record))
@@ -375,7 +375,7 @@ def _with_load_at_slack(
 
 
 def _is_measured(located: Located, campaign: Campaign, plan: TestPlan) -> bool:
-    """Whether strain is that of extensometers."""
+    """Whether strain is measured by extensometers."""
     method = plan.settings.strain.method
     has_marks = any(name in campaign.marks for name in plan.specimens)
     return located.record.measured_strain is not None and (
@@ -386,7 +386,7 @@ def _is_measured(located: Located, campaign: Campaign, plan: TestPlan) -> bool:
 def _jumps_of_length(
     whole: Located, campaign: Campaign, plan: TestPlan, *, until: float
 ) -> list[Note]:
-    """Say where the length that strain is read from jumps under load, up to the end of a test."""
+    """Note jumps under load in the length used for strain, up to the end of a test."""
     measured, is_measured = whole.record.measured_strain, _is_measured(whole, campaign, plan)
     found = {}
     for index, (name, tension) in enumerate(zip(plan.specimens, whole.tension, strict=True)):
@@ -401,22 +401,22 @@ def _jumps_of_length(
         for time, size in jumps_of_length(whole.record.time, length, tension, slack_tension=slack):
             if time <= until:
                 found[what] = note("length-jumps", what=what, size=size, unit=unit, time=time)
-                break  # the first one stands for those after it
+                break  # only the first is reported
     return list(found.values())
 
 
 def _slips_of_step(located: Located, plan: TestPlan) -> list[tuple[float, Note]]:
-    """When something slipped between two cycles of a step, and what later ones are told of it."""
+    """Times of slips between two cycles of a step, with notes for the later steps."""
     cycles, break_in = located.cycles, plan.settings.cycles.break_in_cycles
     if cycles is None or cycles.n_cycles <= break_in + 1:
         return []
     if plan.settings.strain.method == "extensometer":
-        return []  # which does not see what slips in a grip
+        return []  # it does not see slip in a grip
     first, last = cycles.first[break_in:], cycles.last[break_in:]
     ends = np.column_stack([first, last]).ravel()[:-1]
 
     def of_cycles(values: Floats) -> tuple[Floats, Floats]:
-        """Mean and half the range of each cycle."""
+        """Mean and half-range of each cycle."""
         sums, most, least = (
             one.reduceat(values[: last[-1]], ends)[::2] for one in (np.add, np.maximum, np.minimum)
         )
@@ -441,7 +441,7 @@ def _slips_of_step(located: Located, plan: TestPlan) -> list[tuple[float, Note]]
 
 
 def _needs_length(campaign: Campaign, plan: TestPlan) -> bool:
-    """Whether strain of some specimen comes from the distance between the thimbles."""
+    """Whether the strain of any specimen is derived from the thimble-to-thimble length."""
     method = plan.settings.strain.method
     if method is not None:
         return method not in ("extensometer", "gauge-length")
@@ -479,20 +479,20 @@ def _located(plan: TestPlan, located: Located, sources: tuple[Source, ...]) -> S
 
 
 def _broken(located: Located, plan: TestPlan) -> frozenset[str]:
-    """Specimens that broke: as stated, or where the tension of a pull falls and stays there."""
+    """Broken specimens: as stated, or those whose tension in a pull falls and stays low."""
     if plan.failed is not None or plan.kind != "tensile":
         return frozenset(plan.specimens if plan.failed else ())
     try:
         pull = tensile_pull(
             located.position, located.tension, located.tension, rated_break_strength=np.nan
         )
-    except DataError:  # too few readings: what the reduction says of them is enough
+    except DataError:  # too few readings, which the reduction itself reports
         return frozenset()
     return frozenset(np.array(plan.specimens)[pull.is_break].tolist())
 
 
 def _measure_marks(survey: Survey, located: Located, campaign: Campaign) -> None:
-    """Tension while each mark of a log was read, into the survey of its test or first step."""
+    """Store the tension at each mark reading of a log in the survey of its test or first step."""
     plan = survey.plan
     if located.record.position_is_length and _needs_length(campaign, plan):
         for name in plan.specimens:
@@ -520,7 +520,7 @@ def _measure_marks(survey: Survey, located: Located, campaign: Campaign) -> None
 
 
 def _of_position(campaign: Campaign, located: Located) -> float:
-    """Standard uncertainty of the crosshead's zero and scale, where stated. [m]."""
+    """Standard uncertainty of the crosshead's zero and scale, if stated. [m]."""
     stated = campaign.uncertainty
     return float(
         np.hypot(
@@ -530,7 +530,7 @@ def _of_position(campaign: Campaign, located: Located) -> float:
 
 
 def survey_log(campaign: Campaign, name: str, *, reader: Reader = read_record) -> list[Survey]:
-    """Read and locate one log; a log that cannot be read has one survey, with its error."""
+    """Read and locate one log; an unreadable log gives one survey with its error."""
     plan = campaign.tests[name]
     try:
         return _read_test(campaign, plan, reader=reader)
@@ -541,7 +541,7 @@ def survey_log(campaign: Campaign, name: str, *, reader: Reader = read_record) -
 
 
 def located_again(campaign: Campaign, survey: Survey) -> Located:
-    """The record of a survey, read again where it was not kept."""
+    """The record of a survey, read again if it was not kept."""
     if survey.located is not None:
         return survey.located
     for again in _read_test(campaign, campaign.tests[survey.plan.log]):
@@ -561,7 +561,7 @@ def located_again(campaign: Campaign, survey: Survey) -> Located:
 
 
 def as_reduction_error(error: Exception) -> ReductionError:
-    """An error as a test carries it; one that was not raised on purpose is a defect here."""
+    """An error for a test; one not raised on purpose is reported as a defect of this program."""
     if isinstance(error, ReductionError):
         return error
     if isinstance(error, OSError) and error.errno is not None:
@@ -571,20 +571,20 @@ def as_reduction_error(error: Exception) -> ReductionError:
     )
 
 
-# records larger than this together are read again and not kept between the passes: 90 bytes a row
+# beyond this total, records are read again instead of kept between the passes: 90 bytes a row
 KEPT_SAMPLES = 500_000
 
-# those of a log with more are not sent between processes: of 10,000 rows that takes 1 ms, and to
-# read them again 40 ms
+# longer records are not sent between processes: sending 10,000 rows takes 1 ms, reading them again
+# 40 ms
 SENT_SAMPLES = 100_000
 
 
 @dataclass
 class FirstPass:
-    """What the tests of a campaign hold, without their samples; and the records that are kept.
+    """Contents of all tests of a campaign without their samples, and the records kept.
 
-    ``surveys`` are in the order of the campaign; a test that failed carries its error.  ``kept``
-    holds, by log, the surveys with their records, as far as there is room.
+    ``surveys`` are in the order of the campaign; a failed test has its error.  ``kept`` holds, by
+    log, surveys with their records, as far as memory allows.
     """
 
     surveys: list[Survey]
@@ -625,7 +625,7 @@ def survey_campaign(
 
 
 def _followed_logs(campaign: Campaign) -> set[str]:
-    """Logs that another test of one of their specimens comes after, or is a part of."""
+    """Logs that are followed by another test of the same specimen, or repeated in part."""
     last: dict[str, int] = {}
     for plan in campaign.tests.values():
         for name in plan.specimens:
@@ -640,16 +640,16 @@ def _followed_logs(campaign: Campaign) -> set[str]:
 
 
 def with_one_log(campaign: Campaign, log: str) -> Campaign:
-    """What the work on one log needs of a campaign: of thousands of tests each is sent one."""
+    """Reduced campaign for work on one log, so that only one of thousands of tests is sent."""
     return replace(campaign, tests={log: campaign.tests[log]})
 
 
 def _n_bytes(campaign: Campaign, log: str) -> int:
-    """Size of the files of a log, as far as they can be looked at."""
+    """Total size of the accessible files of a log."""
     n_bytes = 0
     for name, _ in campaign.tests[log].files:
         if name not in campaign.unread:
-            with suppress(OSError):  # what is wrong with it is said by the test, when it is read
+            with suppress(OSError):  # reported when the test is read
                 n_bytes += campaign.file(name).stat().st_size
     return n_bytes
 
@@ -672,10 +672,10 @@ def _survey(
 def _splice_slips(
     located: Located, plan: TestPlan, spliced: Container[str] = ()
 ) -> dict[str, list[SpliceSlip]]:
-    """Slips of the splices by specimen, of a test with the cycles to find them in.
+    """Slips of the splices by specimen, for a test with enough cycles to find them.
 
-    Of few cycles, a fall of the mean tension between two of them that position does not follow, of
-    specimens that have splices.
+    With few cycles, a slip is a fall of the mean tension between two of them that position does
+    not follow, in specimens with splices.
     """
     found, cycles = slips_of(located, plan.settings), located.cycles
     if cycles is None:
@@ -685,7 +685,7 @@ def _splice_slips(
     times = located.record.time[cycles.first[found.slip_cycle - 1]]
     slips: dict[str, list[SpliceSlip]] = {}
     for name, time, length in zip(found.specimen, times, found.slip_length, strict=True):
-        if not length < 0:  # a splice lets out, and what steps up is none
+        if not length < 0:  # a splice lets out: an upward step is not a slip
             slips.setdefault(name, []).append(SpliceSlip(float(time), float(length)))
     return slips
 
@@ -693,7 +693,7 @@ def _splice_slips(
 def _falls_between_cycles(
     located: Located, plan: TestPlan, spliced: Container[str]
 ) -> dict[str, list[SpliceSlip]]:
-    """Slips by the fall of the mean tension, at the stiffness of the cycles."""
+    """Slips from the fall of the mean tension, using the stiffness of the cycles."""
     slips: dict[str, list[SpliceSlip]] = {}
     cycles = located.cycles
     if (
@@ -714,7 +714,7 @@ def _falls_between_cycles(
 
 
 def with_record(survey: Survey, kept: Sequence[Survey] | None) -> Survey:
-    """Give a survey the record that was kept of its log, where it is of the same file."""
+    """Return a survey with the record kept for its log, if it is of the same file."""
     for one in kept or ():
         if one.plan.id == survey.plan.id and one.sources == survey.sources:
             return replace(survey, located=one.located)
@@ -722,10 +722,10 @@ def with_record(survey: Survey, kept: Sequence[Survey] | None) -> Survey:
 
 
 def _error_message(campaign: Campaign, survey: Survey, error: ReductionError) -> str:
-    """``FILE:ROW [CHANNEL]: problem``; an error of the data is given its test's file."""
+    """``FILE:ROW [CHANNEL]: problem``; data errors get the file of their test."""
     if isinstance(error, (LogError, SettingsError)):
         return campaign.in_words(str(error))
-    if error.where():  # its file, as the campaign names it, and row and channel
+    if error.where():  # its file, named as in the campaign, row and channel
         name = str(error.facts["file"])
         return f"{campaign.shown(name)}{str(error).removeprefix(name)}"
     return campaign.in_words(f"{campaign.shown(survey.plan.files[0][0])}: {error}")

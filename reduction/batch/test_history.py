@@ -1,4 +1,4 @@
-"""What a specimen had seen before a test, its strain model and its instruments.
+"""History of a specimen before a test, its strain model and its instruments.
 
 References
 ----------
@@ -36,17 +36,17 @@ Models = Mapping[tuple[str, str], StrainModel]
 
 Place = tuple[int, int]
 
-_ALIKE = 0.02  # loads within this are one level, as of levels in a look-up
+_ALIKE = 0.02  # loads within this ratio are one level, as for levels in a look-up
 
 
 @dataclass(frozen=True)
 class EarlierTests:
-    """All tests of a campaign, in order.
+    """All tests of a campaign in order.
 
-    Each test asks what came before it, so that what can be answered once is.  ``placed`` holds
-    the tests of each specimen that have a place in its order, oldest first; ``greatest_strain``
-    is by test and specimen [1], NaN where a test failed or has no number of it; ``of_log`` the
-    first test of each log.
+    It is shared by all tests, so that common questions are answered once.  ``placed`` holds the
+    tests of each specimen with a known position in its order, oldest first; ``greatest_strain`` is
+    by test and specimen [1], NaN if a test failed or has no value; ``of_log`` is the first test of
+    each log.
     """
 
     surveys: Sequence[Survey]
@@ -57,7 +57,7 @@ class EarlierTests:
 
 
 def earlier_tests_of(surveys: Sequence[Survey], models: Models) -> EarlierTests:
-    """Put the tests of a campaign in order."""
+    """Arrange the tests of a campaign in order."""
     placed: dict[str, list[tuple[Place, Survey]]] = {}
     strain: dict[tuple[str, str], float] = {}
     of_log: dict[str, Survey] = {}
@@ -77,7 +77,7 @@ def earlier_tests_of(surveys: Sequence[Survey], models: Models) -> EarlierTests:
 def _set_after_rest(
     survey: Survey, earlier: Sequence[Survey], name: str, free_length: float
 ) -> tuple[float, float, float]:
-    """Growth of the length at which the specimen becomes taut, since its first test. [1]."""
+    """Increase in the taut length of the specimen since its first test. [1]."""
     if not earlier:
         return float("nan"), float("nan"), float("nan")
     return growth_of_slack_length(
@@ -86,18 +86,18 @@ def _set_after_rest(
 
 
 def _with_earlier_steps(survey: Survey, past: EarlierTests) -> Survey:
-    """The test itself, or that of which it repeats a part."""
+    """The test itself, or the test of which it repeats a part."""
     return past.of_log.get(survey.plan.part_of or "", survey)
 
 
 def _place(survey: Survey, past: EarlierTests) -> Place | None:
-    """Place in the order of tests; a test that is a part of another has the place of that one."""
+    """Position in the order of tests; a partial test has that of the whole one."""
     order = _with_earlier_steps(survey, past).plan.order
     return None if order is None else (order, survey.plan.step_place)
 
 
 def _earlier(survey: Survey, past: EarlierTests, name: str) -> list[Survey]:
-    """Tests of a specimen before a test, oldest first."""
+    """Earlier tests of a specimen, oldest first."""
     place = _place(survey, past)
     if place is None:
         return []
@@ -106,9 +106,9 @@ def _earlier(survey: Survey, past: EarlierTests, name: str) -> list[Survey]:
 
 
 def _let_out_before(survey: Survey, own: Survey, earlier: Sequence[Survey], name: str) -> float:
-    """Length that the splices slipped by before a test [m].
+    """Slip of the splices before a test [m].
 
-    A burst of a longer log has the clock of that log.
+    A burst from a longer log uses the clock of that log.
     """
     slips = [slip for entry in earlier for slip in entry.slips.get(name, ())]
     if own is not survey:
@@ -117,7 +117,7 @@ def _let_out_before(survey: Survey, own: Survey, earlier: Sequence[Survey], name
 
 
 def _earlier_cycles(earlier: Sequence[Survey], own: Survey, before: int | None) -> float:
-    """Cycles of tension before a test, logged or not; NaN where an earlier test failed."""
+    """Tension cycles before a test, logged or not; NaN if an earlier test failed."""
     if any(entry.error is not None for entry in earlier):
         return float("nan")
     in_logs = sum(one.n_cycles + one.n_cycles_between for one in earlier)
@@ -125,8 +125,8 @@ def _earlier_cycles(earlier: Sequence[Survey], own: Survey, before: int | None) 
 
 
 def _unlogged_cycles(earlier: Sequence[Survey], own: Survey, before: int | None) -> int:
-    """Cycles of tension before a test of which the campaign has the number alone."""
-    # the steps of a log share what came before it
+    """Tension cycles before a test that are stated only as a number."""
+    # the steps of a log share its history
     between = {entry.plan.log: entry.plan.unlogged_cycles or 0 for entry in (*earlier, own)}
     return (before or 0) + sum(between.values())
 
@@ -134,7 +134,7 @@ def _unlogged_cycles(earlier: Sequence[Survey], own: Survey, before: int | None)
 def _earlier_flex_cycles(
     earlier: Sequence[Survey], survey: Survey, before: int | None, surveys: Sequence[Survey]
 ) -> float:
-    """Cycles of flexing before a test."""
+    """Flexing cycles before a test."""
     is_counted = any(entry.plan.n_flex_cycles is not None for entry in surveys)
     flexed = {entry.plan.log: entry.plan.n_flex_cycles or 0 for entry in earlier}
     if (before is None and not is_counted) or flexed.get(survey.plan.log):
@@ -143,7 +143,7 @@ def _earlier_flex_cycles(
 
 
 def history_of(survey: Survey, past: EarlierTests, campaign: Campaign) -> History | None:
-    """Earlier maximum strain and tension and cumulative cycles of each specimen."""
+    """Earlier maximum strain and tension, and cumulative cycles, of each specimen."""
     if _place(survey, past) is None:
         return None
     nothing = float("nan")
@@ -181,12 +181,12 @@ def history_of(survey: Survey, past: EarlierTests, campaign: Campaign) -> Histor
 
 
 def _greatest(values: Sequence[float]) -> float:
-    """The greatest; NaN where one of them is not known, or there is none."""
+    """The maximum; NaN if any value is unknown, or there are none."""
     return float(np.max(values)) if values else float("nan")
 
 
 def history_remarks(survey: Survey, past: EarlierTests, campaign: Campaign) -> tuple[Note, ...]:
-    """What the campaign leaves open about the place of a test in its specimens' history."""
+    """Uncertain points in the position of a test in its specimens' history."""
     plan = survey.plan
     remarks = (
         *_unknown(survey, past), *_unlogged(survey, past, campaign),
@@ -203,7 +203,7 @@ def history_remarks(survey: Survey, past: EarlierTests, campaign: Campaign) -> t
 
 
 def _unlogged(survey: Survey, past: EarlierTests, campaign: Campaign) -> tuple[Note, ...]:
-    """Earlier cycles of which the campaign has the number alone."""
+    """Note on earlier cycles that are stated only as a number."""
     if _place(survey, past) is None:
         return ()
     remarks = []
@@ -217,7 +217,7 @@ def _unlogged(survey: Survey, past: EarlierTests, campaign: Campaign) -> tuple[N
 
 
 def _after_greater_load(survey: Survey, past: EarlierTests) -> tuple[Note, ...]:
-    """Earlier loads that a test does not reach: [1]_ finds K_0 to depend on the greatest."""
+    """Note on earlier loads above those of the test: in [1]_ K_0 depends on the maximum."""
     remarks = []
     for name in survey.plan.specimens:
         own = survey.extremes.greatest_tension.get(name, np.nan)
@@ -225,7 +225,7 @@ def _after_greater_load(survey: Survey, past: EarlierTests) -> tuple[Note, ...]:
             entry.plan.id: entry.extremes.greatest_tension.get(name, np.nan)
             for entry in _earlier(survey, past, name)
         }
-        # where one of them is not known, the greatest is not either
+        # if any is unknown, so is the maximum
         if (greatest := _greatest([*loads.values()])) > (1 + _ALIKE) * own:
             test = max(loads, key=loads.__getitem__)
             remarks.append(
@@ -235,7 +235,7 @@ def _after_greater_load(survey: Survey, past: EarlierTests) -> tuple[Note, ...]:
 
 
 def _unknown(survey: Survey, past: EarlierTests) -> tuple[Note, ...]:
-    """Earlier tests of which a number is lacking, and what has none for it here."""
+    """Note on earlier tests with a missing number, and on the number affected here."""
     failed: dict[str, list[str]] = {}
     bare: dict[str, list[str]] = {}
     for name in survey.plan.specimens:
@@ -259,7 +259,7 @@ def _unknown(survey: Survey, past: EarlierTests) -> tuple[Note, ...]:
 def _pooled(
     marks: SpliceMarks, surveys: Sequence[Survey], measured: Callable[[Survey], dict[str, Floats]]
 ) -> Floats:
-    """One tension a mark, in the order of the marks; NaN where its test could not be read."""
+    """One tension per mark, in the order of the marks; NaN if its test could not be read."""
     tension = np.full(len(marks.test), np.nan)
     of_test = np.array(marks.test)
     for survey in surveys:
@@ -270,13 +270,13 @@ def _pooled(
 
 
 def _failed_logs(surveys: Sequence[Survey]) -> tuple[str, ...]:
-    """Logs of which nothing could be read, so that no mark in them has a tension."""
+    """Unreadable logs, whose marks have no tension."""
     sound = {survey.plan.log for survey in surveys if survey.error is None or survey.mark_tension}
     return tuple(dict.fromkeys(s.plan.log for s in surveys if s.plan.log not in sound))
 
 
 def _load_cells(campaign: Campaign, surveys: Sequence[Survey], specimen: str) -> dict[str, str]:
-    """By log, the load cell under which the marks of a specimen were read in it."""
+    """Load cell used for the marks of a specimen, by log."""
     return {
         survey.plan.log: campaign.uncertainty.load_cell_name(
             survey.plan.attributes.get("load_cell", ""),
@@ -339,13 +339,13 @@ def fit_strain_models(
                     model, mark_load_cell=read_by, notes=(*of_strain, *of_slip, *model.notes)
                 )
             except Exception as error:
-                # one test's failure, even where it is a defect here
+                # fails only this test, even for a defect of this program
                 errors.setdefault(survey.plan.id, as_reduction_error(error))
     return models, errors
 
 
 def _across_slip(marks: SpliceMarks, surveys: Sequence[Survey]) -> tuple[Note, ...]:
-    """Say where splices slipped between marks that are used together.
+    """Note splice slips between marks that are used together.
 
     Marks of a test are read before its cycles.
     """
@@ -367,7 +367,7 @@ def _across_slip(marks: SpliceMarks, surveys: Sequence[Survey]) -> tuple[Note, .
 
 
 def _contradicted(surveys: Sequence[Survey]) -> dict[str, DataError]:
-    """First row of the marks of each specimen that the crosshead of its test contradicts."""
+    """First mark row of each specimen that the crosshead of its test contradicts."""
     found: dict[str, DataError] = {}
     for survey in surveys:
         for name, error in survey.mark_errors.items():
@@ -376,9 +376,9 @@ def _contradicted(surveys: Sequence[Survey]) -> dict[str, DataError]:
 
 
 def _refuse_contradicted(survey: Survey, name: str, contradicted: Mapping[str, DataError]) -> None:
-    """Refuse a test whose strain rests on marks that are not those of its specimen.
+    """Refuse a test whose strain depends on marks of another specimen.
 
-    Marks of a specimen are pooled: a wrong row of one test is in the strain of all.
+    Marks of a specimen are pooled: a wrong row in one test affects the strain in all.
     """
     method = survey.plan.settings.strain.method
     if method in ("extensometer", "gauge-length"):
@@ -389,7 +389,7 @@ def _refuse_contradicted(survey: Survey, name: str, contradicted: Mapping[str, D
 
 
 def _with_error_of_load(zero: ZeroStrain, campaign: Campaign) -> ZeroStrain:
-    """With what the stated errors of the load cell move the position of a reference tension by."""
+    """Add the position error at the reference tension from the stated load-cell errors."""
     stated = campaign.uncertainty
     load = np.hypot(stated.tension_offset, stated.tension_gain * zero.reference_tension)
     spread = float(np.hypot(zero.standard_uncertainty, zero.compliance * load))
@@ -397,9 +397,9 @@ def _with_error_of_load(zero: ZeroStrain, campaign: Campaign) -> ZeroStrain:
 
 
 def _average(marks: SpliceMarks, tension: Floats, at_start: Floats) -> SpliceAverage | None:
-    """Average over the laws of a specimen, one for all its tests; None where each has its own.
+    """Average of the splice laws of a specimen, common to its tests; None if each has its own.
 
-    So it is without tensions, and where there is no law, which each test then says.
+    The latter applies without tensions, or without a law, which each test then reports.
     """
     readings = PooledMarks(marks, tension, np.zeros(tension.size, dtype=bool), at_start)
     if not readings.knows_tension:
@@ -413,9 +413,9 @@ def _average(marks: SpliceMarks, tension: Floats, at_start: Floats) -> SpliceAve
 def instruments_of(
     campaign: Campaign, survey: Survey, models: Sequence[StrainModel]
 ) -> tuple[InstrumentErrors, ...]:
-    """Stated errors of each specimen, with the names by which tests share them."""
+    """Stated errors of each specimen, with the names under which tests share them."""
     plan = survey.plan
-    # what the machine gives is by the sum of the tensions: taken to be alike
+    # machine deflection follows the sum of the tensions, assumed equal
     stated = replace(
         campaign.uncertainty,
         machine_compliance=campaign.uncertainty.machine_compliance * len(models),
@@ -445,7 +445,7 @@ def instruments_of(
 
 
 def _with_friction(stated: StatedErrors, model: StrainModel) -> StatedErrors:
-    """With the friction that marks on the way down say, where there are such; without splices 0."""
+    """Add the friction found from marks on the way down, if any; 0 without splices."""
     fitted = model.by_marks or model
     if "relaxed_splice_length" not in fitted.coefficients:
         return replace(stated, splice_friction=0.0)
@@ -472,17 +472,18 @@ def stepwise_instruments(campaign: Campaign, survey: Survey) -> tuple[Instrument
 
 
 def _name_of(model: StrainModel, log: str) -> str:
-    """Name of a strain model: models that differ in their coefficients have names that differ."""
-    # constant-fraction has the relaxed length of its own slack row, wherever its share is from
+    """Name of a strain model; models with different coefficients have different names."""
+    # constant-fraction uses the relaxed length in its own slack row, whatever the source of its
+    # share
     has_own_length = model.method == "constant-fraction" and log in model.mark_test
     is_own = model.marks_from.startswith("this test") or has_own_length
     return f"{model.specimen}, {model.method}" + (f", marks of {log}" if is_own else "")
 
 
 def _with_readings(errors: InstrumentErrors, specimen: Specimen) -> InstrumentErrors:
-    """Give a diameter of which nothing is stated what its readings say of their mean.
+    """Give a diameter without a stated error the uncertainty of the mean of its readings.
 
-    The error of an area that was stated is that of the circle of the same area.
+    A stated area gets the error of the circle of the same area.
     """
     if specimen.cross_section:
         readings = 0 if errors.area else len(specimen.cross_section)

@@ -34,12 +34,12 @@ from reduction.record.plain_text import is_address
 _AGAIN = "Run the campaign again."
 
 Kind = Literal["damaged", "missing", "raw_file", "settings", "table"]
-"""What is wrong, as docs/verify.md explains it."""
+"""Kind of fault, explained in docs/verify.md."""
 
 
 @dataclass(frozen=True)
 class _Finding:
-    """One thing that is wrong with one file; ``product`` is its name below the folder."""
+    """One fault of one file; ``product`` is its name below the folder."""
 
     product: str
     kind: Kind
@@ -49,7 +49,7 @@ class _Finding:
     hint: str = _AGAIN
 
     def __str__(self) -> str:
-        """All of it in one line, as errors are written."""
+        """The finding on one line, in the form of an error."""
         parts = [f"{self.product}: {self.problem}"]
         parts += [f"found {self.found}"] if self.found else []
         parts += [f"needed {self.needed}"] if self.needed else []
@@ -58,7 +58,7 @@ class _Finding:
 
 @dataclass(frozen=True)
 class _Verification:
-    """What was looked at in the folder of one campaign, and what is wrong there."""
+    """Items checked in the folder of one campaign, and the faults found."""
 
     campaign: str
     n_archives: int
@@ -69,7 +69,7 @@ class _Verification:
 
 
 def verify_campaign(campaign: Campaign, folder: Path, *, progress: Progress) -> _Verification:
-    """Look whether the products of a campaign are what it would make now of its raw files."""
+    """Check whether the products of a campaign agree with its current raw files."""
     paths = archives_in(folder)
     progress.stage("verify archives", len(paths))
     findings: list[_Finding] = []
@@ -103,7 +103,7 @@ def verify_campaign(campaign: Campaign, folder: Path, *, progress: Progress) -> 
     ]
     progress.stage("verify tables", 0)
     n_tables = 0
-    if len(attributes) == len(paths):  # of what cannot be read no tables can be made
+    if len(attributes) == len(paths):  # no tables can be made from unreadable archives
         there = [folder / f"{name}.nc" for name in tests if name in attributes]
         whole = requested_products(campaign, folder, has_lengths=True)
         n_tables, of_tables = _of_tables(folder, there, whole) if there or whole else (0, [])
@@ -130,7 +130,7 @@ def _tests_of(campaign: Campaign, wanted: ReductionInputs) -> list[str]:
 
 
 class _Sources:
-    """Compares the files that archives were made from with their sums; each is read once."""
+    """Compares the source files of archives with their checksums; each is read once."""
 
     def __init__(self, campaign: Campaign, folder: Path) -> None:
         self._campaign = campaign
@@ -140,11 +140,11 @@ class _Sources:
 
     @property
     def n_read(self) -> int:
-        """Files that were read."""
+        """Number of files read."""
         return sum(isinstance(one, Source) for one in self._seen.values())
 
     def faults(self, archive: str, attributes: Mapping[str, Any]) -> Iterator[_Finding]:
-        """Sources of an archive that are not as they were."""
+        """Sources of an archive that have changed."""
         product = f"{archive}.nc"
         names, sums, sizes = (
             str(attributes.get(key, "")).splitlines()
@@ -177,7 +177,7 @@ class _Sources:
                 )  # fmt: skip
 
     def _place(self, archive: str, name: str) -> Path | None:
-        """Where a source lies; None of one on the net that was not fetched."""
+        """Location of a source; None if remote and not fetched."""
         if is_address(name):
             if name not in self._campaign.copies:
                 self.not_fetched[name] = None
@@ -203,7 +203,7 @@ def _of_settings(
     archives: Mapping[str, Mapping[str, Any]],
     wanted: ReductionInputs,
 ) -> Iterator[_Finding]:
-    """Archives that a run would make again from the same files: logs are read as a run does."""
+    """Archives that a run would remake from the same files; logs are read as in a run."""
     for survey in wanted.first.surveys:
         if survey.plan.id in archives:
             yield from _of_test(survey, wanted, folder, archives[survey.plan.id])
@@ -247,7 +247,7 @@ def _made_otherwise(
 
 
 def _differing(before: Any, now: Any, place: str = "") -> Iterator[str]:
-    """Places of two documents that differ, each with what stood there and stands there."""
+    """Differing places of two documents, each with both values."""
     if isinstance(before, dict) and isinstance(now, dict):
         for key in sorted({*before, *now}):
             yield from _differing(before.get(key), now.get(key), f"{place}.{key}".lstrip("."))
@@ -258,7 +258,7 @@ def _differing(before: Any, now: Any, place: str = "") -> Iterator[str]:
 def _of_tables(
     folder: Path, archives: list[Path], products: Mapping[str, Any]
 ) -> tuple[int, list[_Finding]]:
-    """Make the tables again in another place, and compare them byte for byte."""
+    """Make the tables again elsewhere, and compare them byte for byte."""
     with TemporaryDirectory(prefix="reduction-verify-") as place:
         made = write_tables(archives, Path(place), opener=ReadOnce(), **products)
         names = [path.name for path in made]

@@ -1,4 +1,4 @@
-"""Where the tests of a campaign are worked on: here, or on worker processes."""
+"""Runs the tests of a campaign in this process or on worker processes."""
 
 from __future__ import annotations
 
@@ -28,31 +28,32 @@ from reduction.record.errors import ReductionError, SettingsError, WorkerError
 Result = TypeVar("Result")
 
 PATIENCE = 60.0
-"""How long a run waits for a test to end before it looks whether workers are left. [s]."""
+"""Time to wait for a test to end before checking that workers remain. [s]."""
 
 _AGAIN = "Archives that were finished are kept; run again to go on."
 
 _MEMORY = "Most often the memory did not suffice: take fewer workers, or workers with more memory."
 
-# a worker may have several threads, and the netCDF library bears one
+# a worker may have several threads, but the netCDF library supports one
 _AT_WORK = threading.Lock()
 
-# whether this worker is to end once what it sends is sent
+# whether this worker should end after it has sent its message
 _TO_END = threading.Event()
 
 _OF_MALLOC = {-3: 1 << 25, -1: 1 << 25, -2: 1 << 22}
-"""Bytes from which memory is the system's again, M_MMAP_THRESHOLD and M_TRIM_THRESHOLD of the GNU C
-library, and M_TOP_PAD, by which more is asked for."""
+"""Bytes for M_MMAP_THRESHOLD and M_TRIM_THRESHOLD of the GNU C library, above which memory is
+returned to the system, and for M_TOP_PAD, the additional amount requested.
+"""
 
-_SENT = 1.0  # s, after which what a worker sends is sent
+_SENT = 1.0  # s, by which time a worker's message has been sent
 
 _BEARS_A_FORK = {"jemalloc_bg_thd"}
-"""Threads that look after themselves when a process is forked: the one of arrow's allocator."""
+"""Threads that handle a fork of the process themselves: that of arrow's allocator."""
 
 
 @dataclass(frozen=True)
 class Task:
-    """Arguments for the work on one test; of tests side by side the largest are begun first."""
+    """Arguments for the work on one test; in parallel, the largest tests start first."""
 
     test: str
     arguments: tuple[Any, ...]
@@ -61,7 +62,7 @@ class Task:
 
 @dataclass(frozen=True)
 class _Ended(Generic[Result]):
-    """Work that ended: what it gave, or the error where no worker lived to tell."""
+    """Finished work: its result, or the error if the worker died."""
 
     test: str
     value: Result | None
@@ -71,20 +72,20 @@ class _Ended(Generic[Result]):
 
 @dataclass(frozen=True)
 class Workers:
-    """Processes that work on tests side by side.
+    """Processes that work on tests in parallel.
 
     Parameters
     ----------
     executor : concurrent.futures.Executor
-        Of any kind.
+        Executor of any kind.
     end : callable
-        Ends what they are doing, at once.
+        Ends their current work at once.
     look : callable
-        Raises an error where nobody is left to wait for.
+        Raises an error if no worker is left.
     deadly : tuple of type
-        Errors that say that workers died at a test and live on for others.
+        Errors that mean that workers died during a test, while others continue.
     number : int
-        How many there are, where that is known.
+        Number of workers, if known.
     """
 
     executor: Executor
@@ -108,7 +109,7 @@ def work_on(
             yield _Ended(task.test, function(*task.arguments))
         return
     done: SimpleQueue[Future[tuple[Result, str]]] = SimpleQueue()
-    open_tasks: dict[Future[tuple[Result, str]], str] = {}  # in the order in which they are begun
+    open_tasks: dict[Future[tuple[Result, str]], str] = {}  # in the order of their start
     for task in sorted(tasks, key=lambda task: -task.size):
         try:
             future = workers.executor.submit(_work, __version__, function, *task.arguments)
@@ -130,7 +131,7 @@ def _ended(
     open_tasks: dict[Future[tuple[Result, str]], str],
     workers: Workers,
 ) -> _Ended[Result]:
-    """What a task gave; it is no longer among those that are open."""
+    """Result of a task, which is removed from the open ones."""
     began = list(islice(open_tasks.values(), workers.number))
     test = open_tasks.pop(future)
     try:
@@ -168,12 +169,12 @@ def _died(open_tasks: list[str], workers: Workers) -> WorkerError:
 
 
 def _scheduler_lost() -> WorkerError:
-    """The error of a run whose scheduler answers no more."""
+    """Error for a scheduler that no longer responds."""
     return WorkerError("the scheduler was lost", hint=_AGAIN)
 
 
 def _work(version: str, function: Callable[..., Result], *arguments: Any) -> tuple[Result, str]:
-    """Do what a task asks for, on a worker."""
+    """Perform a task on a worker."""
     worker = f"{platform.node()}:{os.getpid()}"
     if version != __version__:
         raise SettingsError(
@@ -188,14 +189,14 @@ def _work(version: str, function: Callable[..., Result], *arguments: Any) -> tup
 
 
 def _alone() -> AbstractContextManager[object]:
-    """On a worker of Dask xarray would ask the scheduler for a lock at every variable."""
+    """Avoid xarray's request to the Dask scheduler for a lock at every variable."""
     dask = sys.modules.get("dask")
     return nullcontext() if dask is None else dask.config.set(scheduler="synchronous")
 
 
 @contextmanager
 def local_workers(number: int) -> Iterator[Workers]:
-    """Start worker processes on this machine, and end them."""
+    """Start worker processes on this machine, and stop them afterwards."""
     available = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
     threads = max(1, (available or 1) // number)
     pool = ProcessPoolExecutor(
@@ -213,9 +214,9 @@ def local_workers(number: int) -> Iterator[Workers]:
 
 
 def _way_to_start() -> str:
-    """Fork where no other thread can hold a lock meanwhile, or begin with a new interpreter.
+    """Fork if no other thread can hold a lock meanwhile, otherwise start a new interpreter.
 
-    Workers that are forked share the libraries of this process, 80 MB each, and need not load them.
+    Forked workers share the libraries of this process, 80 MB each, and need not load them.
     """
     own = str(threading.get_native_id())
     try:
@@ -224,17 +225,17 @@ def _way_to_start() -> str:
             for one in os.listdir("/proc/self/task")
             if one != own
         }
-    except OSError:  # of a system without it
+    except OSError:  # a system without it
         return "spawn"
     return "fork" if others <= _BEARS_A_FORK else "spawn"
 
 
 def _start(pool: ProcessPoolExecutor, number: int) -> None:
-    """Have all processes begin, so that it is known that they can."""
-    gc.freeze()  # what is here is not looked through by those that are forked, and stays shared
+    """Start all processes, to make sure that they can run."""
+    gc.freeze()  # forked processes do not scan existing objects, which therefore stay shared
     try:
         with _interrupts_later(), catch_warnings():
-            simplefilter("ignore", DeprecationWarning)  # of forks beside any thread
+            simplefilter("ignore", DeprecationWarning)  # of forks while any thread runs
             started = [pool.submit(os.getpid) for _ in range(number)]
         for one in started:
             one.result()
@@ -249,10 +250,10 @@ def _start(pool: ProcessPoolExecutor, number: int) -> None:
 
 
 def keep_freed_memory() -> None:
-    """Have the C library keep what arrays up to 32 MB leave free, and ask for 4 MB at a time.
+    """Make the C library keep freed memory of arrays up to 32 MB, and request 4 MB at a time.
 
-    It comes to the first by itself, after arrays of that size; a test is made of thousands of
-    smaller ones, which the system fills with zeros each time.
+    It does the former by itself after arrays of that size, but a test is made of thousands of
+    smaller ones, which the system would fill with zeros each time.
     """
     own = getattr(ctypes.CDLL(None), "mallopt", None) if os.name == "posix" else None
     if own is not None:
@@ -261,9 +262,9 @@ def keep_freed_memory() -> None:
 
 
 def _begin(threads: int, threshold: tuple[int, int, int]) -> None:
-    """Share the processors of the machine, before any library looks for them.
+    """Divide the processors of the machine before any library counts them.
 
-    Objects are looked through for circles as often as where the worker was started.
+    Garbage collection has the same thresholds as in the parent process.
     """
     os.environ |= {"OMP_NUM_THREADS": str(threads), "OPENBLAS_NUM_THREADS": "1"}
     gc.set_threshold(*threshold)
@@ -273,7 +274,7 @@ def _begin(threads: int, threshold: tuple[int, int, int]) -> None:
 
 
 def _end(number: int, frame: FrameType | None) -> None:
-    """End at once, but not in the middle of a message: whoever waits for the rest waits forever."""
+    """End at once, but not within a message, whose receiver would wait forever."""
     if _AT_WORK.locked():
         os._exit(1)
     _TO_END.set()
@@ -297,11 +298,11 @@ def _end_children() -> None:
 
 @contextmanager
 def _interrupts_later() -> Iterator[None]:
-    """Start processes that a Ctrl-C on the terminal passes by: this process ends them itself."""
+    """Start processes that ignore Ctrl-C on the terminal: this process ends them itself."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
-    ensure_running()  # a process of Python's own, whose start undoes the block
+    ensure_running()  # a helper process of Python, whose start would undo the block
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield

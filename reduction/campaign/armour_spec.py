@@ -1,4 +1,4 @@
-"""SPEC.toml of a helical armour: its layers, the innermost first, and the strain of the cable."""
+"""SPEC.toml of a helical armour: its layers, innermost first, and the strain of the cable."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ class _ArmourSection(BaseModel):
 
 
 class _ArmourLayerKeys(_ArmourSection):
-    """``[[armour.layers]]``, in SI once it is read."""
+    """``[[armour.layers]]``, in SI after reading."""
 
     name: str = ""
     winding_angle: Angle
-    """From the axis of the cable."""
+    """Measured from the axis of the cable."""
     wire_radius: Length | None = None
-    """Or ``wire_diameter``."""
+    """Alternatively ``wire_diameter``."""
     wire_diameter: Length | None = None
     core_radius: Length | None = None
-    """Of what the wires lie on; or ``core_diameter``."""
+    """Radius of the core below the wires; alternatively ``core_diameter``."""
     core_diameter: Length | None = None
     n_wires: int = Field(default=1, ge=1)
     elastic_modulus: Stress = Field("210 GPa", validate_default=True)
@@ -39,12 +39,12 @@ class _ArmourLayerKeys(_ArmourSection):
 
 
 class _ArmourKeys(_ArmourSection):
-    """``[armour]``, in SI once it is read."""
+    """``[armour]``, in SI after reading."""
 
     axial_strain: Strain
-    """Of the cable along its axis."""
+    """Strain of the cable along its axis."""
     tolerance: PositiveStrain = Field("1 %", validate_default=True)
-    """Error at which a theory still counts as right."""
+    """Error up to which a theory counts as correct."""
     layers: tuple[_ArmourLayerKeys, ...] = Field(min_length=1)
 
 
@@ -103,7 +103,7 @@ def load_armour_case(path: Path) -> _ArmourCase:
 
 
 def _radius(path: Path, number: int, layer: _ArmourLayerKeys, what: str) -> float:
-    """A radius, given as such or as a diameter."""
+    """A radius, from a stated radius or diameter."""
     radius, diameter = getattr(layer, f"{what}_radius"), getattr(layer, f"{what}_diameter")
     if (radius is None) == (diameter is None):
         raise in_toml(

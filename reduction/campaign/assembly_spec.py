@@ -1,4 +1,4 @@
-"""SPEC.toml of a deployed assembly to a case in SI: its tethers, their curve and splices."""
+"""Converts SPEC.toml of a deployed assembly to a case in SI: tethers, curve and splices."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class _AssemblySection(BaseModel):
 
 
 class _CurveKeys(_AssemblySection):
-    """``[assembly.curve]``: what `reduction composite` is told."""
+    """``[assembly.curve]``: input of `reduction composite`."""
 
     source: str | tuple[str, ...]
     """A published tether, or archives and folders beside the file."""
@@ -41,26 +41,26 @@ class _CurveKeys(_AssemblySection):
 
 
 class _SpliceKeys(_AssemblySection):
-    """``[assembly.splices]``; without it those of the tested tether."""
+    """``[assembly.splices]``; default: those of the tested tether."""
 
     length: Length
-    """Of both together, relaxed; 0 m where there are none."""
+    """Total relaxed length of both; 0 m if there are none."""
     strain_ratio: Strain | None = None
-    """Their strain over that of the free length."""
+    """Ratio of splice strain to the strain of the free length."""
     strain: Strain | None = None
-    """Theirs, at ``at_tension``."""
+    """Splice strain at ``at_tension``."""
     at_tension: Force | None = None
     exponent: Ratio = 1.0
-    """Of the tension, with ``strain``."""
+    """Exponent of the tension, with ``strain``."""
 
 
 class _PartKeys(_AssemblySection):
-    """``[[assembly.parts]]``: in line with the tethers."""
+    """``[[assembly.parts]]``: parts in line with the tethers."""
 
     name: str = ""
     length: Length
     spring_constant: Force | None = None
-    """Force per unit strain; rigid if nothing."""
+    """Force per unit strain; rigid if omitted."""
 
 
 class _WorkingKeys(_AssemblySection):
@@ -69,7 +69,7 @@ class _WorkingKeys(_AssemblySection):
     tension: PositiveForce | None = None
     total_length: PositiveLength | None = None
     strain: PositiveStrain | None = None
-    """Of the free length of a tether."""
+    """Strain of the free length of a tether."""
     tension_amplitude: Annotated[float, InSI("force", least=0.0)] = Field(
         "0 N", validate_default=True
     )
@@ -79,16 +79,16 @@ class _AssemblyKeys(_AssemblySection):
     """``[assembly]``."""
 
     n_tethers: int | None = Field(default=None, ge=1, le=_MOST_TETHERS)
-    """All alike; or ``free_lengths``."""
+    """Number of identical tethers; alternatively ``free_lengths``."""
     free_length: PositiveLength | None = None
-    """Of the rubber, relaxed; that of the tested tether if nothing."""
+    """Relaxed length of the rubber; default that of the tested tether."""
     free_lengths: tuple[PositiveLength, ...] | None = Field(
         default=None, min_length=1, max_length=_MOST_TETHERS
     )
     tolerance: Strain | None = None
-    """Of the free lengths: the greatest and the least load of a tether follow."""
+    """Of the free lengths; it gives the maximum and minimum load of a tether."""
     rated_break_strength: PositiveForce | None = None
-    """Of one tether; that of the source if nothing."""
+    """Of one tether; default that of the source."""
     curve: _CurveKeys
     splices: _SpliceKeys | None = None
     parts: tuple[_PartKeys, ...] = ()
@@ -105,9 +105,8 @@ class _AssemblyFile(_AssemblySection):
 class AssemblyCase:
     """An assembly in SI.
 
-    ``free_lengths`` [m] has an entry a tether, or is empty where the tested length stands for
-    all ``n_tethers``; ``tolerance`` [1] and ``rated_break_strength`` [N] are NaN where they are
-    not stated.
+    ``free_lengths`` [m] has an entry per tether, or is empty if all ``n_tethers`` have the tested
+    length; ``tolerance`` [1] and ``rated_break_strength`` [N] are NaN if not stated.
     """
 
     name: str
@@ -174,7 +173,7 @@ def _or_nan(value: float | None) -> float:
 
 
 def _tethers(path: Path, keys: _AssemblyKeys) -> tuple[int, tuple[float, ...]]:
-    """How many, and the free length of each; none where it is that of the tested tether."""
+    """Number of tethers and the free length of each; empty for that of the tested tether."""
     if (keys.n_tethers is None) == (keys.free_lengths is None):
         raise in_toml(
             path, "assembly: state the number of tethers once",

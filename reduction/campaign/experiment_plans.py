@@ -1,4 +1,4 @@
-"""Experiments of campaign.toml and SPEC.toml, and tables of runs."""
+"""Experiments in campaign.toml and SPEC.toml, and tables of runs."""
 
 from __future__ import annotations
 
@@ -36,10 +36,10 @@ from reduction.record.measurement import Floats, Specimen, read_only_arrays
 from reduction.record.plain_text import cut
 
 _CODED = "coded"
-"""In the place of a unit: the column holds coded levels."""
+"""Marks, in place of a unit, a column of coded levels."""
 
 NEED_PULL = ("dissipation_spring_constant", "relaxation_time", "dashpot_coefficient")
-"""Responses that rest on the quasi-static spring constant."""
+"""Responses that need the quasi-static spring constant."""
 
 _DIMENSIONS: dict[str, Dimension] = {
     "frequency": "frequency",
@@ -98,7 +98,7 @@ def plan_experiment(
     tests: Mapping[str, TestPlan],
     specimens: Mapping[str, Specimen],
 ) -> ExperimentPlan:
-    """An experiment with every name in it resolved."""
+    """An experiment with all its names resolved."""
 
     def refuse(problem: str, *, found: str | None = None, needed: str | None = None) -> NoReturn:
         raise SettingsError(f"{path}: experiment '{name}': {problem}", found=found, needed=needed)
@@ -166,7 +166,7 @@ def plan_experiment(
 
 
 def _check_responses(section: ExperimentSection, refuse: Callable[..., NoReturn]) -> None:
-    """Each response once, and a transform for no other."""
+    """Refuse duplicate responses, and transforms of other responses."""
     listed = ", ".join(section.responses)
     if len(set(section.responses)) < len(section.responses):
         refuse("a response is listed twice", found=listed, needed="each response once")
@@ -181,7 +181,7 @@ def _check_responses(section: ExperimentSection, refuse: Callable[..., NoReturn]
 def agree_on_pulls(
     path: Path, experiments: Mapping[str, ExperimentPlan], tests: Mapping[str, TestPlan]
 ) -> None:
-    """Refuse a run of two experiments that name two slow pulls for one specimen."""
+    """Refuse a run shared by experiments that name different slow pulls for one specimen."""
     first: dict[tuple[str, str], tuple[str, str]] = {}
     for name, plan in experiments.items():
         asks = not set(NEED_PULL).isdisjoint(plan.responses)
@@ -200,7 +200,7 @@ def agree_on_pulls(
                     )
 
 
-# stands in a header of the run sheet and in the name of a term
+# used in a header of the run sheet and in the name of a term
 ColumnName = Annotated[
     str, StringConstraints(pattern=r"^[^\s\[\]*^,;#][^\[\]*^,;]{0,99}$", strip_whitespace=True)
 ]
@@ -214,13 +214,13 @@ def _written_unit(text: str) -> str:
 
 
 def _limit(text: str) -> tuple[float | None, float | None]:
-    """A load limit in newtons, or as a share of the break strength."""
+    """A load limit in newtons, or as a fraction of the break strength."""
     number = parse_quantity(text, "force", rated_break_strength=1.0)
     return (None, number) if re.search(r"%\s*(RBS|MBS|MBL)\s*$", text) else (number, None)
 
 
 def _sigma(text: str) -> tuple[float, str]:
-    """Scatter of one run and its unit; a share of the response where the unit is 1."""
+    """Scatter of one run and its unit; a fraction of the response if the unit is 1."""
     unit = _written_unit(text)
     number = parse_quantity(text.strip().removesuffix(unit), "number")
     si_unit, factor, _ = scale_of_unit(unit)
@@ -234,14 +234,14 @@ class _ExperimentSection(BaseModel):
 
 
 class _ExperimentKeys(_ExperimentSection):
-    """``[experiment]``, in SI once it is read."""
+    """``[experiment]``, in SI after reading."""
 
     kind: DesignKind | None = None
     levels: Literal["engineering", "coded"] = "engineering"
-    """What the columns of the factors hold in a table of runs, where no header says it."""
+    """Default content of the factor columns in a table of runs without unit headers."""
     rated_break_strength: PositiveForce | None = None
     load_limit: Annotated[tuple[float | None, float | None], ReadText(_limit)] = (None, None)
-    """Greatest tension of machine, cell or laboratory: a force or a share, ``"40 %RBS"``."""
+    """Maximum tension of machine, cell or laboratory: a force or a share, ``"40 %RBS"``."""
     n_centre: int | None = Field(default=None, ge=0)
     n_runs: int | None = None
     repeats: RepeatPlacing = "together"
@@ -267,7 +267,7 @@ class _SpecFile(_ExperimentSection):
 
 @dataclass(frozen=True)
 class _FactorSpec:
-    """A factor with the unit its levels are written in and the SI unit behind it."""
+    """A factor with the unit of its stated levels and the corresponding SI unit."""
 
     name: str
     levels: FactorLevels | None = None
@@ -275,7 +275,7 @@ class _FactorSpec:
     si_unit: str = "1"
 
     def axis(self, strength: float | None) -> tuple[str, float, float]:
-        """Unit, low and high level on the scale that a surface is fitted on."""
+        """Unit, low and high level on the scale of the fitted surface."""
         if self.levels is None:
             return self.si_unit, -1.0, 1.0
         if self.levels.basis == "rated_break_strength" and strength is not None:
@@ -285,7 +285,7 @@ class _FactorSpec:
 
 @dataclass(frozen=True)
 class _ResponseSpec:
-    """A response as written: unit is empty where none is stated."""
+    """A response as stated; the unit is empty if not stated."""
 
     name: str
     unit: str = ""
@@ -294,7 +294,7 @@ class _ResponseSpec:
 
 @dataclass(frozen=True)
 class ExperimentSpec:
-    """An experiment in SI; factors and responses are empty where the table of runs names them."""
+    """An experiment in SI; factors and responses are empty if the table of runs names them."""
 
     keys: _ExperimentKeys
     factors: tuple[_FactorSpec, ...]
@@ -315,7 +315,7 @@ def _factor(name: str, written: tuple[str | float, str | float]) -> _FactorSpec:
         return _FactorSpec(name, _parse_factor(name, (low, high)), unit)
     if name in ("frequency", "mean_tension", "tension_amplitude"):
         return _FactorSpec(name, _parse_factor(name, (low, high)), unit, quantity(name).unit)
-    # any other factor has whatever dimension its unit has
+    # any other factor has the dimension of its unit
     si_unit, factor, offset = scale_of_unit(unit)
     numbers = [parse_quantity(level.removesuffix(unit), "number") for level in (low, high)]
     bottom, top = (factor * number + offset for number in numbers)
@@ -323,7 +323,7 @@ def _factor(name: str, written: tuple[str | float, str | float]) -> _FactorSpec:
 
 
 def _response_unit(name: str, unit: str) -> tuple[str, float, float]:
-    """SI unit of a response, with factor and offset to it.
+    """SI unit of a response, with the factor and offset to it.
 
     Examples
     --------
@@ -381,7 +381,7 @@ _CELL_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 
 @dataclass(frozen=True)
 class _CellColumn:
-    """One column: its header, the name and the unit in it, and its cells."""
+    """One column: its header, the name and unit in it, and its cells."""
 
     header: str
     name: str
@@ -391,7 +391,7 @@ class _CellColumn:
 
 @dataclass(frozen=True)
 class _CellSheet:
-    """The cells of a file, by column."""
+    """Cells of a file, by column."""
 
     path: Path
     row: tuple[int, ...]
@@ -399,18 +399,18 @@ class _CellSheet:
     first: int
 
     def fault(self, problem: str, *, header: str | None = None, needed: str) -> LogError:
-        """An error of the header line."""
+        """An error in the header line."""
         return LogError(
             self.path, problem, row=self.first, channel=header,
             found=", ".join(column.header for column in self.columns), needed=needed,
         )  # fmt: skip
 
     def named(self, name: str) -> list[_CellColumn]:
-        """Columns of a name, whatever their unit."""
+        """Columns with a name, in any unit."""
         return [column for column in self.columns if column.name == name]
 
     def one(self, name: str, what: str) -> _CellColumn:
-        """The column of a name; with a unit before coded, since a plan is only the plan."""
+        """The column of a name; levels with a unit have priority over planned coded ones."""
         found = self.named(name)
         reached = [column for column in found if column.unit != _CODED] or found
         if len(reached) == 1:
@@ -425,7 +425,7 @@ class _CellSheet:
         )  # fmt: skip
 
     def numbers(self, column: _CellColumn) -> Floats:
-        """Numbers of a column, NaN where a cell is empty."""
+        """Numbers of a column, NaN for empty cells."""
         values = np.full(len(column.cells), math.nan)
         for place, (row, cell) in enumerate(zip(self.row, column.cells, strict=True)):
             if cell.lower() in _MISSING:
@@ -467,7 +467,7 @@ def _cells(path: Path, row: int, line: str, delimiter: str) -> list[str]:
 
 
 def _read_cells(path: Path) -> _CellSheet:
-    """Cells of the table; lines that are empty or begin with # are not of it."""
+    """Cells of the table, without lines that are empty or begin with #."""
     lines = [
         (row, line)
         for row, line in enumerate(split_rows(_text(path)), start=1)
@@ -517,8 +517,9 @@ def _read_cells(path: Path) -> _CellSheet:
 _SHARE_UNIT = re.compile(r"%\s*(RBS|MBS|MBL|of mean)")
 
 _OFF_PLAN = 1.0
-"""Coded distance of the mean of all runs from the centre of the plan, beyond which the
-levels are in another unit than the plan."""
+"""Coded distance between the mean of all runs and the centre of the plan, beyond which the levels
+are in a different unit.
+"""
 
 
 def _levels_of_factor(
@@ -567,14 +568,14 @@ def _levels_of_factor(
 
 
 def _is_of_mean(factor: _FactorSpec) -> bool:
-    """Return whether the levels of a factor are shares of the mean tension."""
+    """Whether the levels of a factor are fractions of the mean tension."""
     return factor.levels is not None and factor.levels.basis == "mean_tension"
 
 
 def _check_levels(
     sheet: _CellSheet, column: _CellColumn, name: str, coded: Floats, *, stated: bool
 ) -> None:
-    """Refuse levels that lie beside the plan: those of another unit."""
+    """Refuse levels outside the plan, which are in another unit."""
     known = coded[np.isfinite(coded)]
     if known.size and abs(known.mean()) > _OFF_PLAN:
         raise DataError(
@@ -596,31 +597,31 @@ _DUMMY = re.compile(r"dummy_\d+")
 @dataclass(frozen=True)
 @read_only_arrays
 class RunSeries:
-    """Runs as they were done.
+    """Completed runs.
 
     Parameters
     ----------
     factor_names, factor_units : tuple of str, length n_factors
         SI units of low and high.
     low, high : ndarray, shape (n_factors,)
-        Levels that are -1 and +1. [SI unit of each factor]
+        Levels coded as -1 and +1. [SI unit of each factor]
     coded : ndarray, shape (n_runs, n_factors)
-        As reached; NaN where a run was not done. [1]
+        Achieved levels; NaN if a run was not done. [1]
     dummy : ndarray, shape (n_runs, n_dummy)
         Columns ``dummy_1``, .. of a screening. [1]
     response_names, response_units : tuple of str, length n_responses
-        A unit is empty where none is stated.
+        The unit is empty if not stated.
     responses : ndarray, shape (n_responses, n_runs)
-        NaN where a run gave none. [SI unit of each response]
+        NaN if a run gave no value. [SI unit of each response]
     run_names : tuple of str, length n_runs
     row : tuple of int, length n_runs
-        Of the file, its first line being 1.
+        Row in the file; its first line is 1.
     run_order : ndarray, shape (n_runs,)
-        NaN where not given. [1]
+        NaN if not given. [1]
     blocks : tuple of str, length n_runs, or None
-        Block or specimen of each run, where there are several.
+        Block or specimen of each run, if there are several.
     notes : tuple of str
-        What a reader of the numbers has to know.
+        Notes for the user of the results.
     """
 
     factor_names: tuple[str, ...]
@@ -642,7 +643,7 @@ class RunSeries:
 def _declared(
     sheet: _CellSheet, spec: ExperimentSpec | None
 ) -> tuple[tuple[_FactorSpec, ...], tuple[_ResponseSpec, ...]]:
-    """Factors and responses: as declared, else the last column and the others."""
+    """Factors and responses: as declared, else the last column is the response."""
     factors, responses = ((), ()) if spec is None else (spec.factors, spec.responses)
     named = {factor.name for factor in factors} | {entry.name for entry in responses}
     free = [
@@ -687,7 +688,7 @@ def read_runs(path: Path, spec: ExperimentSpec | None = None) -> RunSeries:
     used: set[str] = set()
     axes = [factor.axis(strength) for factor in factors]
     mean: Floats | None = None
-    # an amplitude that is a share of the mean comes after the mean
+    # an amplitude relative to the mean is read after the mean
     for place in sorted(range(len(factors)), key=lambda index: _is_of_mean(factors[index])):
         factor = factors[place]
         column, coded[:, place] = _levels_of_factor(sheet, factor, spec, mean)
@@ -749,7 +750,7 @@ def read_runs(path: Path, spec: ExperimentSpec | None = None) -> RunSeries:
 
 
 def _blocks(sheet: _CellSheet) -> tuple[tuple[str, ...] | None, list[str]]:
-    """Blocks, by the column block before the column specimen, where there are several."""
+    """Blocks, if there are several, from the column block, else from the column specimen."""
     several = {
         name: labels
         for name in ("block", "specimen")
@@ -771,7 +772,7 @@ def _blocks(sheet: _CellSheet) -> tuple[tuple[str, ...] | None, list[str]]:
 
 
 def _run_names(sheet: _CellSheet) -> tuple[str, ...]:
-    """Names of the runs, with the specimen where a run has several; their numbers else."""
+    """Names of the runs, with the specimen if a run has several; otherwise their numbers."""
     names, specimens = _labels(sheet, "run"), _labels(sheet, "specimen")
     apart = specimens or _labels(sheet, "block") or ("",) * len(sheet.row)
     if names is None:
@@ -791,7 +792,7 @@ def _run_names(sheet: _CellSheet) -> tuple[str, ...]:
 
 
 def _order(sheet: _CellSheet) -> Floats:
-    """Place of each run in the order; each once in a block."""
+    """Position of each run in the order, unique within a block."""
     found = sheet.named("run_order")
     if not found:
         return np.full(len(sheet.row), math.nan)

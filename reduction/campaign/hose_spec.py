@@ -1,4 +1,4 @@
-"""SPEC.toml of a hose, and ``[hoses]`` and ``[comparisons]`` of a campaign."""
+"""SPEC.toml of a hose, and the tables ``[hoses]`` and ``[comparisons]`` of a campaign."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ _Calibrated = Literal[
     "cord_strain_scale",
     "dead_length_share",
 ]
-"""What a comparison may fit; diameters and cords are measured, not fitted."""
+"""Parameters that a comparison may fit; diameters and cords are measured, not fitted."""
 
 
 class _HoseSection(BaseModel):
@@ -47,30 +47,30 @@ class _HoseSection(BaseModel):
 
 
 class CordSection(_HoseSection):
-    """``[cord]``: measured points of one cord, the last one its break."""
+    """``[cord]``: measured points of one cord; the last one is its break."""
 
     strain: tuple[Strain, ...]
     load: tuple[Force, ...]
 
 
 class LayerSection(_HoseSection):
-    """``[[hose.layers]]``: a layer that is to carry no load."""
+    """``[[hose.layers]]``: a layer that should carry no load."""
 
     name: _Name
     wrap_angle: Angle
     strain_limit: Strain | None = None
-    """Greatest tensile strain that it bears."""
+    """Maximum tensile strain."""
     compression_limit: Strain | None = None
-    """Greatest compressive strain that it bears, a positive number."""
+    """Maximum compressive strain, a positive number."""
 
 
 class _HoseKeys(_HoseSection):
-    """``[hose]``, and ``[hoses.NAME]`` of a campaign without its cord."""
+    """``[hose]``, and ``[hoses.NAME]`` of a campaign, without the cord."""
 
     wrap_angle: Angle
-    """From the hose axis."""
+    """Measured from the hose axis."""
     wrap_diameter: Length | None = None
-    """Mean of the two cord layers; or ``layer_diameters``."""
+    """Mean of the two cord layers; alternatively ``layer_diameters``."""
     layer_diameters: tuple[Length, Length] | None = None
     inner_diameter: Length
     outer_diameter: Length
@@ -79,14 +79,14 @@ class _HoseKeys(_HoseSection):
     rubber_modulus: Stress
     rubber_law: RubberLaw = "neo-hookean"
     working_share: Ratio = Field(default=1 / 3)
-    """Of the break load of a cord, at the safe working load."""
+    """Share of the break load of a cord at the safe working load."""
     cord_load_scale: Ratio = 1.0
     cord_strain_scale: Ratio = 1.0
     minimum_inner_diameter: Length | None = None
     length: PositiveLength | None = None
-    """Relaxed, stretch-limited ends included; needed with ``dead_length``."""
+    """Relaxed length with stretch-limited ends; required with ``dead_length``."""
     dead_length: Length | None = None
-    """Part of the length that does not stretch, both ends together."""
+    """Part of the length that does not stretch, total of both ends."""
     strain_step: Strain = Field("1 %", validate_default=True)
     greatest_strain: PositiveStrain | None = None
     standard_uncertainty: dict[str, Number] = Field(default_factory=dict)
@@ -101,21 +101,21 @@ class HoseSection(_HoseKeys):
 
 
 class _TargetSection(_HoseSection):
-    """``[target]``: what a hose like this one is to do at its safe working load."""
+    """``[target]``: requirements for a hose like this one at its safe working load."""
 
     strain: Strain
     tension: Force | None = None
 
 
 class _ComparisonKeys(_HoseSection):
-    """``[comparison]``: how a measured curve meets the prediction."""
+    """``[comparison]``: how a measured curve is compared with the prediction."""
 
     specimen: str | None = None
-    """Of the measured test, where it has several."""
+    """Specimen of the measured test, if it has several."""
     loading: Literal["static", "dynamic"] | None = None
-    """How it was pulled, where its kind does not say it: a cyclic test may be slow."""
+    """How it was pulled, if not clear from the kind of test: a cyclic test may be slow."""
     calibrate: tuple[_Calibrated, ...] = ()
-    """Numbers of the hose to be fitted to the measured curve."""
+    """Parameters of the hose to fit to the measured curve."""
 
 
 class _HoseSpecFile(_HoseSection):
@@ -133,7 +133,7 @@ class ComparisonSection(_ComparisonKeys):
     measured: str
     """Test or test/step of the campaign."""
     predicted: str
-    """One of ``[hoses]``."""
+    """One of the hoses in ``[hoses]``."""
 
 
 _DIMENSIONS: dict[str, Dimension] = {
@@ -161,7 +161,7 @@ _PARAMETERS = {
 
 
 def hose_of(path: Path, name: str, place: str, keys: _HoseKeys, cord: CordSection) -> HosePlan:
-    """A hose as it is predicted; an error names the file and the key."""
+    """Hose for the prediction; errors name the file and the key."""
     given = keys.layer_diameters if keys.wrap_diameter is None else (keys.wrap_diameter,) * 2
     if given is None or None not in (keys.wrap_diameter, keys.layer_diameters):
         raise in_toml(
@@ -225,7 +225,7 @@ def _layer(path: Path, place: str, layer: LayerSection) -> HelicalLayer:
         np.nan if limit is None else limit
         for limit in (layer.strain_limit, layer.compression_limit)
     ]
-    # a comparison with NaN is false: what is not stated is no fault
+    # comparison with NaN is false, so unstated limits cause no error
     if limits[0] < 0 or limits[1] < 0 or limits[1] >= 1:
         raise in_toml(
             path, f"{place} has a limit that no layer has",
@@ -238,7 +238,7 @@ def _layer(path: Path, place: str, layer: LayerSection) -> HelicalLayer:
 def _uncertainties(
     path: Path, place: str, keys: _HoseKeys, design: HoseDesign, length: float
 ) -> dict[str, float]:
-    """Standard uncertainties in SI, by parameter; % is of the value itself."""
+    """Standard uncertainties in SI, by parameter; % is relative to the value."""
     found: dict[str, float] = {}
     for key, text in keys.standard_uncertainty.items():
         where = f"{place}.standard_uncertainty.{key}"
@@ -261,7 +261,7 @@ def _uncertainties(
             if key == "dead_length":
                 number = number / length
         size = abs(float(np.mean(value)))
-        # a dead length may be nil and not known well
+        # a dead length may be zero, with a relatively large uncertainty
         if not (np.isfinite(number) and 0 <= number < (size or 1.0)):
             raise in_toml(
                 path, f"{where} is not a standard uncertainty", found=str(text),

@@ -60,7 +60,7 @@ from reduction.record.settings import CycleSettings, Limits, ReductionSettings, 
 
 
 def _check_names(path: Path, campaign: str, tests: Mapping[str, TestPlan]) -> None:
-    """Refuse names under which two products would be one file somewhere."""
+    """Refuse names that would give two products the same file on some system."""
     for name in (campaign, *tests):
         if _DEVICE.fullmatch(name):
             raise in_toml(
@@ -92,11 +92,11 @@ def _check_names(path: Path, campaign: str, tests: Mapping[str, TestPlan]) -> No
 _DEVICE = re.compile(
     r"(con|prn|aux|nul|conin\$|conout\$|com[0-9¹²³]|lpt[0-9¹²³]) *(\..*)?", re.IGNORECASE
 )
-"""Names that are devices of Windows in every folder, whatever stands behind their point."""
+"""Names of Windows devices in every folder, whatever their suffix."""
 
 
 def _file_inside(path: Path, name: str, *, is_needed: bool = True) -> str:
-    """A file name that stays inside the campaign folder."""
+    """A file name inside the campaign folder; others are refused."""
     shown = repr(cut(name, 200))
     if is_address(name):
         raise in_toml(
@@ -108,7 +108,7 @@ def _file_inside(path: Path, name: str, *, is_needed: bool = True) -> str:
     try:
         folder = path.parent.resolve()
         target = (folder / name).resolve()
-    except (ValueError, RuntimeError, OSError) as error:  # a null byte, links in a ring, length
+    except (ValueError, RuntimeError, OSError) as error:  # a null byte, circular links, length
         raise _no_name(path, shown) from error
     windows = PureWindowsPath(name)
     is_absolute = Path(name).is_absolute() or windows.drive or windows.root
@@ -134,7 +134,7 @@ def _check_there(path: Path, target: Path, shown: Path) -> None:
         mode = target.stat().st_mode
     except FileNotFoundError as error:
         raise LogError(shown, "the file is not there", needed=f"as {path} says") from error
-    except OSError as error:  # a folder that is closed to this user, a name that is too long
+    except OSError as error:  # a folder closed to this user, a name that is too long
         raise LogError(
             shown, "the file cannot be read", found=error.strerror or str(error),
             needed="a file that this user may read",
@@ -143,12 +143,12 @@ def _check_there(path: Path, target: Path, shown: Path) -> None:
 
 
 def _readings(stated: tuple[float, ...] | float) -> tuple[float, ...]:
-    """Readings of one size, which may be a single one without a list."""
+    """Readings of one dimension; a single one needs no list."""
     return stated if isinstance(stated, tuple) else (stated,)
 
 
 def _cross_section(path: Path, place: str, section: SpecimenSection) -> tuple[float, ...]:
-    """Area of what has no diameter: as stated, of a strip, or by the mass of its length."""
+    """Area of a specimen without a diameter: stated, of a strip, or from its linear density."""
     width, thickness = _readings(section.width), _readings(section.thickness)
     stated = {
         "diameter": bool(section.diameter),
@@ -182,7 +182,7 @@ def _cross_section(path: Path, place: str, section: SpecimenSection) -> tuple[fl
 
 
 def _specimen_of(path: Path, name: str, section: SpecimenSection) -> Specimen:
-    """The specimen before its first test; an error names campaign.toml and the key."""
+    """The specimen before its first test; errors name campaign.toml and the key."""
     place = f"specimens.{name}"
     dry, wet = section.linear_density, section.wet_linear_density
     if dry is not None and wet is not None and not wet < dry:
@@ -227,12 +227,13 @@ _LENGTHS = ("near_toe", "far_toe", "far_thimble")
 
 _SUFFIXES = {"ft": "ft", "in": "inch", "m": "m", "mm": "mm", "cm": "cm"}
 
-# as a person reads a tape, whose digits say how finely; or as a spreadsheet converts it, to twenty
+# as read from a tape, with digits that show its resolution; or converted by a spreadsheet, up to
+# twenty
 _NUMBER = re.compile(r"[-+]?([0-9]{1,9}(\.[0-9]{0,20})?|\.[0-9]{1,20})([eE][-+]?[0-9]{1,2})?")
 
 _HOLDS = ("slack", "min", "centre", "max")
 
-_FINEST_TAPE = 0.0005  # m: where nothing is stated a tape is not read better, whatever its digits
+_FINEST_TAPE = 0.0005  # m: default limit of tape resolution, whatever the digits
 
 
 @dataclass
@@ -245,7 +246,7 @@ class _Rows:
 
 
 def _columns(path: Path, header: list[str]) -> dict[str, tuple[int, float]]:
-    """Column index and factor to metre of each length."""
+    """Column index and factor to metres of each length."""
     found: dict[str, tuple[int, float]] = {}
     for index, name in enumerate(header):
         stem, _, suffix = name.strip().rpartition("_")
@@ -288,7 +289,7 @@ def _check_hold(path: Path, row: int, hold: str) -> None:
 
 
 def _read_marks(path: Path, name: str = "") -> dict[str, SpliceMarks]:
-    """Read a marks file; ``name`` is what the campaign calls it."""
+    """Read a marks file; ``name`` is its name in the campaign."""
     header, filled = read_csv_rows(path, "the marks file")
     columns = _columns(path, header)
     where = {name: header.index(name) for name in ("test", "specimen", "hold")}
@@ -320,8 +321,8 @@ def _read_marks(path: Path, name: str = "") -> dict[str, SpliceMarks]:
             near_toe=table[:, 0],
             far_toe=table[:, 1],
             far_thimble=table[:, 2],
-            # trailing zeros are dropped by spreadsheets, so the finest digit counts; of sixteenths
-            # of an inch in decimal feet it says more than a tape can
+            # spreadsheets drop trailing zeros, so the finest digit counts; sixteenths of an inch in
+            # decimal feet have more digits than a tape resolves
             reading_uncertainty=max(
                 min(entry.decimals) / math.sqrt(12) * math.sqrt(2), _FINEST_TAPE
             ),
@@ -333,7 +334,7 @@ def _read_marks(path: Path, name: str = "") -> dict[str, SpliceMarks]:
 def _pooled_marks(
     path: Path, names: Iterable[str], specimens: Iterable[str]
 ) -> dict[str, SpliceMarks]:
-    """Return all marks of each specimen over the campaign, from every marks file it names."""
+    """Return the pooled marks of each specimen from all marks files of the campaign."""
     pooled: dict[str, SpliceMarks] = {}
     for name in dict.fromkeys(names):
         file = path.parent / _file_inside(path, name)
@@ -364,12 +365,12 @@ _LISTS = ("specimens", "target_strain")
 
 _WHOLE = ("order", "n_cycles", "unlogged_cycles", "n_flex_cycles")
 
-# as many digits as a netCDF integer holds
+# as many digits as fit in a netCDF integer
 _WHOLE_NUMBER = re.compile(r"[-+]?[0-9]{1,9}")
 
 _STRAIN = ("method", "marks")
 
-# tables of campaign.toml, which no cell can hold
+# tables of campaign.toml that do not fit in a cell
 _TABLES = ("strain", "reduction", "steps")
 
 _COLUMNS = ("id", *(name for name in TestSection.model_fields if name not in _TABLES), *_STRAIN)
@@ -378,13 +379,13 @@ _COLUMNS = ("id", *(name for name in TestSection.model_fields if name not in _TA
 def _in_table(
     path: Path, problem: str, *, row: int | None = None, channel: str = "", **kwargs: Any
 ) -> SettingsError:
-    """An error of the table of tests, ``FILE:ROW [COLUMN]``."""
+    """An error in the table of tests, ``FILE:ROW [COLUMN]``."""
     place = ("" if row is None else f":{row}") + (f" [{channel}]" if channel else "")
     return SettingsError(f"{path}{place}: {problem}", **kwargs)
 
 
 def _cells(path: Path, row: int, cells: dict[str, str]) -> dict[str, Any]:
-    """The filled cells of one row, as TOML would have given them."""
+    """The non-empty cells of one row, in the types that TOML would give."""
     table: dict[str, Any] = {}
     for name, cell in cells.items():
         text = cell.strip()
@@ -450,7 +451,7 @@ def read_test_table(path: Path) -> dict[str, TestSection]:
 def _merge_tests(
     path: Path, table: str, rows: dict[str, TestSection], sections: dict[str, TestSection]
 ) -> dict[str, TestSection]:
-    """Tests of the table and of campaign.toml; a test may stand in both, a key of it in one."""
+    """Tests of the table and of campaign.toml; a test may be in both, each of its keys in one."""
     twice = [
         f"tests.{name}.{key}"
         for name in rows.keys() & sections.keys()
@@ -501,7 +502,7 @@ def _range(path: Path, test: str, step: StepSection) -> dict[str, Any]:
 
 
 def _log_name(path: Path, test: str, entry: str, allow_remote: bool) -> str:
-    """What names a log in messages and products: a path inside the folder, or an address."""
+    """Name of a log in messages and products: a path inside the folder, or an address."""
     with at_place(f"{path}: "):
         is_remote = allowed(entry, allow_remote, what=f"the log of test '{test}'")
     return shown_address(entry) if is_remote else _file_inside(path, entry, is_needed=False)
@@ -516,7 +517,7 @@ def _plan_test(
     *,
     allow_remote: bool = False,
 ) -> TestPlan:
-    """Return a test with the defaults of its campaign, in SI; an error names file and key."""
+    """Return a test in SI with the defaults of its campaign; errors name file and key."""
 
     def given(key: str) -> Any:
         return getattr(test, key) if key in test.model_fields_set else getattr(defaults, key)
@@ -566,7 +567,7 @@ def _plan_test(
     return TestPlan(
         id=name,
         kind=kind,
-        # a log that is not there is its test's error, and the other tests go on
+        # a missing log is an error of its test only
         files=tuple(
             (_log_name(path, name, entry, allow_remote), str(used)) for entry, used in pieces
         ),
@@ -609,7 +610,7 @@ def _plan_comparison(
     hoses: Collection[str],
     specimens: Mapping[str, Specimen],
 ) -> ComparisonPlan:
-    """A comparison with every name in it resolved."""
+    """A comparison with all its names resolved."""
     place = f"comparison '{name}'"
     found = product_of(section.measured, tests)
     if found is None:
@@ -661,7 +662,7 @@ def _plan_comparison(
 
 
 def _hint(path: Path) -> str | None:
-    """What to do about a name that TOML does not allow twice."""
+    """Advice for a name that TOML does not allow twice."""
     text = path.read_text(encoding="utf-8", errors="replace")
     if re.search(r"^tests *=", text, re.MULTILINE) and re.search(
         r"^\[+tests\.", text, re.MULTILINE
@@ -683,7 +684,7 @@ def _parse(path: Path, text: str | None) -> CampaignFile:
 
 
 def _results_file(path: Path, file: CampaignFile) -> str:
-    """Name of the table of results; empty where the campaign has none."""
+    """Name of the table of results; empty if the campaign has none."""
     names = {name for name in (file.results, file.campaign.results) if name}
     if len(names) > 1:
         raise in_toml(
@@ -695,7 +696,7 @@ def _results_file(path: Path, file: CampaignFile) -> str:
 
 
 def _addresses(path: Path, tests: Mapping[str, TestSection]) -> dict[str, str]:
-    """Whole addresses of logs on the net, by what names them in messages and products."""
+    """Full addresses of remote logs, by their names in messages and products."""
     found: dict[str, str] = {}
     for test in tests.values():
         entries = [test.file] if isinstance(test.file, str) else [one.file for one in test.file]
@@ -711,30 +712,30 @@ def _addresses(path: Path, tests: Mapping[str, TestSection]) -> dict[str, str]:
 
 
 def load_campaign(path: Path, *, allow_remote: bool = False, text: str | None = None) -> Campaign:
-    """Read campaign.toml, its tables and its marks, and check that they fit together.
+    """Read campaign.toml, its tables and its marks, and check their consistency.
 
     Parameters
     ----------
     path : pathlib.Path
-        The campaign.toml, or its folder.
+        The campaign.toml or its folder.
     allow_remote : bool
-        Whether the log of a test may be an address on the net. Nothing is fetched here:
-        `reduction.campaign.load.staged_campaign` does.
+        Whether the log of a test may be a remote address. Nothing is fetched here:
+        `reduction.campaign.load.staged_campaign` does that.
     text : str, optional
-        What campaign.toml is to hold; what it does hold where left out.
+        Contents to use for campaign.toml; those of the file if omitted.
 
     Returns
     -------
     campaign : Campaign
-        In SI; every file it names is there and lies inside its folder.
+        Campaign in SI; all its files exist and are inside its folder.
 
     Raises
     ------
     SettingsError
-        If a value is still ``?``, or a key, a value or a unit cannot be used: up to ten
-        places, one a line.
+        If a value is still ``?``, or a key, a value or a unit cannot be used: up to ten places, one
+        per line.
     LogError
-        If a file that it names is missing or cannot be read.
+        If a file it names is missing or cannot be read.
     """
     if path.is_dir():
         path /= "campaign.toml"
@@ -836,27 +837,27 @@ _UNUSUAL = re.compile(r"[^\w.\-]")
 def staged_campaign(
     path: Path, *, allow_remote: bool = False, progress: Callable[[str, str], None] | None = None
 ) -> Iterator[Campaign]:
-    """Load a campaign with its logs at hand.
+    """Load a campaign and fetch its remote logs.
 
     Parameters
     ----------
     path : pathlib.Path
         The campaign.toml.
     allow_remote : bool
-        Whether logs are fetched from the net.
+        Whether remote logs are fetched.
     progress : callable, optional
         Called with ("fetch", name) before each file.
 
     Yields
     ------
     campaign : Campaign
-        As `load_campaign` gives it. A log that cannot be fetched is its test's error. Copies
-        are gone when the block ends.
+        As from `load_campaign`. A log that cannot be fetched is an error of its test. Copies are
+        deleted at the end of the block.
 
     Raises
     ------
     SettingsError
-        If a log is an address and addresses are not allowed; else as `load_campaign`.
+        If a log is an address and addresses are not allowed; otherwise as `load_campaign`.
     """
     campaign = load_campaign(path, allow_remote=allow_remote)
     if not campaign.addresses:
@@ -866,7 +867,8 @@ def staged_campaign(
     copies: dict[str, Path] = {}
     unread: dict[str, LogError] = {}
     with scratch_folder() as scratch, renamed(names):
-        # one after another: not every package bears threads, and an interruption ends at once
+        # one after another: not every package is thread-safe, and an interruption takes effect at
+        # once
         for place, (name, address) in enumerate(campaign.addresses.items()):
             copy = scratch / str(place) / (_UNUSUAL.sub("_", base_name(name))[-100:] or "log")
             copies[name], names[str(copy)] = copy, name
@@ -880,7 +882,7 @@ def staged_campaign(
 
 
 def _id_of_products(processed: Path) -> str:
-    """Id of the campaign whose archives lie in a folder."""
+    """Id of the campaign whose archives are in a folder."""
     archives = archives_of_tests(processed) if processed.is_dir() else []
     if archives:
         with reading(archives[0]) as archive:
@@ -900,30 +902,29 @@ def _id_of_products(processed: Path) -> str:
 
 
 def find_campaign(processed: Path, stated: Path | None = None, *, name: str = "") -> Path:
-    """Find the campaign.toml that a folder of archives was made from.
+    """Find the campaign.toml from which a folder of archives was made.
 
-    It is looked for where the last run had it, and where it lies by habit:
-    ``raw/ID/campaign.toml`` and ``ID/campaign.toml``, beside ``processed`` and in the working
-    folder.
+    It is searched for where the last run had it, and in the usual places: ``raw/ID/campaign.toml``
+    and ``ID/campaign.toml``, beside ``processed`` and in the working folder.
 
     Parameters
     ----------
     processed : pathlib.Path
         ``processed/CAMPAIGN``.
     stated : pathlib.Path, optional
-        Where the user says that it is.
+        Path stated by the user.
     name : str, optional
-        Id of the campaign; that of the first archive where left out.
+        Id of the campaign; that of the first archive if omitted.
 
     Returns
     -------
     path : pathlib.Path
-        Of a campaign of that id.
+        The campaign.toml with that id.
 
     Raises
     ------
     SettingsError
-        If it is not found, or is another campaign.
+        If it is not found, or belongs to another campaign.
     ArchiveError
         If there are no archives.
     """
@@ -959,7 +960,7 @@ def find_campaign(processed: Path, stated: Path | None = None, *, name: str = ""
 
 
 def _id_of(path: Path) -> str | None:
-    """Id that a campaign.toml states; None of a file that is none."""
+    """Id stated in a campaign.toml; None for any other file."""
     try:
         document = tomllib.loads(read_small_text(path))
         return str(document["campaign"]["id"])

@@ -1,6 +1,6 @@
-"""What a user may write in campaign.toml, as pydantic models; `reduction schema` prints them.
+"""Pydantic models of the keys allowed in campaign.toml; `reduction schema` prints them.
 
-Values that carry a unit are text in the file ("21.5 ft") and numbers in SI once it is read.
+Values with a unit are text in the file ("21.5 ft") and numbers in SI after reading.
 """
 
 from __future__ import annotations
@@ -66,13 +66,13 @@ from reduction.record.settings import (
     Waveform,
 )
 
-# of pint's many plain numbers, a turn and a percent among them, those that count bytes
+# among pint's many dimensionless units, including turns and percent, those for bytes
 _BYTES = re.compile(r"[\d.+\-eE\s]*([kMGT]i?B|B|bytes?)\s*")
 
 
 @dataclass(frozen=True)
 class _Limit(ReadKey):
-    """How a limit is read: from a size in bytes, from a time, or as a whole number."""
+    """Reads a limit from a size in bytes, from a time, or as an integer."""
 
     least: float
     most: float
@@ -81,11 +81,11 @@ class _Limit(ReadKey):
 
     @property
     def written(self) -> Any:
-        """A text with a unit, or a whole number."""
+        """A text with a unit, or an integer."""
         return int if self.dimension is None else str
 
     def value(self, stated: Any) -> float:
-        """In bytes, in seconds, or as it is."""
+        """Limit in bytes, in seconds, or as a plain number."""
         needed = self.shown
         if self.dimension == "information":
             needed += ", in bytes (B, kB, MB, GB, TB, KiB, MiB, GiB, TiB)"
@@ -98,29 +98,29 @@ class _Limit(ReadKey):
 
 
 class _LimitsSection(BaseModel):
-    """``[limits]``: beyond them a log is refused; no number depends on them."""
+    """``[limits]``: a log beyond them is refused; they affect no number."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
 
     file_size: Annotated[int, _Limit(1e3, 1e14, '"1 kB" to "100 TB"')] | None = None
-    """Of one log: ``"100 GB"`` where left out."""
+    """Of one log: default ``"100 GB"``."""
     unpacked_size: Annotated[int, _Limit(1e6, 1e12, '"1 MB" to "1 TB"')] | None = None
-    """What a file that is read whole, or a piece of one, may take in memory: ``"4 GB"``."""
+    """Memory for a file read whole, or for a piece of one: default ``"4 GB"``."""
     line_length: Annotated[int, _Limit(1e3, 1e8, '"1 kB" to "100 MB"')] | None = None
-    """Of a line of text: ``"1 MB"``."""
+    """Of a line of text: default ``"1 MB"``."""
     columns: (
         Annotated[int, _Limit(1, 1_000_000, "a whole number from 1 to 1000000", None)] | None
     ) = None
-    """In a log: 10000."""
+    """In a log: default 10000."""
     time: Annotated[float, _Limit(1.0, 7 * 86400.0, '"1 s" to "7 days"', "time")] | None = None
-    """To read one log: ``"1 h"``."""
+    """To read one log: default ``"1 h"``."""
 
 
 _HALF = 0.5
-"""Relative errors beyond this are no first-order ones: nothing that is carried would hold."""
+"""Larger relative errors are beyond first-order propagation, which would not hold."""
 
 _OF_DIAMETER = 0.2
-"""Of a diameter: 40 % of its area, and of every stress and modulus."""
+"""Limit for a diameter: 40 % of its area, and of every stress and modulus."""
 
 _GREATEST_OF: dict[Dimension, tuple[float, str]] = {
     "strain": (_HALF, ", at most 50 %"),
@@ -133,14 +133,14 @@ class _UncertaintySection(BaseModel):
 
 
 class _Expanded(_UncertaintySection):
-    """As a certificate of calibration prints it: ``{ expanded = "0.2 %", k = 2 }``."""
+    """Form on a calibration certificate: ``{ expanded = "0.2 %", k = 2 }``."""
 
     expanded: Number
     k: float
 
 
 class _StatedLimits(_UncertaintySection):
-    """As a data sheet prints it: ``{ half_width = "0.25 %", shape = "rectangular" }``."""
+    """Form on a data sheet: ``{ half_width = "0.25 %", shape = "rectangular" }``."""
 
     half_width: Number
     shape: Literal["rectangular", "triangular", "arcsine"] = "rectangular"
@@ -148,7 +148,7 @@ class _StatedLimits(_UncertaintySection):
 
 @dataclass(frozen=True)
 class _Standard(ReadKey):
-    """How a standard uncertainty is read: as such, as an expanded one, or from limits."""
+    """Reads a standard uncertainty: stated as such, as an expanded one, or as limits."""
 
     dimension: Dimension
     has_tables: bool = True
@@ -159,7 +159,7 @@ class _Standard(ReadKey):
         return Number | _Expanded | _StatedLimits if self.has_tables else Number
 
     def value(self, stated: Number | _Expanded | _StatedLimits) -> float:
-        """In SI."""
+        """Standard uncertainty in SI."""
         if isinstance(stated, _Expanded):
             found = of_expanded(self._part("expanded", stated.expanded), stated.k)
         elif isinstance(stated, _StatedLimits):
@@ -193,7 +193,7 @@ class _TensionSection(_UncertaintySection):
     """``[uncertainty.tension]``."""
 
     gain: _Relative | None = None
-    """Of the whole indication: ``"0.1 %"``."""
+    """Relative to the whole indication: ``"0.1 %"``."""
     offset: _OfForce | None = None
     """Of the zero."""
     noise: _OfForce | None = None
@@ -201,7 +201,7 @@ class _TensionSection(_UncertaintySection):
     resolution: Annotated[float, _Standard("force", has_tables=False)] | None = None
     """One step of the indication."""
     one_load_cell: bool = False
-    """All tension channels are of one cell, or calibrated against one."""
+    """Whether all tension channels use one cell, or were calibrated against one."""
 
 
 class _PositionSection(_UncertaintySection):
@@ -214,27 +214,27 @@ class _PositionSection(_UncertaintySection):
 
 
 class _TemperatureSection(_UncertaintySection):
-    """``[uncertainty.temperature]``: both keys, or nothing can be said of it."""
+    """``[uncertainty.temperature]``: both keys are required."""
 
     value: Annotated[float, _Standard("temperature")]
-    """Of the temperature of a specimen while it is tested: ``"2 K"``."""
+    """Of the specimen temperature during the test: ``"2 K"``."""
     stiffness_per_kelvin: Strain
-    """Relative change of its tension at one strain: ``"0.3 %"``."""
+    """Relative change of tension at constant strain: ``"0.3 %"``."""
 
 
 class UncertaintySection(_UncertaintySection):
-    """``[uncertainty]``: standard uncertainties of what the tests of the campaign share."""
+    """``[uncertainty]``: standard uncertainties shared by the tests of the campaign."""
 
     tension: _TensionSection = _TensionSection()
     crosshead_position: _PositionSection = _PositionSection()
     lag: Annotated[float, _Standard("time")] | None = None
     """Between the two channels."""
     diameter: _OfLength | None = None
-    """Of the mean of the readings of a specimen."""
+    """Of the mean of the readings for a specimen."""
     area: _Relative | None = None
-    """Relative: of the area of a specimen that has no diameter."""
+    """Relative: of the area of a specimen without a diameter."""
     tape: _OfLength | None = None
-    """Of one reading of the tape at the marks: ``"0.005 ft"``."""
+    """Of one tape reading at the marks: ``"0.005 ft"``."""
     strain: _Relative | None = None
     """Relative: error of the strain method itself."""
     rated_break_strength: _Relative | None = None
@@ -247,13 +247,13 @@ class UncertaintySection(_UncertaintySection):
     machine_compliance: Annotated[float, _Standard("compliance")] | None = None
     """Of frame, load cell and grips: ``"2e-8 m/N"``."""
     splice_friction: _Relative | None = None
-    """Of splices on the way down against those on the way up, over their extension: ``"2 %"``."""
+    """Excess of splices when unloading over loading, relative to extension: ``"2 %"``."""
 
 
 def stated_errors(
     path: Path, section: UncertaintySection, specimens: Iterable[Specimen] = ()
 ) -> StatedErrors:
-    """Standard uncertainties of a campaign; an error names campaign.toml and the key."""
+    """Standard uncertainties of a campaign; errors name campaign.toml and the key."""
     tension, position, warmth = section.tension, section.crosshead_position, section.temperature
     stiffness = 0.0 if warmth is None else warmth.value * abs(warmth.stiffness_per_kelvin)
     if stiffness > _HALF:
@@ -299,16 +299,16 @@ def stated_errors(
 
 
 def _of_reading(section: _TensionSection | _PositionSection) -> float:
-    """Noise and resolution of one reading together."""
+    """Combined noise and resolution of one reading."""
     step = of_resolution(section.resolution or 0.0)
     return float(((section.noise or 0.0) ** 2 + step**2) ** 0.5)
 
 
 class _LimitSection(ReportSection):
-    """``[[report.limits]]``: a number that is held against a limit."""
+    """``[[report.limits]]``: a number compared with a limit."""
 
     quantity: ReportText
-    """As `reduction budget` names it: ``tangent_modulus``, ``segment_modulus``, ..."""
+    """Name in `reduction budget`: ``tangent_modulus``, ``segment_modulus``, ..."""
     test: ReportText
     """A test, or ``test/step``."""
     at: dict[str, str | int | float] = Field(default_factory=dict)
@@ -319,7 +319,7 @@ class _LimitSection(ReportSection):
 
 
 class _ReportSection(Statement[_LimitSection]):
-    """``[report]``: every key may be left out; the report then says that it is not stated."""
+    """``[report]``: all keys are optional; the report says which are not stated."""
 
 
 def report_details(
@@ -329,7 +329,7 @@ def report_details(
     specimens: Collection[str],
     tests: Mapping[str, TestPlan],
 ) -> ReportDetails | None:
-    """Return what the laboratory states, limits in SI."""
+    """Return the statements of the laboratory, with limits in SI."""
     if section is None:
         return None
     unknown = sorted(set(section.items) - set(specimens))
@@ -397,7 +397,7 @@ _DIMENSION: dict[tuple[str, str], Dimension] = {
     ("rope", "reference_time"): "time",
 }
 
-# least and greatest value that a stage can work with; SI
+# minimum and maximum valid values for a stage; SI
 _LIMITS: dict[tuple[str, str], tuple[float, float]] = {
     ("quality", "stuck_samples"): (3, math.inf),
     ("quality", "spike_factor"): (3, math.inf),
@@ -432,23 +432,23 @@ _KEY_OF_TEST = {
     ("cycles", "waveform"): 'waveform = "..."',
     ("cycles", "expected_cycles"): "n_cycles = ...",
 }
-"""What the test itself states, and how; no setting of ``reduction``."""
+"""Keys of a test for numbers that are no settings of ``reduction``."""
 
 
 def dimension_of(group: str, name: str, *, control: str) -> Dimension | None:
-    """Dimension of a number, with which its unit is written; None where it has none."""
+    """Dimension of a number, used for its unit; None if it has none."""
     if (group, name) == ("cycles", "band"):
         return "force" if control == "load" else "length"
     return _DIMENSION.get((group, name))
 
 
 def limits_of(group: str, name: str) -> tuple[float, float]:
-    """Least and greatest value that a number may have, in SI."""
+    """Minimum and maximum of a number, in SI."""
     return _LIMITS.get((group, name), (0.0, math.inf))
 
 
 def _in_si(where: str, value: str | float, dimension: Dimension) -> float:
-    """A value with its unit; a refusal says which number it is."""
+    """A value with its unit in SI; errors say which number it is."""
     with at_place(f"{where}: "):
         return parse_quantity(value, dimension)
 
@@ -473,7 +473,7 @@ def _value(group: str, name: str, value: object, default: object, control: str) 
     elif isinstance(value, (int, float)) and not isinstance(value, bool):
         try:
             number = float(value)
-        except OverflowError:  # a whole number of hundreds of digits
+        except OverflowError:  # an integer of hundreds of digits
             number = math.inf
     else:
         raise SettingsError(f"{where} is not a number", found=repr(value), needed="a number")
@@ -484,7 +484,7 @@ def _value(group: str, name: str, value: object, default: object, control: str) 
             f"{where} is out of range", found=repr(value), needed=f"at least {least:g}{upper}"
         )
     if isinstance(default, int):
-        if not number.is_integer():  # nor is infinity one
+        if not number.is_integer():  # neither is infinity
             raise SettingsError(
                 f"{where} is not a whole number", found=repr(value), needed="a whole number"
             )
@@ -495,7 +495,7 @@ def _value(group: str, name: str, value: object, default: object, control: str) 
 def apply_numbers(
     settings: ReductionSettings, table: Mapping[str, Mapping[str, Any]], *, control: str
 ) -> ReductionSettings:
-    """Settings with the numbers of one ``reduction`` table put in."""
+    """Settings updated with the numbers of one ``reduction`` table."""
     for group, numbers in table.items():
         known = {item.name for item in fields(settings)}
         if group not in known:
@@ -538,7 +538,7 @@ TestKind = Literal[
     "stepwise",
 ]
 
-# a name becomes a file name, so it may hold nothing that a path or a shell reads
+# a name becomes a file name, so it must not contain path or shell characters
 Identifier = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9][A-Za-z0-9_\-]{0,99}$")]
 
 StepName = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9][A-Za-z0-9_ \-]{0,99}$")]
@@ -560,11 +560,11 @@ Response = Literal[
     "loss_factor",
     "dashpot_coefficient",
 ]
-"""What a surface may be fitted to; the first four are those of CG-D-39-80."""
+"""Possible responses of a surface; the first four are those of CG-D-39-80."""
 
 Text = Annotated[str, StringConstraints(max_length=2000)]
 
-_MOST = 999_999_999  # of what is counted: a netCDF integer holds it
+_MOST = 999_999_999  # maximum count: fits in a netCDF integer
 
 
 class _SpecSection(BaseModel):
@@ -572,22 +572,22 @@ class _SpecSection(BaseModel):
 
 
 class _CampaignSection(_SpecSection):
-    """``[campaign]``: who, what and under which terms."""
+    """``[campaign]``: people, subject and terms of use."""
 
     id: Identifier
     title: Text
     institution: Text = ""
     source: Text = ""
     synthetic: bool = False
-    """True where no specimen was ever pulled; every product then says so."""
+    """Whether the data are synthetic; every product then says so."""
     references: Text = ""
     license: Text = ""
     summary: Text = ""
     comment: Text = ""
     tests: Text = ""
-    """A CSV with one row a test, beside or instead of ``[tests.*]``."""
+    """A CSV with one row per test, in addition to or instead of ``[tests.*]``."""
     results: Text = ""
-    """A CSV with one row an outcome of which there is no log."""
+    """A CSV with one row per outcome without a log."""
 
 
 class SpecimenSection(_SpecSection):
@@ -600,34 +600,34 @@ class SpecimenSection(_SpecSection):
     diameter: tuple[PositiveLength, ...] | PositiveLength = ()
     """Readings before stretch; the nominal area uses their mean."""
     area: tuple[PositiveArea, ...] | PositiveArea = ()
-    """Readings of the area before stretch, of what has no diameter."""
+    """Readings of the area before stretch, for a specimen without a diameter."""
     width: tuple[PositiveLength, ...] | PositiveLength = ()
-    """Of a strip, with ``thickness``: readings before stretch."""
+    """Width of a strip, used with ``thickness``: readings before stretch."""
     thickness: tuple[PositiveLength, ...] | PositiveLength = ()
     density: PositiveDensity | None = None
-    """Of the material: with ``linear_density`` it gives the area."""
+    """Density of the material: with ``linear_density`` it gives the area."""
     stretched_diameter: dict[str, tuple[PositiveLength, ...]] = Field(default_factory=dict)
     """Readings at a stretch, by stretch: ``{ "10 %" = ["0.997 in", "0.980 in"] }``."""
     rated_break_strength: Force | None = None
     rated_break_strength_source: Text = ""
     linear_density: Annotated[float, InSI("linear_density", above=0.0)] | None = None
-    """Mass a length in air."""
+    """Mass per length in air."""
     wet_linear_density: Annotated[float, InSI("linear_density")] | None = None
-    """The same less the water it displaces."""
+    """Mass per length minus that of the displaced water."""
     gauge_length: PositiveLength | None = None
     gauge_length_standard_uncertainty: PositiveLength | None = None
     reference_tension: PositiveForce | None = None
-    """Tension under which the gauge length was read; slack where left out."""
+    """Tension at which the gauge length was read; default slack."""
     earlier_cycles: int | None = Field(default=None, ge=0, le=_MOST)
-    """Cycles of tension before the first test of the campaign; none where left out."""
+    """Tension cycles before the first test of the campaign; default none."""
     earlier_flex_cycles: int | None = Field(default=None, ge=0, le=_MOST)
-    """Cycles of flexing before it; not known where left out."""
+    """Flexing cycles before it; unknown if omitted."""
     note: Text = ""
 
     @field_validator("reference_tension", mode="before")
     @classmethod
     def _share_of_own_strength(cls, value: object, info: ValidationInfo) -> object:
-        """A share of the break strength is one of that of the specimen, which stands above it."""
+        """Convert a share of the break strength by that of the specimen, stated above it."""
         strength = info.data.get("rated_break_strength")
         if strength is None or not isinstance(value, str) or "%" not in value:
             return value
@@ -649,14 +649,14 @@ class _FilePiece(_SpecSection):
 
 
 class _Kept(_SpecSection):
-    """What a laboratory keeps about a test; goes into the product as written."""
+    """Information that a laboratory keeps on a test; stored unchanged in the product."""
 
     layout: Identifier | None = None
     specimens: tuple[Identifier, ...] = ()
     control: Control = "position"
     waveform: Waveform = "triangular"
     rate: Text = ""
-    """``1 ft/s``, ``3 cycles per minute``; held against the log, as the two below it."""
+    """``1 ft/s``, ``3 cycles per minute``; compared with the log, as are the two keys below."""
     frequency: Text = ""
     mean_tension: Text = ""
     medium: Text = ""
@@ -671,18 +671,17 @@ class _Kept(_SpecSection):
     note: Text = ""
     strain: _StrainSection = _StrainSection()
     reduction: dict[str, dict[str, Any]] = Field(default_factory=dict)
-    """Numbers of `reduction.record.settings`, by group: ``reduction.cycles.trim_threshold =
-    0.95``."""
+    """By group of `reduction.record.settings`: ``reduction.cycles.trim_threshold = 0.95``."""
 
 
 class Defaults(_Kept):
-    """``[defaults]``: what every test has unless it says otherwise."""
+    """``[defaults]``: values for all tests that do not state their own."""
 
     kind: TestKind = "cyclic"
 
 
 class StepSection(_SpecSection):
-    """``[[tests.ID.steps]]``: one step of a log that holds many."""
+    """``[[tests.ID.steps]]``: one step of a log with several."""
 
     model_config = ConfigDict(
         extra="forbid", frozen=True, defer_build=True, allow_inf_nan=False, populate_by_name=True
@@ -696,18 +695,18 @@ class StepSection(_SpecSection):
     target_strain: tuple[float, ...] = ()
     n_cycles: int | None = Field(default=None, ge=1, le=_MOST)
     failed: bool | None = None
-    """As of a test."""
+    """As for a test."""
     note: Text = ""
 
 
 def _has_angle(text: str) -> str:
-    """The text as written, which a test keeps, of what is an angle."""
+    """The text of an angle, unchanged after a check."""
     value_in_si(text, "angle")
     return text
 
 
 class TestSection(_Kept):
-    """``[tests.ID]``: one test; keys that it leaves out come from ``[defaults]``."""
+    """``[tests.ID]``: one test; missing keys are taken from ``[defaults]``."""
 
     __test__ = False  # a test of a tether, not of this software
 
@@ -715,28 +714,28 @@ class TestSection(_Kept):
     file: Text | tuple[_FilePiece, ...] = ""
     """Required, here or in the table of tests."""
     order: int | None = Field(default=None, ge=-_MOST, le=_MOST)
-    """Place in the specimens' history."""
+    """Position in the history of the specimens."""
     part_of: Identifier | None = None
-    """The test of which this log repeats a part; its cycles are not counted twice."""
+    """The test of which this log repeats a part; its cycles are counted only once."""
     date: Date = ""
     rest: Text = ""
-    """Time at rest before this test."""
+    """Rest time before this test."""
     target_strain: tuple[float, ...] = ()
     n_cycles: int | None = Field(default=None, ge=1, le=_MOST)
     unlogged_cycles: int | None = Field(default=None, ge=0, le=_MOST)
-    """Cycles of tension between the test before and this one, of which there is no log."""
+    """Tension cycles without a log between the previous test and this one."""
     n_flex_cycles: int | None = Field(default=None, ge=0, le=_MOST)
-    """Cycles of flexing in this test, while it is pulled."""
+    """Flexing cycles during this test."""
     flex_angle: Annotated[str, AfterValidator(_has_angle)] | None = None
-    """Half the range of the flexing: ``30 deg`` to either side."""
+    """Half the range of flexing: ``30 deg`` to either side."""
     failed: bool | None = None
-    """Whether the specimens broke in this test, in the laboratory's word; else the log decides."""
+    """Whether the specimens broke, according to the laboratory; otherwise found from the log."""
     steps: tuple[StepSection, ...] = ()
 
     @field_validator("file", mode="before")
     @classmethod
     def _pieces_are_tables(cls, value: object) -> object:
-        """A list of file names has no room for the layout of each piece."""
+        """Refuse a plain list of file names, which has no layout for each piece."""
         if isinstance(value, list | tuple) and any(isinstance(entry, str) for entry in value):
             raise SettingsError(
                 "the files of a record are not given as tables",
@@ -747,13 +746,13 @@ class TestSection(_Kept):
 
 
 class ExperimentSection(_SpecSection):
-    """``[experiments.NAME]``: cyclic tests or steps that make one set of response surfaces."""
+    """``[experiments.NAME]``: cyclic tests or steps that give one set of response surfaces."""
 
     kind: Literal["box-behnken", "plackett-burman"]
     factors: dict[Identifier, tuple[str, str]]
     """Low and high level by factor: ``"0.1 Hz"``, ``"12 %RBS"``, ``"40 % of mean"``."""
     runs: dict[RunName, tuple[float, ...]]
-    """Coded levels as planned, by test or test/step; the achieved ones come from the logs."""
+    """Planned coded levels, by test or test/step; the achieved ones come from the logs."""
     quasi_static: dict[Identifier, Text] = Field(default_factory=dict)
     """Test (or test/step) with the slow pull, by specimen."""
     responses: tuple[Response, ...] = get_args(Response)[:4]
@@ -761,9 +760,9 @@ class ExperimentSection(_SpecSection):
         default_factory=dict
     )
     specimens_as: Literal["blocks", "random"] = "blocks"
-    """How several specimens of one line enter: a mean of each, or a draw from many."""
+    """Treatment of several specimens of one line: a mean of each, or draws from a population."""
     term_reduction: Literal["none", "aicc"] = "none"
-    """Beside the full surfaces, those with the terms that AICc keeps."""
+    """Also fit surfaces with only the terms kept by AICc."""
 
 
 class CampaignFile(_SpecSection):

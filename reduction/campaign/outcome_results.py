@@ -51,7 +51,7 @@ _T = TypeVar("_T")
 
 @dataclass(frozen=True)
 class _Column:
-    """A column with a unit: what it holds, and its header as written."""
+    """A column with a unit: its quantity, and its header unchanged."""
 
     stem: str
     unit: str | None
@@ -60,7 +60,7 @@ class _Column:
 
 @dataclass(frozen=True)
 class _ResultRow:
-    """One row of the file, to be read cell by cell."""
+    """One row of the file, read cell by cell."""
 
     path: Path
     row: int
@@ -69,21 +69,21 @@ class _ResultRow:
     def fault(
         self, problem: str, channel: str, *, needed: str, hint: str | None = None
     ) -> LogError:
-        """The error of a cell that cannot be used."""
+        """The error for an unusable cell."""
         return LogError(
             self.path, problem, row=self.row, channel=channel,
             found=repr(self.cells.get(channel, "")), needed=needed, hint=hint,
         )  # fmt: skip
 
     def choice(self, name: str, choices: Mapping[str, _T], problem: str) -> _T:
-        """What a word stands for; blanks, hyphens and capitals do not matter."""
+        """Meaning of a word; blanks, hyphens and capitals are ignored."""
         word = _word(self.cells.get(name, ""))
         if word not in choices:
             raise self.fault(problem, name, needed=", ".join(filter(None, choices)))
         return choices[word]
 
     def is_yes(self, name: str, default: bool) -> bool:
-        """Yes or no; the default where nothing is written."""
+        """Yes or no; the default for an empty cell."""
         word = self.cells.get(name, "").strip().lower()
         if not word:
             return default
@@ -94,7 +94,7 @@ class _ResultRow:
         return _YES[word]
 
     def number(self, header: str) -> float:
-        """A number, as written; NaN for an empty cell."""
+        """A number, unconverted; NaN for an empty cell."""
         cell = self.cells[header].strip()
         if not cell:
             return math.nan
@@ -106,7 +106,7 @@ class _ResultRow:
         return value
 
     def in_si(self, header: str, unit: str, dimension: Dimension) -> float:
-        """A number with the unit that its column or its row declares."""
+        """A number with the unit declared in its column or row."""
         try:
             factor, offset = scale_to_si(unit, dimension)
         except SettingsError as error:
@@ -122,7 +122,7 @@ def _word(text: str) -> str:
 
 
 def _columns(path: Path, header: list[str]) -> tuple[dict[str, list[_Column]], list[str]]:
-    """Columns with a unit by what they hold, and those that are kept as notes."""
+    """Columns with a unit by quantity, and the columns kept as notes."""
     measured: dict[str, list[_Column]] = {}
     others = []
     for name in header:
@@ -137,7 +137,7 @@ def _columns(path: Path, header: list[str]) -> tuple[dict[str, list[_Column]], l
         )
         if known is not None:
             unit = bracket.rstrip("] ") if bracket else name[len(known) :].lstrip("_ ")
-            # a header may shy away from the sign
+            # a header may avoid the percent sign
             unit = re.sub(r"^pct[_ ]?", "%", unit)
             measured.setdefault(known, []).append(_Column(known, unit or None, name))
         elif name in _WORDS:
@@ -177,7 +177,7 @@ def _header(path: Path, header: list[str]) -> None:
 def _value(
     row: _ResultRow, columns: list[_Column], quantity: OutcomeQuantity, valid: bool
 ) -> float:
-    """The one value of a row, in SI."""
+    """The single value of a row, in SI."""
     filled = [column for column in columns if row.cells[column.header].strip()]
     if not filled and not valid:
         return math.nan
@@ -205,7 +205,7 @@ def _value(
 
 
 def _load(row: _ResultRow, columns: list[_Column]) -> tuple[float, float]:
-    """A load [N] and its share of the rated break strength [1], whichever is given."""
+    """A load [N] and its share of the rated break strength [1], from either of them."""
     if not columns:
         return math.nan, math.nan
     (column,) = columns

@@ -1,4 +1,4 @@
-"""A campaign as the rest of the package sees it: SI, checked, frozen."""
+"""A campaign in the form used by the rest of the package: SI, checked, frozen."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from reduction.record.settings import CycleSettings, Limits, ReductionSettings, 
 
 @dataclass(frozen=True)
 class StepPlan:
-    """One step of a log: a time range [s] or a range of cycle numbers, both ends inside."""
+    """One step of a log: a time range [s] or a range of cycle numbers, both inclusive."""
 
     name: str
     kind: str
@@ -34,7 +34,7 @@ class StepPlan:
     note: str = ""
 
     def product(self, test: str) -> str:
-        """Id of the step's product in a test."""
+        """Id of the product of this step in a test."""
         return f"{test}.{self.name.replace(' ', '-')}"
 
 
@@ -42,8 +42,8 @@ class StepPlan:
 class TestPlan:
     """One test of a campaign.
 
-    ``files`` are (path relative to the campaign folder, or what may be shown of an address;
-    layout name), in order of time.
+    ``files`` are (path relative to the campaign folder, or safe form of an address; layout name),
+    in time order.
     """
 
     __test__ = False  # a test of a tether, not of this software
@@ -60,25 +60,25 @@ class TestPlan:
     settings: ReductionSettings
     part_of: str | None = None
     log: str = ""
-    """Id of the test whose log this is: another than ``id`` for a step of a log."""
+    """Id of the test that has this log; it differs from ``id`` for a step."""
     step_place: int = 0
-    """Place of a step in its log, from 1; 0 for a test without steps."""
+    """Position of a step in its log, from 1; 0 for a test without steps."""
     step_range: tuple[float, float] | None = None
-    """Times [s] or cycle numbers between which a step lies; None for a test without steps."""
+    """Limits of a step in time [s] or cycle number; None for a test without steps."""
     failed: bool | None = None
-    """Whether the specimens broke, where the laboratory says so."""
+    """Whether the specimens broke, if the laboratory states it."""
     steps: tuple[StepPlan, ...] = ()
     unlogged_cycles: int | None = None
-    """Cycles since the test before that are in no log."""
+    """Cycles without a log since the previous test."""
     n_flex_cycles: int | None = None
-    """Cycles of flexing in the log, all its steps together."""
+    """Flexing cycles in the log, total of all its steps."""
 
 
 def cycles_of_kind(cycles: CycleSettings, kind: str) -> CycleSettings:
-    """Settings of the cycles of a kind of test.
+    """Cycle settings for a kind of test.
 
-    The first cycles of a line that is bedded in are no sine, whatever drives them: they count
-    from turn to turn, as in a test whose waveform is not known.
+    The first cycles of a line during bedding-in are not sinusoidal, however they are driven. They
+    are counted from turn to turn, as in a test of unknown waveform.
     """
     is_sine = kind == "bedding-in" and cycles.waveform == "sinusoidal"
     return replace(cycles, waveform="other") if is_sine else cycles
@@ -86,11 +86,11 @@ def cycles_of_kind(cycles: CycleSettings, kind: str) -> CycleSettings:
 
 @dataclass(frozen=True)
 class ExperimentPlan:
-    """Tests or steps whose loops make one set of response surfaces.
+    """Tests or steps whose loops give one set of response surfaces.
 
-    ``runs`` holds the coded levels as planned, by the id of the test or step; levels beyond
-    the factors are those of dummy columns.  ``quasi_static`` is the test with the slow pull
-    of each specimen, ``transform`` the scale of each response of which one is stated.
+    ``runs`` holds the planned coded levels, by the id of the test or step; levels after those of
+    the factors belong to dummy columns.  ``quasi_static`` is the test with the slow pull of each
+    specimen, ``transform`` the scale of each response with a stated one.
     """
 
     name: str
@@ -106,11 +106,11 @@ class ExperimentPlan:
 
 @dataclass(frozen=True)
 class ComparisonPlan:
-    """A measured curve and the prediction that it is held against.
+    """A measured curve and the prediction compared with it.
 
-    ``measured`` is the id of the test or step, ``specimen`` one of its specimens,
-    ``predicted`` one of the hoses, ``calibrate`` the numbers of the hose to be fitted;
-    ``loading`` is None where the kind of the test says it.
+    ``measured`` is the id of the test or step, ``specimen`` one of its specimens, ``predicted`` one
+    of the hoses, ``calibrate`` the parameters of the hose to fit; ``loading`` is None if it follows
+    from the kind of test.
     """
 
     name: str
@@ -123,17 +123,17 @@ class ComparisonPlan:
 
 @dataclass(frozen=True)
 class Campaign:
-    """One campaign.toml with everything that it names, resolved.
+    """One campaign.toml with all its files resolved.
 
-    ``outcomes`` are the rows of the table ``results``, with what the sheets of their
-    specimens say; ``uncertainty`` is what is stated of the instruments, ``report`` what the
-    laboratory states for its client, ``limits`` what a log may be.
+    ``outcomes`` are the rows of the table ``results``, with data from the sheets of their
+    specimens; ``uncertainty`` holds stated instrument errors, ``report`` the laboratory's
+    statements for its client, ``limits`` the limits on a log.
 
-    ``small_files`` are digests of campaign.toml and the tables that it names, by their names.
+    ``small_files`` are digests of campaign.toml and its tables, by name.
 
-    ``addresses`` are whole addresses of logs on the net by their names, until there are
-    ``copies`` of them, or ``unread`` says why there is none; ``names`` are what may be shown
-    of addresses, by the paths of the copies.
+    ``addresses`` are full addresses of remote logs by name, until there are ``copies`` or
+    ``unread`` gives the reason why not; ``names`` are safe forms of addresses by the paths of the
+    copies.
     """
 
     path: Path
@@ -159,21 +159,21 @@ class Campaign:
 
     @property
     def folder(self) -> Path:
-        """Folder of campaign.toml, in which every file of the campaign lies."""
+        """Folder of campaign.toml, which contains every file of the campaign."""
         return self.path.parent
 
     def file(self, name: str) -> Path:
-        """Path of a campaign file, or of the copy of one; `LogError` where there is no copy."""
+        """Path of a campaign file or of its copy; `LogError` if there is no copy."""
         if name in self.unread:
             raise self.unread[name]
         return self.copies.get(name, self.folder / name)
 
     def shown(self, name: str) -> str:
-        """A campaign file as messages name it: its path, or what may be shown of its address."""
+        """A campaign file for messages: its path, or the safe form of its address."""
         return name if is_address(name) else self.in_words(str(self.folder / name))
 
     def in_words(self, text: str) -> str:
-        """A message with addresses instead of the paths of their copies."""
+        """A message with the paths of copies replaced by their addresses."""
         return in_words(text, self.names)
 
 

@@ -1,4 +1,4 @@
-"""Reads TOML and CSV files that a person wrote; reports all faults with file and key."""
+"""Reads TOML and CSV files written by users; reports all faults with file and key."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from reduction.readers.layout import UNKNOWN, check_regular
 from reduction.record.errors import DataError, FitError, LogError, ReductionError, SettingsError
 from reduction.record.plain_text import bare_cell, cut
 
-_LARGEST = 16_000_000  # bytes; a campaign of 10^5 tests has a third of it
+_LARGEST = 16_000_000  # bytes; a campaign of 10^5 tests has a third of that
 
 
 _DIGESTS: ContextVar[dict[Path, str] | None] = ContextVar("digests of small files", default=None)
@@ -32,7 +32,7 @@ _DIGESTS: ContextVar[dict[Path, str] | None] = ContextVar("digests of small file
 
 @contextmanager
 def noting_small_files() -> Iterator[dict[Path, str]]:
-    """Give the SHA-256 of each small file that is read in the block, by its resolved path."""
+    """Collect the SHA-256 of each small file read in the block, by its resolved path."""
     digests: dict[Path, str] = {}
     before = _DIGESTS.set(digests)
     try:
@@ -62,7 +62,7 @@ def read_small_text(path: Path) -> str:
 def read_csv_rows(
     path: Path, what: str, *, fault: Callable[..., ReductionError] = LogError
 ) -> tuple[list[str], Iterator[tuple[int, list[str]]]]:
-    """Read a table that is small."""
+    """Read a small CSV table."""
     try:
         text = read_small_text(path)
     except LogError as error:
@@ -101,12 +101,12 @@ def read_csv_rows(
 
 
 def split_rows(text: str) -> list[str]:
-    """Lines of a table as an editor counts them; one at least."""
+    """Lines of a table, numbered as in an editor; at least one."""
     return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
 
 
 def split_row(line: str, delimiter: str = ",") -> list[str] | None:
-    """Cells of one line; None where a quote is not closed in it, or a cell is too long.
+    """Cells of one line; None if a quote is unclosed, or a cell is too long.
 
     Examples
     --------
@@ -126,9 +126,9 @@ _SHOWN = 10
 
 _LONGEST_FOUND = 60
 
-_DEEPEST = 12  # more keys below each other than any setting has
+_DEEPEST = 12  # deeper nesting than any setting has
 
-# what stands in the log itself, where a question mark may be one
+# characters of the log itself, where a question mark is valid
 _MARKS_OF_A_LOG = {"delimiter", "comment", "quote", "missing", "block_marker"}
 
 _TABLES = {(*section, name) for section in ((), ("campaign",)) for name in ("tests", "results")}
@@ -138,7 +138,7 @@ _WORDS = {"missing": "is required", "extra_forbidden": "is not a known key"}
 
 @dataclass(frozen=True)
 class _Fault:
-    """A value that cannot be used; ``found`` is empty where nothing is to be shown."""
+    """An unusable value; ``found`` is empty if nothing is shown."""
 
     place: str
     needed: str
@@ -152,13 +152,13 @@ class _Fault:
 
 
 def in_toml(path: Path, problem: str, **kwargs: Any) -> SettingsError:
-    """An error of campaign.toml, with the file in front."""
+    """An error in campaign.toml, prefixed with the file."""
     return SettingsError(f"{path}: {problem}", **kwargs)
 
 
 @contextmanager
 def at_place(place: str) -> Iterator[None]:
-    """Put a place in front of what is refused: the file, and a key where there is one."""
+    """Prefix errors with a place: the file, and a key if there is one."""
     try:
         yield
     except (SettingsError, DataError, FitError) as error:
@@ -168,13 +168,13 @@ def at_place(place: str) -> Iterator[None]:
 
 
 def quantity_of(path: Path, place: str, text: Number, dimension: Dimension) -> float:
-    """Value in SI of what stands at a place of a file; its error names both."""
+    """Value in SI of a text at a place in a file; errors name both."""
     with at_place(f"{path}: {place}: "):
         return value_in_si(text, dimension)
 
 
 def listed(headline: str, entries: Sequence[object]) -> str:
-    """A first line, and up to ten entries below it."""
+    """A headline with up to ten entries below it."""
     lines = [headline, *(f"  {entry}" for entry in entries[:_SHOWN])]
     if len(entries) > _SHOWN:
         lines.append(f"  and {len(entries) - _SHOWN} more")
@@ -182,20 +182,20 @@ def listed(headline: str, entries: Sequence[object]) -> str:
 
 
 def _shown(value: object) -> str:
-    """A value in quotes, cut where it is long."""
+    """A value in quotes, shortened if long."""
     if isinstance(value, str):
-        room = _LONGEST_FOUND - 2  # for the quotes
+        room = _LONGEST_FOUND - 2  # without the quotes
         return repr(value if len(value) <= room else value[: room - 3].rstrip() + "...")
-    text = reprlib.repr(value)  # tables may be deep
+    text = reprlib.repr(value)  # tables may be deeply nested
     return text if len(text) <= _LONGEST_FOUND else text[: _LONGEST_FOUND - 3].rstrip() + "..."
 
 
 def _place(
     location: Sequence[str | int], table: object, *, is_missing: bool, is_value: bool
 ) -> tuple[str, ...]:
-    """Keys of the table on the way to a fault, without the names that pydantic gives to choices.
+    """Table keys that lead to a fault, without pydantic's names of choices.
 
-    Of a value with a unit the entry of a list is told by its name, or counted from one.
+    If the value has a unit, a list entry is given by its name, or counted from one.
     """
     place: list[str] = []
     for number, part in enumerate(location, start=1):
@@ -210,7 +210,7 @@ def _place(
         elif is_missing and number == len(location):
             place.append(str(part))
         elif isinstance(table, dict) and isinstance(part, str):
-            # the channel tension.1 stands in TOML as a table in a table
+            # in TOML the channel tension.1 is a nested table
             stem, _, rest = part.partition(".")
             if isinstance(table.get(stem), dict) and rest in table[stem]:
                 table = table[stem][rest]
@@ -221,7 +221,7 @@ def _place(
 def _known_keys(
     schema: Mapping[str, Any], definitions: Mapping[str, Any], at: tuple[str, ...] = ()
 ) -> Iterator[tuple[str, ...]]:
-    """Keys of a JSON schema with the tables they stand in; ``NAME`` is a name of the user's own."""
+    """Keys of a JSON schema with the tables that contain them; ``NAME`` is a user-defined name."""
     if len(at) > _DEEPEST:
         return
     if "$ref" in schema:
@@ -237,15 +237,15 @@ def _known_keys(
 
 @cache
 def _keys_of(model: type[BaseModel]) -> tuple[tuple[str, ...], ...]:
-    """Every key that a file of this model may have, with the tables it stands in."""
+    """Every key of a file of this model, with the tables that contain it."""
     schema = model.model_json_schema()
     return tuple(dict.fromkeys(_known_keys(schema, schema.get("$defs", {}))))
 
 
 def _meant_by(place: tuple[str, ...], model: type[BaseModel], *, is_table: bool) -> str:
-    """What a key that is not known may have been meant for: one like it, or another table.
+    """Suggestion for an unknown key: a similar one, or another table.
 
-    A table is meant for where a table may stand.
+    If its value is a table, only places that take a table are suggested.
     """
     known = _keys_of(model)
     *table, key = place
@@ -270,14 +270,14 @@ def _meant_by(place: tuple[str, ...], model: type[BaseModel], *, is_table: bool)
     return f". Did you mean {near[0]!r}?" if near else ""
 
 
-_MOST_PLACES = 3  # of a key that is known in other tables
+_MOST_PLACES = 3  # suggested tables for a key known in others
 
 
 def faults_of(
     error: ValidationError, table: object, model: type[BaseModel] | None = None
 ) -> list[_Fault]:
-    """Every fault once; of a value that no choice allows what is wrong with its number."""
-    unknown: dict[tuple[str, ...], bool] = {}  # with whether a table stands there
+    """Every fault once; for a value that fits no choice, the fault of its number."""
+    unknown: dict[tuple[str, ...], bool] = {}  # whether its value is a table
     found: dict[tuple[str, ...], list[tuple[str, str]]] = {}
     values: dict[tuple[str, ...], list[tuple[str, str]]] = {}
     for entry in error.errors():
@@ -296,7 +296,7 @@ def faults_of(
     faults: list[_Fault] = []
     above = {place[:length] for place in found for length in range(len(place))}
     for place, told in found.items():
-        # a table is not a text either, but where its own keys have faults it was meant as a table
+        # a table is no text either; if its own keys have faults, a table was intended
         if place in above:
             continue
         needed = " or ".join(
@@ -314,7 +314,7 @@ def faults_of(
 
 
 def _leaves(value: object, keys: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], object]]:
-    """Values of a table with their keys; a key that is open itself stands beside them."""
+    """Values of a table with their keys; a key that is itself open is included."""
     if len(keys) > _DEEPEST:
         return
     if isinstance(value, dict):
@@ -334,13 +334,13 @@ def _is_open(value: object) -> bool:
 
 
 def _cells(folder: Path, name: str) -> Iterator[tuple[int, str, str]]:
-    """Row, column and text of each cell; none of a file that is refused when it is read."""
+    """Row, column and text of each cell; none for a file that is refused on reading."""
     try:
         path = (folder / name).resolve()
         if not path.is_relative_to(folder.resolve()) or not path.is_file():
             return
         lines = split_rows(read_small_text(path))
-    except (OSError, ValueError, RuntimeError):  # links in a ring
+    except (OSError, ValueError, RuntimeError):  # circular links
         return
     header = [column.strip() for column in split_row(lines[0]) or ()]
     for number, line in enumerate(lines[1:], start=2):
@@ -351,7 +351,7 @@ def _cells(folder: Path, name: str) -> Iterator[tuple[int, str, str]]:
 
 
 def _tables_in(table: dict[str, Any]) -> list[str]:
-    """Tables that campaign.toml names itself."""
+    """Tables named in campaign.toml."""
     return [
         value
         for keys, value in _leaves(table)
@@ -362,10 +362,10 @@ def _tables_in(table: dict[str, Any]) -> list[str]:
 
 
 def _named_tables(folder: Path, table: dict[str, Any]) -> Iterator[str]:
-    """Tables of a campaign by their names: of tests, results and marks, each once."""
+    """Names of the tables of a campaign (tests, results and marks) without repeats."""
     names = _tables_in(table)
     seen: set[str] = set()
-    for name in names:  # grows
+    for name in names:  # grows during the loop
         if name in seen:
             continue
         seen.add(name)
@@ -378,7 +378,7 @@ def _named_tables(folder: Path, table: dict[str, Any]) -> Iterator[str]:
 
 
 def _open_questions(folder: Path, table: dict[str, Any]) -> list[str]:
-    """Places that still hold ``?``, in campaign.toml, its tables and its marks."""
+    """Places that still contain ``?``, in campaign.toml, its tables and its marks."""
     places = [
         ".".join(keys)
         for keys, value in _leaves(table)
@@ -393,7 +393,7 @@ def _open_questions(folder: Path, table: dict[str, Any]) -> list[str]:
     return list(dict.fromkeys(places))
 
 
-# what the parser takes minutes or gigabytes for, and no setting has
+# input that takes the parser minutes or gigabytes, and that no setting needs
 _DEEP = re.compile(r"""(?<![\w-])(?:(?:[\w-]+|"[^"\n]*"|'[^'\n]*')[ \t]*\.[ \t]*){40}""")
 
 _MOST_LINES = 500_000
@@ -411,7 +411,7 @@ def read_toml(
     text: str | None = None,
     hint: Callable[[Path], str | None] = lambda path: None,
 ) -> _Model:
-    """Read and validate."""
+    """Read and validate a TOML file."""
     try:
         table = _tables(read_small_text(path) if text is None else text)
     except LogError as error:
@@ -420,7 +420,7 @@ def read_toml(
         raise in_toml(
             path, f"{what} cannot be read", found=error.strerror or str(error), needed=needed
         ) from error
-    except (ValueError, RecursionError) as error:  # a number of too many digits is no TOML error
+    except (ValueError, RecursionError) as error:  # too many digits are not a TOML error
         raise in_toml(path, f"{what} is not TOML", found=str(error), hint=hint(path)) from error
     places = _open_questions(path.parent, table)
     if places:
@@ -436,7 +436,7 @@ def read_toml(
 
 
 def _tables(text: str) -> dict[str, Any]:
-    """What TOML says; `ValueError` where it is none, or more than anybody writes."""
+    """Content of a TOML text; `ValueError` if it is invalid or nested too deeply."""
     if text.count("\n") > _MOST_LINES:
         raise ValueError(f"more than {_MOST_LINES:,} lines")
     if deep := _DEEP.search(text):

@@ -1,4 +1,4 @@
-"""Types of keys that carry a unit in TOML and are numbers in SI once the file is read."""
+"""Types of keys with a unit in TOML that are numbers in SI after reading."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from reduction.quantities.units import Dimension, parse_quantity
 from reduction.record.errors import SettingsError
 
 Number = str | Annotated[float, Strict()]
-"""A number of TOML or text with a unit; true and false are neither."""
+"""A TOML number, or text with a unit; booleans are excluded."""
 
 _GREATEST = 1e15
 
@@ -31,21 +31,21 @@ def value_in_si(text: Number, dimension: Dimension) -> float:
 
 
 class ReadKey(ABC):
-    """How a key is read, as an annotation: the JSON Schema is that of what is written."""
+    """How a key is read, as an annotation; the JSON Schema describes the written form."""
 
     @property
     @abstractmethod
     def written(self) -> Any:
-        """Type of what may stand in the file."""
+        """Type allowed in the file."""
 
     @abstractmethod
     def value(self, stated: Any) -> Any:
-        """What it means, a number in SI; `SettingsError` where it cannot be meant."""
+        """Value as a number in SI; `SettingsError` if it is invalid."""
 
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler
     ) -> CoreSchema:
-        """Read what is written, then what it means; the number is given out as it is."""
+        """Validate the written form, then convert it; numbers are serialised unchanged."""
         return core_schema.no_info_after_validator_function(
             self.value,
             handler.generate_schema(self.written),
@@ -55,7 +55,7 @@ class ReadKey(ABC):
 
 @dataclass(frozen=True)
 class InSI(ReadKey):
-    """A number with a unit, and what it has to be above or may not be below."""
+    """A number with a unit, and its lower limit, exclusive or inclusive."""
 
     dimension: Dimension
     above: float = -inf
@@ -63,11 +63,11 @@ class InSI(ReadKey):
 
     @property
     def written(self) -> Any:
-        """A text, or of what has no unit a number too."""
+        """A text, or also a number if it has no unit."""
         return Number if self.dimension in ("strain", "number") else str
 
     def value(self, stated: Number) -> float:
-        """The number in SI; `SettingsError` where it cannot be meant."""
+        """The number in SI; `SettingsError` if it is invalid."""
         value = value_in_si(stated, self.dimension)
         if not value > self.above:
             raise SettingsError("is not positive", found=f"{value:g} in SI", needed="above zero")
@@ -78,13 +78,13 @@ class InSI(ReadKey):
 
 @dataclass(frozen=True)
 class ReadText(ReadKey):
-    """A text that a function reads."""
+    """A text converted by a function."""
 
     read: Callable[[str], Any]
     written = str
 
     def value(self, stated: str) -> Any:
-        """What the function makes of it."""
+        """Result of the function."""
         return self.read(stated)
 
 
@@ -94,7 +94,7 @@ Force = Annotated[float, InSI("force")]
 PositiveArea = Annotated[float, InSI("area", above=0.0)]
 PositiveForce = Annotated[float, InSI("force", above=0.0)]
 Strain = Annotated[float, InSI("strain")]
-"""Also a share: ``0.01`` or ``"1 %"``."""
+"""A ratio also as a number: ``0.01`` or ``"1 %"``."""
 PositiveStrain = Annotated[float, InSI("strain", above=0.0)]
 Angle = Annotated[float, InSI("angle")]
 Stress = Annotated[float, InSI("stress")]

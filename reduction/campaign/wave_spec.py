@@ -1,4 +1,4 @@
-"""SPEC.toml of a wave load: a floating hose, its sea, and what it is exposed to."""
+"""SPEC.toml of a wave load: a floating hose, the sea, and the loads on it."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _STEPS_A_PERIOD = 200
 
 
 class _WaveLoadKeys(BaseModel):
-    """``[wave_load]``, in SI once it is read."""
+    """``[wave_load]``, in SI after reading."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
 
@@ -40,18 +40,18 @@ class _WaveLoadKeys(BaseModel):
     wall_thickness: PositiveLength
     wall_density: PositiveDensity
     content_density: Annotated[float, InSI("density", least=0.0)]
-    """0 kg/m^3 of an empty hose."""
+    """0 kg/m^3 for an empty hose."""
     water_density: PositiveDensity = Field(f"{SEAWATER_DENSITY:g} kg/m^3", validate_default=True)
     water_depth: PositiveLength
     wave_height: PositiveLength
     wave_period: Annotated[float, InSI("time", above=0.0)]
     wave_length: PositiveLength | None = None
-    """Beside the period it is used as it is, and the mismatch of the two is told."""
+    """With a period it is used unchanged, and the mismatch of the two is reported."""
     wave_theory: Literal[
         "auto", "airy", "stokes", "stokes 3", "stokes 5", "cnoidal", "stream function"
     ] = "auto"
     elevation: Length | None = None
-    """At which the water moves, from the mean level up; the centre of the hose if nothing."""
+    """Elevation of the water motion above the mean level; default the centre of the hose."""
     drag_coefficient: PositiveNumber = CODE_OF_HYDROLOGY.drag_coefficient[0]
     inertia_coefficient: PositiveNumber = CODE_OF_HYDROLOGY.inertia_coefficient
     vertical_width: VerticalWidth = "submerged"
@@ -60,9 +60,9 @@ class _WaveLoadKeys(BaseModel):
     wind_drag_coefficient: PositiveNumber = CODE_OF_HYDROLOGY.drag_coefficient[0]
     air_density: PositiveDensity = Field(f"{AIR_DENSITY:g} kg/m^3", validate_default=True)
     hose_length: PositiveLength = Field("1 m", validate_default=True)
-    """For the anchor force."""
+    """Length for the anchor force."""
     duration: Time | None = None
-    """Of the time series; two periods if nothing."""
+    """Duration of the time series; default two periods."""
     time_step: Time | None = None
 
 
@@ -75,7 +75,7 @@ class _WaveLoadFile(BaseModel):
 
 
 def load_wave_case(path: Path) -> dict[str, Any]:
-    """Read SPEC.toml of a wave load: what `predict_wave_load` takes, in SI."""
+    """Read SPEC.toml of a wave load: arguments of `predict_wave_load`, in SI."""
     file = read_toml(
         path,
         _WaveLoadFile,

@@ -1,4 +1,4 @@
-"""The command budget."""
+"""Implements the command budget."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ from reduction.record.errors import SettingsError
 from reduction.uncertainty.budget import Budget
 from reduction.uncertainty.monte_carlo import PARAMETERS
 
-# what a look-up calls a curve of a slow pull
+# name of a slow-pull curve in a look-up
 _OVER_TENSION = {"strain": "quasi_static_strain"}
 
 
 def list_budgets(path: Path, *, output: CommandOutput) -> None:
-    """Print what PRODUCT keeps a budget of."""
+    """Print the quantities in PRODUCT that have a budget."""
     with reading(path) as archive:
         names = {name: list(archive[name].dims) for name in quantities_with_budget(archive)}
     if names:
@@ -84,7 +84,7 @@ def show_budget(path: Path, quantity: str, places: Sequence[str], *, output: Com
 
 
 def _name_in(archive: xr.Dataset, quantity: str) -> str:
-    """Name of a quantity that is asked for as a look-up takes it; itself where none is known."""
+    """Name of a quantity by the rules of a look-up; unchanged if unknown."""
     known = quantities_with_budget(archive)
     over = _OVER_TENSION.get(quantity, quantity)
     return next((one for one in (quantity, over) if one in known), name_of_quantity(quantity))
@@ -92,13 +92,13 @@ def _name_in(archive: xr.Dataset, quantity: str) -> str:
 
 def _in_brackets(label: str, words: str) -> str:
     if words.startswith(label):
-        # the same with its unit
+        # the same text with its unit
         return words.removeprefix(label)
     return f" ({words})" if words else ""
 
 
 def _drawn_uncertainty(archive: xr.Dataset, budget: Budget) -> float | None:
-    """Standard uncertainty that stands in an archive where linear propagation bends."""
+    """Standard uncertainty stored in an archive where linear propagation is inaccurate."""
     method = stored(archive, "test_line_uncertainty_method")
     if method is None or budget.quantity.removeprefix("test_") not in PARAMETERS:
         return None
@@ -109,7 +109,7 @@ def _drawn_uncertainty(archive: xr.Dataset, budget: Budget) -> float | None:
 
 
 def _places(texts: Sequence[str]) -> dict[str, str]:
-    """``dimension=label`` of each option; a strain may carry a percent sign, a tension a unit."""
+    """``dimension=label`` from each option; strains may have a percent sign, tensions a unit."""
     found = {}
     for text in texts:
         name, sign, label = text.partition("=")

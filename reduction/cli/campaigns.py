@@ -1,4 +1,4 @@
-"""The commands check, run, report, init and sniff."""
+"""Implements the commands check, run, report, init and sniff."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ from reduction.cli.progress import campaign_progress
 from reduction.record.errors import ArchiveError, SettingsError
 from reduction.record.plain_text import toml_comment
 
-if TYPE_CHECKING:  # a run that finds nothing changed loads none of them
+if TYPE_CHECKING:  # a run that finds nothing changed imports none of these
     from reduction.archive.open import Opener
     from reduction.campaign.plan import Campaign
     from reduction.quantities.units import UnitSystem
@@ -49,7 +49,7 @@ if TYPE_CHECKING:  # a run that finds nothing changed loads none of them
 
 
 def print_layout(file: Path, output: CommandOutput) -> None:
-    """Print a proposed layout in TOML, and what in it is a guess."""
+    """Print a proposed layout in TOML, with its guesses."""
     from reduction.readers.sniff import sniff_layout
 
     sniffed = sniff_layout(file)
@@ -61,7 +61,7 @@ def print_layout(file: Path, output: CommandOutput) -> None:
 
 
 def start_campaign(folder: Path, output: CommandOutput) -> None:
-    """Write campaign.toml and tests.csv into a folder of logs; never over an existing file."""
+    """Write campaign.toml and tests.csv to a folder of logs; existing files are never replaced."""
     from reduction.readers.starter_campaign import starter_campaign
 
     if not folder.is_dir():
@@ -89,7 +89,7 @@ _NAMES = (
     "microsoft-edge", "microsoft-edge-stable", "msedge",
 )  # fmt: skip
 
-# where installers put a browser that is not on the path
+# where installers put a browser outside the path
 _PLACES = (
     "/Applications/Google Chrome.app/Contents/MacOS/Google Chrome",
     "/Applications/Chromium.app/Contents/MacOS/Chromium",
@@ -98,7 +98,7 @@ _PLACES = (
     r"C:\Program Files (x86)\Microsoft\Edge\Application\msedge.exe",
 )
 
-# the page is all that it may read: no network, no profile, nothing of what a browser does by itself
+# restrict it to the page: no network, no profile, no background activity
 _ALONE = (
     "--headless", "--disable-gpu", "--no-first-run", "--disable-background-networking",
     "--disable-component-update", "--disable-default-apps", "--disable-extensions",
@@ -113,7 +113,7 @@ _BY_HAND = "Open the page in any browser and print it to PDF, without headers an
 
 
 def _find_browser() -> str:
-    """Return the program that prints: ``BROWSER_PROGRAM``, or the first browser that is there."""
+    """Return the browser for printing: ``BROWSER_PROGRAM``, or the first one found."""
     asked = os.environ.get("BROWSER_PROGRAM")
     if asked:
         found = shutil.which(asked)
@@ -136,12 +136,12 @@ def _find_browser() -> str:
 
 
 def _print_page(page: Path, pdf: Path, *, browser: str) -> None:
-    """Print a page to PDF; the file appears whole or not at all."""
+    """Print a page to PDF; the file is written completely or not at all."""
     with (
         tempfile.TemporaryDirectory(prefix="reduction-print-") as profile,
         atomic_file(pdf) as part,
     ):
-        # a browser that is run by root refuses its own sandbox
+        # a browser run by root refuses to use its sandbox
         is_root = sys.platform != "win32" and os.geteuid() == 0
         printed = Path(profile) / "printed.pdf"
         command = [
@@ -159,7 +159,7 @@ def _print_page(page: Path, pdf: Path, *, browser: str) -> None:
 
 
 def _run(command: list[str], browser: str) -> str:
-    """Run the browser; return the last thing that it said."""
+    """Run the browser; return its last line of output."""
     try:
         done = subprocess.run(  # noqa: S603  # a list, no shell; the page is one of ours
             command, capture_output=True, timeout=_LONGEST, check=False
@@ -179,7 +179,7 @@ def _run(command: list[str], browser: str) -> str:
 
 
 def _address_of_design_page(processed: Path, reports: Path, output: CommandOutput) -> str:
-    """Address of the design-value page from the folder of a report; empty where none is written."""
+    """Address of the design-value page from a report folder; empty if none is written."""
     return "" if _is_copy(processed, reports, output) else f"../{DESIGN_PAGE_NAME}"
 
 
@@ -191,7 +191,7 @@ def _refresh_design_page(
     made: str = "",
     opener: Opener | None = None,
 ) -> str | None:
-    """Write the design-value page of a folder of products again, and say where it is."""
+    """Rewrite the design-value page of a folder of products, and report its location."""
     from reduction.archive.open import reading
     from reduction.pages.design_values import write_design_page
 
@@ -222,10 +222,10 @@ def _is_copy(processed: Path, reports: Path, output: CommandOutput) -> bool:
 
 
 def _errors_stand_below() -> bool:
-    """Whether one screen, file or pipe takes answers and errors, so that each is said once."""
+    """Whether answers and errors share one screen, file or pipe, so that each is printed once."""
     try:
         out, errors = (os.fstat(stream.fileno()) for stream in (sys.stdout, sys.stderr))
-    except (AttributeError, OSError, ValueError):  # streams that are no files
+    except (AttributeError, OSError, ValueError):  # streams that are not files
         return False
     is_screen = sys.stdout.isatty() and sys.stderr.isatty()
     return is_screen or os.path.samestat(out, errors)
@@ -235,7 +235,7 @@ def _status_table(tests: Sequence[TestStatus]) -> Table:
     rows = []
     is_below = _errors_stand_below()
     for test in tests:
-        message = escape(test.message)  # text from files of strangers: no markup is read in it
+        message = escape(test.message)  # untrusted text from files: no markup is interpreted
         if is_below and test.exit_status:
             message = "see below"
         rate = test.found.get("rate", {}).get("value")
@@ -253,7 +253,7 @@ def _status_table(tests: Sequence[TestStatus]) -> Table:
             }
         )
     table = Table(box=None, pad_edge=False)
-    # weights hung by hand have no rate, and of a log that was reduced a run keeps none
+    # hanging weights have no rate, and a run keeps none for a reduced log
     shown = [name for name in rows[0] if any(row[name] for row in rows)] if rows else []
     for name in shown:
         is_count = name not in ("test", "status", "worker", "message")
@@ -300,7 +300,7 @@ def _model_lines(
 
 
 def _method(model: StrainModel) -> str:
-    """Method of strain; of an average the law with the greatest weight, and the second."""
+    """Strain method; for an average, the laws with the highest and second weights."""
     for one in model.notes:
         if one.code == "splice-laws":
             laws = [str(one.numbers["law"]), str(one.numbers["second"])]
@@ -309,7 +309,7 @@ def _method(model: StrainModel) -> str:
 
 
 def _say_results(output: CommandOutput, results: dict[str, Any] | None) -> None:
-    """How many outcomes without a log there are, and what each is."""
+    """Print the number of outcomes without a log, and each of them."""
     if results is None:
         return
     output.say(f"{results['file']}: {results['outcomes']} outcomes")
@@ -323,7 +323,7 @@ def _say_results(output: CommandOutput, results: dict[str, Any] | None) -> None:
 
 
 def _say_experiments(output: CommandOutput, experiments: list[dict[str, Any]]) -> None:
-    """Runs, slow pulls and what would go slack, before anything is run."""
+    """Print runs, slow pulls and possible slack before anything is run."""
     force, factor = output.unit("N")
     for one in experiments:
         output.say(
@@ -348,7 +348,7 @@ def _say_experiments(output: CommandOutput, experiments: list[dict[str, Any]]) -
 
 @contextmanager
 def _chosen_workers(jobs: int | None, scheduler: str | None) -> Iterator[Workers | None]:
-    """Give what ``--jobs`` or ``--scheduler`` asks for, and end it afterwards."""
+    """Start the workers requested by ``--jobs`` or ``--scheduler``, and stop them afterwards."""
     if jobs is not None and scheduler is not None:
         raise SettingsError(
             "--jobs and --scheduler exclude each other",
@@ -374,7 +374,7 @@ def _chosen_workers(jobs: int | None, scheduler: str | None) -> Iterator[Workers
 
 
 def check_campaign(campaign: Campaign, *, tests: tuple[str, ...], output: CommandOutput) -> None:
-    """Read and validate everything, print what was found, write nothing."""
+    """Read and validate everything, print the findings, write nothing."""
     from reduction.batch.experiment_product import experiments_found
     from reduction.batch.requested_products import check_campaign as check_tests
     from reduction.batch.run_campaign import results_found
@@ -397,11 +397,11 @@ def check_campaign(campaign: Campaign, *, tests: tuple[str, ...], output: Comman
         for note in test.found.get("notes", ()):
             output.say(f"  {test.test}: {note}")
     lines = _model_lines(models, statuses, output.system)
-    if lines.row_count:  # weights hung by hand, and logs that failed, have no strain model
+    if lines.row_count:  # hanging weights and failed logs have no strain model
         output.show(lines)
     results = results_found(campaign)
     _say_results(output, results)
-    for note in (results or {}).get("notes", ()):  # a run has them among what to check
+    for note in (results or {}).get("notes", ()):  # a run lists them among the items to check
         output.say(f"  {note}")
     experiments = experiments_found(campaign, statuses)
     _say_experiments(output, experiments)
@@ -434,7 +434,7 @@ def run_campaign(
     scheduler: str | None,
     output: CommandOutput,
 ) -> dict[str, Any]:
-    """Reduce a campaign and say what became of each test; return the same for ``--json``."""
+    """Reduce a campaign and print the status of each test; return the document for ``--json``."""
     from reduction.archive.open import ReadOnce
     from reduction.batch.run_campaign import run_campaign as run_tests
 
@@ -443,10 +443,10 @@ def run_campaign(
         _chosen_workers(jobs, scheduler) as workers,
         campaign_progress(output) as progress,
     ):
-        if workers is None:  # beside workers this process holds the pages of many tests
+        if workers is None:  # with workers, this process holds the pages of many tests
             keep_freed_memory()
         if scheduler is not None:
-            # the workers have working folders of their own
+            # the workers have their own working folders
             campaign = replace(campaign, path=campaign.path.absolute())
             processed = processed.absolute()
         result = run_tests(
@@ -456,7 +456,7 @@ def run_campaign(
             clock=time.perf_counter,
             tests=tests,
             force=force,
-            # paths, jobs and choices of tests are left out, so that equal inputs give equal bytes
+            # without paths, jobs and selected tests, so that equal inputs give equal bytes
             command="reduction run campaign.toml",
             units=output.system,
             values_page=_address_of_design_page(processed, reports, output),
@@ -472,7 +472,7 @@ def run_campaign(
 
 
 def say_unchanged(path: Path, *, processed: Path, reports: Path, output: CommandOutput) -> bool:
-    """Say that nothing changed since the last run; False where that is not so."""
+    """Report that nothing has changed since the last run; False if something has."""
     choices = _choices(processed, reports, output)
     result = finished_run(path, processed, reports, choices)
     page = reports / DESIGN_PAGE_NAME
@@ -493,7 +493,7 @@ def say_unchanged(path: Path, *, processed: Path, reports: Path, output: Command
 
 
 def _choices(processed: Path, reports: Path, output: CommandOutput) -> dict[str, str]:
-    """What is asked of a run beside its campaign, as far as a product depends on it."""
+    """Options of a run that affect a product, beside its campaign."""
     return {
         "units": output.units,
         "values_page": _address_of_design_page(processed, reports, output),
@@ -501,7 +501,7 @@ def _choices(processed: Path, reports: Path, output: CommandOutput) -> dict[str,
 
 
 def _say_run(result: CampaignResult, name: str, output: CommandOutput) -> None:
-    """Say what became of each test and part, and where the products are."""
+    """Print the status of each test and part, and the location of the products."""
     answered = _show_answers(output, result.answers)
     others = [one for one in result.tests if one.test not in answered]
     has_other_answers = bool((result.results or {}).get("outcomes") or result.parts.get("hoses"))
@@ -509,7 +509,7 @@ def _say_run(result: CampaignResult, name: str, output: CommandOutput) -> None:
         output.show(_status_table(others))
     _say_results(output, result.results)
     for kind, parts in result.parts.items():
-        # of what ended well the answer stands above
+        # the answers of successful ones are printed above
         told = [one for one in parts if one.exit_status or one.status in ("no_work", "failed")]
         if told:
             output.show(_part_table(kind.removesuffix("s"), told))
@@ -536,7 +536,7 @@ def _say_run(result: CampaignResult, name: str, output: CommandOutput) -> None:
 def _document_of(
     result: CampaignResult, name: str, design_page: str | None, output: CommandOutput
 ) -> dict[str, Any]:
-    """Return the JSON object of a run; its failures are reported."""
+    """Return the JSON object of a run, after printing its failures."""
     client = None if result.report is None else _client_report(result.report)
     _report_failures(output, [*result.tests, *chain(*result.parts.values())])
     return {
@@ -557,7 +557,7 @@ _MOST_DOUBTS = 5
 
 
 def _show_answers(output: CommandOutput, found: ShownAnswers) -> Sequence[str]:
-    """Show the answers of a run, then what needs a person's eye; return which tests have one."""
+    """Print the answers of a run, then the items to check; return the tests with a row."""
     if not output.is_text:
         return ()
     if found.is_synthetic:
@@ -583,7 +583,7 @@ def _show_answers(output: CommandOutput, found: ShownAnswers) -> Sequence[str]:
 def report_again(
     processed: Path, *, reports: Path, is_printed: bool = False, output: CommandOutput
 ) -> None:
-    """Make the reports of one campaign, or of all below a folder, from archives alone."""
+    """Rebuild the reports of one campaign, or of all below a folder, from archives only."""
     from reduction.report.campaign_page import write_report
 
     folders = processed_folders(processed)
@@ -618,7 +618,7 @@ def _say_unreadable(output: CommandOutput, folder: Path, name: str, why: str) ->
 
 
 def _client_report(page: Path) -> Path | None:
-    """Report to the client beside the page of a campaign, where there is one."""
+    """Client report beside the page of a campaign, if there is one."""
     client = page.with_name(CLIENT_PAGE_NAME)
     return client if client.exists() else None
 

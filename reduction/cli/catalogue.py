@@ -1,4 +1,4 @@
-"""The command catalogue."""
+"""Implements the command catalogue."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from reduction.quantities.names import QUANTITIES
 
 _SPREAD = "_standard_uncertainty"
 
-# what a terminal has room for; JSON and files have every column
+# columns that do not fit in a terminal; JSON and files have every column
 _LEFT_TO_FILES = (
     "control", "waveform", "specimen_kind", "specimen_construction", "specimen_material",
     "specimen_condition", "test_mean_strain", "test_strain_amplitude", "diameter",
@@ -47,7 +47,7 @@ def query_of(
     sort: Sequence[str],
     **rest: Any,
 ) -> Query:
-    """Question of the options; what was not given asks for nothing."""
+    """Query from the options; those not given impose no condition."""
     query = Query(
         names={name: tuple(patterns) for name, patterns in names.items() if patterns},
         words={name: text for name, text in words.items() if text},
@@ -56,12 +56,12 @@ def query_of(
         sort=tuple(map(_named, sort)),
         **rest,
     )
-    needed_quantities(query)  # a name that is none is refused before any file is read
+    needed_quantities(query)  # unknown names are refused before any file is read
     return query
 
 
 def _named(text: str) -> str:
-    """Name of a quantity, also where it is asked for by its symbol."""
+    """Name of a quantity, also if requested by its symbol."""
     if text in QUANTITIES:
         return text
     from reduction.cli.lookup import name_of_quantity
@@ -72,7 +72,7 @@ def _named(text: str) -> str:
 def show_catalogue(
     folder: Path, query: Query, *, export: Path | None, rebuild: bool, output: CommandOutput
 ) -> None:
-    """Answer a question: a table, JSON, and a file where one is asked for."""
+    """Answer a query with a table or JSON, and a file if requested."""
     if export is not None:
         check_ending(export)
     catalogue = _catalogue(folder, needed_quantities(query), rebuild=rebuild)
@@ -97,7 +97,7 @@ def show_catalogue(
 
 
 def list_quantities(folder: Path, *, rebuild: bool, output: CommandOutput) -> None:
-    """Print which quantities the catalogue has."""
+    """Print the quantities in the catalogue."""
     catalogue = _catalogue(folder, None, rebuild=rebuild)
     found = quantities_there(catalogue)
     table = table_of("quantity", "unit", "meaning", "numbers", texts=3)
@@ -116,10 +116,10 @@ def list_quantities(folder: Path, *, rebuild: bool, output: CommandOutput) -> No
 
 
 def _catalogue(folder: Path, quantities: Sequence[str] | None, *, rebuild: bool) -> Catalogue:
-    """What the campaigns of a folder have, with the numbers that are asked for."""
+    """Catalogue of the campaigns in a folder, with the requested quantities."""
     if not rebuild:
         return load_catalogue(folder, quantities)
-    # a question does without the libraries that read archives
+    # a query does not need the libraries that read archives
     from reduction.batch.catalogue_entries import rebuild as write_again
 
     left_out = write_again(folder)

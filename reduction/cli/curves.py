@@ -1,4 +1,4 @@
-"""The commands composite and assembly."""
+"""Implements the commands composite and assembly."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ from reduction.stages.strain.strain_model import StrainModel
 
 
 def is_of_pieces(sources: Sequence[str]) -> bool:
-    """Whether SOURCE names several tests: archives, a folder, a published tether."""
+    """Whether SOURCE is several tests: archives, a folder, a published tether."""
     return (
         len(sources) > 1
         or any(Path(one).is_dir() for one in sources)
@@ -49,7 +49,7 @@ def is_of_pieces(sources: Sequence[str]) -> bool:
 
 
 def rule_of(precedence: str | None) -> CompositeRule:
-    """The rule, from kinds parted by commas."""
+    """The rule, from comma-separated kinds."""
     if precedence is None:
         return CompositeRule()
     kinds = tuple(cast("PieceKind", part.strip()) for part in precedence.split(","))
@@ -60,7 +60,7 @@ def rule_of(precedence: str | None) -> CompositeRule:
 def piece_source(
     sources: Sequence[str], *, specimen: str | None = None, branch: PieceBranch | None = None
 ) -> PieceSource:
-    """Pieces of what SOURCE names."""
+    """Pieces of SOURCE."""
     published = published_piece_sources()
     if any(one in published for one in sources):
         return _published(sources, specimen, branch)
@@ -70,7 +70,7 @@ def piece_source(
         datasets = [opened.enter_context(open_archive(path)) for path in paths]
         name = _specimen(datasets, sources, specimen)
         for path, one in zip(paths, datasets, strict=True):
-            # of a folder some are of other specimens; what was named was meant
+            # a folder may contain other specimens; a named archive was intended
             if path in named and name not in specimens_of(one):
                 raise SettingsError(
                     f"{path} has no specimen '{name}'",
@@ -147,7 +147,7 @@ def _specimen(datasets: Sequence[xr.Dataset], sources: Sequence[str], specimen: 
 _ROWS = 24
 
 _SHOWN = 1e-3
-"""Share of the tension above which a row says that it was moved."""
+"""Share of the tension above which a row is reported as moved."""
 
 PAGE = "page"
 
@@ -158,7 +158,7 @@ _FORMATS = {
 
 
 def _table_format(path: Path) -> str:
-    """Format of a table, or `PAGE`, by the name of its file."""
+    """Format of a table, or `PAGE`, from the suffix of its file."""
     if path.suffix.lower() not in _FORMATS:
         raise SettingsError(
             "unknown file format", found=path.name,
@@ -176,7 +176,7 @@ def compose_tests(
     out: Path | None,
     output: CommandOutput,
 ) -> None:
-    """Print the composite curve of SOURCE; with ``out``, write every node of it."""
+    """Print the composite curve of SOURCE; if ``out``, write all its nodes."""
     form = None if out is None else _table_format(out)
     rule = rule_of(precedence)
     source = piece_source(sources, specimen=specimen, branch=branch)
@@ -232,13 +232,13 @@ def _show(source: PieceSource, curve: CompositeCurve, output: CommandOutput) -> 
 
 
 def _end_in_doubt(curve: CompositeCurve, output: CommandOutput) -> None:
-    """Status 4 where a curve is in doubt inside the range that it is stated for."""
+    """Set status 4 if a curve is doubtful inside its stated range."""
     if curve.doubt:
         output.raise_status(DataError.exit_status)
 
 
 def _contributions(component: Sequence[Component], rows: Floats) -> list[dict[str, Any]]:
-    """What each shared error adds to a curve, signed, as ``--json`` says it."""
+    """Signed contribution of each shared error to a curve, for ``--json``."""
     return [
         {"source": one.source, "of": one.of, "number": one.number, "contribution": plain(row)}
         for one, row in zip(component, rows, strict=True)
@@ -246,7 +246,7 @@ def _contributions(component: Sequence[Component], rows: Floats) -> list[dict[st
 
 
 def _document(source: PieceSource, curve: CompositeCurve, rule: CompositeRule) -> dict[str, Any]:
-    """What ``--json`` says, in SI."""
+    """Output of ``--json`` in SI."""
     return {
         "name": source.name,
         "branch": source.branch,
@@ -292,7 +292,7 @@ def _document(source: PieceSource, curve: CompositeCurve, rule: CompositeRule) -
 
 
 def _assembly_document(line: DeployedLine) -> dict[str, Any]:
-    """What ``--json`` says, in SI."""
+    """Output of ``--json`` in SI."""
     deployed, assembly = line.deployed, line.deployed.assembly
     return {
         "name": line.name,
@@ -394,11 +394,11 @@ def _state_document(state: WorkingState) -> dict[str, Any]:
 _ASSEMBLY_ROWS = 16
 
 _KNOWN = float(coverage_factor(np.inf))
-"""Coverage factor of a curve of many tests, whose degrees of freedom are not counted. [1]"""
+"""Coverage factor for a curve of many tests, without degrees of freedom. [1]"""
 
 
 def assemble_spec(path: Path, *, out: Path | None, output: CommandOutput) -> None:
-    """Print curve and work of the assembly of SPEC.toml; with ``out``, write every node."""
+    """Print curve and work of the assembly of SPEC.toml; if ``out``, write all nodes."""
     form = None if out is None else _table_format(out)
     line = deployed_line(path)
     _show_assembly(line, output)
@@ -412,7 +412,7 @@ def assemble_spec(path: Path, *, out: Path | None, output: CommandOutput) -> Non
 
 
 def deployed_line(path: Path) -> DeployedLine:
-    """Read SPEC.toml, find its curve and its splices, and deploy it."""
+    """Read SPEC.toml, find its curve and its splices, and deploy the assembly."""
     case = load_assembly_case(path)
     source = _source(path, case)
     with at_place(f"{path}: assembly.curve: "):
@@ -433,7 +433,7 @@ def deployed_line(path: Path) -> DeployedLine:
             has_stated_splices=case.splices is not None,
         )
     except DataError as error:
-        # a level brings its own place
+        # a level already includes its own place
         between = "." if error.problem.startswith("working.") else ": "
         raise DataError(
             f"{path}: assembly{between}{error.problem}", found=error.found, needed=error.needed,
@@ -450,7 +450,7 @@ def deployed_line(path: Path) -> DeployedLine:
 
 
 def _source(path: Path, case: AssemblyCase) -> PieceSource:
-    """Pieces of the tethers; archives and folders stand beside the specification."""
+    """Pieces of the tethers; paths are relative to the specification."""
     published = published_piece_sources()
     words = [word if word in published else str(path.parent / word) for word in case.sources]
     with at_place(f"{path}: assembly.curve: "):
@@ -458,7 +458,7 @@ def _source(path: Path, case: AssemblyCase) -> PieceSource:
 
 
 def _model(path: Path, case: AssemblyCase, source: PieceSource) -> StrainModel:
-    """How the length of a tether follows: as stated, else as tested."""
+    """Length model of a tether: as stated, else as tested."""
     if case.splices is None:
         if source.model is None or source.model.method == "extensometer":
             raise in_toml(
@@ -551,14 +551,14 @@ def _show_assembly(line: DeployedLine, output: CommandOutput) -> None:
 
 
 def _pair(values: Any, *, equal: bool) -> str:
-    """One number where the tethers are alike, the greatest and the least where they are not."""
+    """One number if the tethers are equal, otherwise the maximum and minimum."""
     if equal:
         return short(float(values[0]), 4)
     return f"{short(float(values.max()), 4)}, {short(float(values.min()), 4)}"
 
 
 def _stiffness_in_words(state: WorkingState, share: float, output: CommandOutput) -> str:
-    """EA over the cycle with its interval, and the tests that it is from."""
+    """EA over the cycle with its interval, and the tests used for it."""
     force, per_newton = output.unit("N")
     around = f"+- {100 * share:.2g} % of the length"
     span = "the cycle" if state.level.tension_amplitude else around

@@ -1,4 +1,4 @@
-"""The command demo: the synthetic campaigns, for somebody who has the package and nothing else."""
+"""Implements the command demo: the synthetic campaigns, for users who have only the package."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ _MADE_HERE = shutil.ignore_patterns("__pycache__")
 
 
 def _campaigns() -> Path:
-    """Where they lie: in an installed package, or in the checkout that it is run from."""
+    """Location of the campaigns: in an installed package, or in its checkout."""
     installed = _PACKAGE / "demo"
     return installed if installed.is_dir() else _PACKAGE.parent / "raw"
 
 
 def run_demo(folder: Path, output: CommandOutput) -> None:
-    """Copy each campaign to ``raw`` of a folder and run it; nothing is written over."""
+    """Copy each campaign to ``raw`` in a folder and run it; existing files are not replaced."""
     raw = folder / "raw"
     standing = [name for name in _NAMES if (raw / name).exists()]
     if standing:

@@ -1,4 +1,4 @@
-"""Two products held against each other: what is run for it, and what is said of it."""
+"""Compares two products, runs what that requires, and prints the differences."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from reduction.record.errors import DataError, SettingsError
 
 
 def _run_revision(revision: str, campaign: Path, scratch: Path, output: CommandOutput) -> Path:
-    """Reduce a campaign with a revision of the checkout that this package is installed from."""
+    """Reduce a campaign with a revision of the checkout from which this package is installed."""
     checkout = _find_checkout(Path(reduction.__file__).parents[1])
     source = _export_revision(checkout, revision, scratch)
     processed = scratch / "processed"
@@ -37,7 +37,7 @@ def _run_revision(revision: str, campaign: Path, scratch: Path, output: CommandO
         bar.stage(f"building {revision}", 0)
         python = _install(source, scratch, revision)
         bar.stage(f"reducing with {revision}", 0)
-        # isolated, so that neither this folder nor PYTHONPATH puts another version in its place
+        # isolated, so that neither this folder nor PYTHONPATH provides another version
         done = _run(
             [str(python), "-I", "-m", "reduction", "run", str(campaign), "--processed",
              str(processed), "--reports", str(scratch / "reports"), "--quiet"]
@@ -53,7 +53,7 @@ def _run_revision(revision: str, campaign: Path, scratch: Path, output: CommandO
 
 
 def _find_checkout(folder: Path) -> Path:
-    """Folder of the git checkout that a package was installed from in place."""
+    """Git checkout from which a package was installed in place."""
     done = _git(folder, "ls-files", "--error-unmatch", "reduction/__init__.py")
     if done.returncode:
         raise SettingsError(
@@ -65,7 +65,7 @@ def _find_checkout(folder: Path) -> Path:
 
 
 def _export_revision(checkout: Path, revision: str, scratch: Path) -> Path:
-    """Unpack the source of a revision; the checkout is left as it is."""
+    """Unpack the source of a revision without changing the checkout."""
     known = _git(checkout, "rev-parse", "--verify", "--end-of-options", f"{revision}^{{commit}}")
     if known.returncode:
         raise SettingsError(
@@ -82,18 +82,18 @@ def _export_revision(checkout: Path, revision: str, scratch: Path) -> Path:
     with tarfile.open(fileobj=BytesIO(packed.stdout)) as files:
         if hasattr(tarfile, "data_filter"):
             files.extractall(source, filter="data")
-        else:  # Python before 3.11.4, as Debian 12 has it; the archive is git's own
+        else:  # Python before 3.11.4, as in Debian 12; the archive comes from git
             files.extractall(source)  # noqa: S202
     return source
 
 
 def _install(source: Path, scratch: Path, revision: str) -> Path:
-    """Install a source with the versions of other packages that are installed here."""
+    """Install a source with the same versions of other packages as here."""
     environment = scratch / "environment"
     versions = scratch / "versions.txt"
     installed = {one.name: one.version for one in distributions() if one.name}
     installed.pop("mooring-reduction", None)
-    # a difference is then one of this software
+    # so that any difference is due to this software
     versions.write_text("".join(f"{name}=={number}\n" for name, number in installed.items()))
     python = environment / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
     for command in (
@@ -130,7 +130,7 @@ def _last_line(said: bytes) -> str:
 
 
 _ROWS = 20
-"""Rows of a table; the others are counted, and stand in the answer of ``--json``."""
+"""Rows of a table; the others are counted, and are in the ``--json`` output."""
 
 _ORDER = ("answer", "uncertainty", "number")
 _SAID = {"came": "added", "went": "removed"}
@@ -139,7 +139,7 @@ _SAID = {"came": "added", "went": "removed"}
 def show_differences(
     before: Path, after: Path | None, *, against: str | None, is_exact: bool, output: CommandOutput
 ) -> None:
-    """Compare two products, or two runs of a campaign; status 4 where an answer moved."""
+    """Compare two products, or two runs of a campaign; status 4 if an answer moved."""
     if (after is None) == (against is None):
         raise SettingsError(
             "diff compares two things",
@@ -152,7 +152,7 @@ def show_differences(
         )
     with ExitStack() as opened:
         scratch = opened.enter_context(scratch_folder())
-        # what was asked for is named, and not its copy
+        # the message names the original, not its copy
         if against is not None:
             one = _run_revision(against, before.absolute(), scratch / "before", output)
             output.names[str(one)] = f"{before} by {against}"
@@ -167,10 +167,10 @@ def show_differences(
 
 
 def _products(path: Path, scratch: Path, output: CommandOutput) -> Path:
-    """A product as it is; of a campaign.toml what a run of it makes."""
+    """A product unchanged; for a campaign.toml, the product of a run."""
     if path.suffix.lower() != ".toml":
         return path
-    # two products that are there are compared without what makes them
+    # existing products are compared without importing the reduction
     from reduction.cli.campaigns import run_campaign
     from reduction.cli.remote_paths import campaign_at
 
@@ -185,7 +185,7 @@ def _products(path: Path, scratch: Path, output: CommandOutput) -> Path:
     return made
 
 
-# what is said
+# printed text
 
 
 def _say(found: Differences, output: CommandOutput) -> None:
@@ -208,7 +208,7 @@ def _say(found: Differences, output: CommandOutput) -> None:
 
 
 def _verdict(found: Differences, units: UnitSystem) -> str:
-    """One line: how many answers moved, what else counts, and the worst."""
+    """One line: number of answers moved, other changes, and the worst."""
     changes = found.changes
     answers = [one for one in changes if one.kind == "answer"]
     n_moved, n_changed = (
@@ -245,7 +245,7 @@ def _verdict(found: Differences, units: UnitSystem) -> str:
 
 
 def _ranked(changes: Iterable[Change]) -> list[Change]:
-    """The worst first: what moved, answers before other numbers, then by the shift."""
+    """Worst first: moved numbers, answers before others, then by the shift."""
 
     def rank(one: Change) -> tuple[bool, int, float]:
         size = one.relative if one.shift is None else one.shift
@@ -259,7 +259,7 @@ def _ranked(changes: Iterable[Change]) -> list[Change]:
 
 
 def _say_numbers(changes: Sequence[Change], output: CommandOutput) -> None:
-    """The worst of each quantity, in whatever files it changed."""
+    """Print the worst change of each quantity over all files."""
     of_name: dict[tuple[str, str], list[Change]] = {}
     for one in _ranked(one for one in changes if one.n_changed):
         of_name.setdefault((one.variable, one.kind), []).append(one)
@@ -286,7 +286,7 @@ def _counts(one: Change) -> tuple[int, ...]:
 
 
 def _shown(one: Change, units: UnitSystem) -> tuple[str, str, str]:
-    """Both values with as many digits as show the change, and their unit."""
+    """Both values with enough digits to show the change, and their unit."""
     unit, factor = display_unit(one.unit, units)
     values = [
         value * factor if isinstance(value, (int, float)) else value
@@ -296,7 +296,7 @@ def _shown(one: Change, units: UnitSystem) -> tuple[str, str, str]:
     if len(numbers) == 2:
         halves = [abs(numbers[1] - numbers[0]), (one.standard_uncertainty or 0.0) * factor]
         texts = [within(value, *halves) for value in numbers]
-        # a change beyond the seventh digit needs all of them
+        # a change beyond the seventh digit is shown with all digits
         return (
             *(texts if texts[0] != texts[1] else map(repr, numbers)),
             "" if unit == "1" else unit,
@@ -306,7 +306,7 @@ def _shown(one: Change, units: UnitSystem) -> tuple[str, str, str]:
 
 
 def _far(one: Change) -> str:
-    """How far a number went, in uncertainties where it has one."""
+    """Change of a number, in uncertainties if it has one."""
     if one.change in ("came", "went", "shape"):
         return _SAID.get(one.change, one.change)
     if one.shift is not None:
@@ -315,7 +315,7 @@ def _far(one: Change) -> str:
 
 
 def _where(one: Change) -> list[str]:
-    """Labels of a place: a number with what it counts."""
+    """Labels of a place: a number with its dimension."""
     return [
         f"{name} {label}" if label[:1].isdigit() or label[:1] == "-" else label
         for name, label in one.where.items()
@@ -380,7 +380,7 @@ def _number(n: int, name: str) -> str:
     return f"{n:,} {name if n == 1 else plural}"
 
 
-# the answer of --json
+# the ``--json`` output
 
 
 def _document(found: Differences) -> dict[str, Any]:

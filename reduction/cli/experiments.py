@@ -1,4 +1,4 @@
-"""The commands experiment and surface."""
+"""Implements the commands experiment and surface."""
 
 from __future__ import annotations
 
@@ -55,25 +55,25 @@ _ROUNDING = 1e-9
 
 
 def _fitted_unit(unit: str, transform: str) -> str:
-    """Unit of the coefficients of a response; empty where none is stated."""
+    """Unit of the coefficients of a response; empty if not stated."""
     names = {"none": unit, "log": f"ln({unit})", "log-times-frequency": f"ln(Hz {unit})"}
     return names.get(transform, f"Box-Cox({unit})") if unit else ""
 
 
 class _ShownUnits:
-    """Units of a response and of its factors, as they are shown."""
+    """Display units of a response and of its factors."""
 
     def __init__(
         self, response: str, transform: str, factors: tuple[str, ...], system: UnitSystem
     ) -> None:
-        # a logarithm has no unit that could be changed
+        # a logarithm has no unit to convert
         self.unit, self.scale = display_unit(
             _fitted_unit(response, transform), system if transform == "none" else "si"
         )
         self._factors = [display_unit(unit, system) for unit in factors]
 
     def of_term(self, powers: tuple[int, ...]) -> tuple[str, float]:
-        """Unit of an engineering coefficient and what it is multiplied with."""
+        """Unit of a coefficient in engineering units, and its conversion factor."""
         units = [unit for unit, _ in self._factors]
         scales = [scale for _, scale in self._factors]
         scale = math.prod(one**power for one, power in zip(scales, powers, strict=True))
@@ -81,7 +81,7 @@ class _ShownUnits:
 
 
 def plan_runs(kind: DesignKind, path: Path, *, out: Path | None, output: CommandOutput) -> None:
-    """Print the run sheet of SPEC.toml, and write it where asked for."""
+    """Print the run sheet of SPEC.toml, and write it if requested."""
     spec = load_spec(path)
     with at_place(f"{path}: "):
         design = _design(kind, spec)
@@ -134,7 +134,7 @@ def _design(kind: DesignKind, spec: ExperimentSpec) -> Design:
 def _precision(
     design: Design, sheet: RunSheet, spec: ExperimentSpec
 ) -> ExpectedPrecision | float | None:
-    """Half widths of a surface, or the smallest effect of a screening."""
+    """Half-widths of a surface, or the smallest significant effect of a screening."""
     sigma, _ = spec.keys.sigma
     if sigma is None:
         return None
@@ -144,7 +144,7 @@ def _precision(
 
 
 def _level_units(spec: ExperimentSpec) -> tuple[str, ...]:
-    """SI units of the levels of the sheet, where every share has become a force."""
+    """SI units of the levels on the sheet, on which shares are converted to forces."""
     return tuple(
         factor.si_unit if factor.levels and factor.levels.basis == "absolute" else "N"
         for factor in spec.factors
@@ -152,7 +152,7 @@ def _level_units(spec: ExperimentSpec) -> tuple[str, ...]:
 
 
 def _loads(sheet: RunSheet) -> dict[str, tuple[np.ndarray[Any, Any], str]]:
-    """Loads of each run that are known, with their units."""
+    """Known loads of each run, with their units."""
     columns = {
         "peak_tension": (sheet.peak_tension, "N"),
         "minimum_tension": (sheet.minimum_tension, "N"),
@@ -180,7 +180,7 @@ def _csv(design: Design, sheet: RunSheet, spec: ExperimentSpec) -> str:
             *(values for values, _ in loads.values()),
         ]
     )
-    # 0.1 of a middle and a half range is 0.09999999999999998
+    # 0.1 from a mean and a half-range becomes 0.09999999999999998
     rounded = [[float(f"{value:.12g}") for value in row] for row in numbers.tolist()]
     blank = [None] * len(spec.responses)
     return csv_text(
@@ -197,9 +197,9 @@ def _show_sheet(sheet: RunSheet, spec: ExperimentSpec, output: CommandOutput) ->
     columns += [
         (name, "%RBS", 100.0, values) if unit == "1" else (name, *output.unit(unit), values)
         for name, (values, unit) in _loads(sheet).items()
-        if name != "minimum_share"  # the room of a terminal; it is in the file
+        if name != "minimum_share"  # omitted for lack of room in a terminal; it is in the file
     ]
-    # names stand below each other's words: seven factors fit beside each other
+    # words of a name are stacked, so that seven factors fit side by side
     headings = [f"{name.replace('_', chr(10))}\n[{unit}]" for name, unit, _, _ in columns]
     table = table_of("order", "run", "coded", *headings, texts=0)
     for place, run in enumerate(sheet.run):
@@ -242,11 +242,11 @@ def _show_precision(
 
 
 def _kinds(precision: ExpectedPrecision) -> dict[str, int]:
-    """The worst point of each kind, the surest kind first."""
+    """The worst point of each kind, with the most precise kind first."""
     factor, worst = precision.point_variance_factor, dict[str, int]()
     for kind in dict.fromkeys(precision.point_kind):
         places = np.flatnonzero([one == kind for one in precision.point_kind])
-        # corners are as bad as each other but for rounding, which each processor does its own way
+        # corners are equal except for rounding, which depends on the processor
         is_worst = factor[places] >= (1 - _ROUNDING) * factor[places].max()
         place = int(places[is_worst.argmax()])
         beyond = " (beyond the runs)" if precision.is_beyond_design[place] else ""
@@ -320,7 +320,7 @@ def _document(
 
 
 def _frame(runs: RunSeries, notes: tuple[str, ...]) -> dict[str, Any]:
-    """What answers for surfaces and for effects have in common."""
+    """Common part of the output for surfaces and for effects."""
     return {
         "n_runs": len(runs.row),
         "factors": [
@@ -337,7 +337,7 @@ def _frame(runs: RunSeries, notes: tuple[str, ...]) -> dict[str, Any]:
 def _surface_document(
     surfaces: ResponseSurfaces, index: int, runs: RunSeries, drift: Drift
 ) -> dict[str, Any]:
-    """One response: every number of its surface."""
+    """All numbers of the surface for one response."""
     anova, lack, canonical = surfaces.anova, surfaces.lack_of_fit, surfaces.canonical
     unit = _fitted_unit(runs.response_units[index], surfaces.transform[index])
     lines = zip(
@@ -440,7 +440,7 @@ def _surface_document(
 
 
 def _effects_document(effects: ScreeningEffects, runs: RunSeries) -> dict[str, Any]:
-    """Effects of every response, and what they are mixed of."""
+    """Effects on every response, and their aliases."""
     pairs, alias = alias_matrix(np.where(runs.coded < 0, -1.0, 1.0))
     names = effects.names
     documents = {
@@ -485,7 +485,7 @@ def _show_surfaces(
     notes: tuple[str, ...],
     output: CommandOutput,
 ) -> None:
-    """Each surface: its terms, its analysis of variance, its stationary point."""
+    """Print each surface: its terms, analysis of variance and stationary point."""
     within = "" if surfaces.blocks is None else " within blocks"
     for index, name in enumerate(surfaces.response_names):
         transform = surfaces.transform[index]
@@ -516,7 +516,7 @@ def _show_surfaces(
 
 
 def _show_between_runs(surfaces: ResponseSurfaces, index: int, output: CommandOutput) -> None:
-    """What a quadratic may miss half way between the levels, which no standard error holds."""
+    """Print the possible misfit of a quadratic between levels, not included in standard errors."""
     between = surfaces_between_runs(surfaces)
     with np.errstate(divide="ignore", invalid="ignore"):
         share = between.discrepancy[index] / np.abs(between.value[index])
@@ -549,7 +549,7 @@ def _show_terms(
 def _show_equation(
     surfaces: ResponseSurfaces, index: int, shown: _ShownUnits, output: CommandOutput
 ) -> None:
-    """The equation in the units of the factors, where they have any."""
+    """Print the equation in the units of the factors, if they have any."""
     engineering = surfaces.coefficient_engineering[index]
     if np.array_equal(surfaces.coefficient[index], engineering):
         return
@@ -621,7 +621,7 @@ def _show_effects(
     notes: tuple[str, ...],
     output: CommandOutput,
 ) -> None:
-    """Effects of each response, largest first, and the smallest that counts."""
+    """Print effects on each response, largest first, and the smallest significant one."""
     for index, name in enumerate(runs.response_names):
         unit, scale = output.unit(runs.response_units[index])
         output.say(f"{name} [{unit}]" if unit else name)
@@ -651,13 +651,13 @@ def _show_effects(
 
 
 _NEAR_A_LEVEL = 0.1
-"""Coded distance from -1 or 1 at which a level of a screening is still that level."""
+"""Coded distance from -1 or 1 within which a screening level counts as that level."""
 
 
 def fit_runs(
     path: Path, spec_path: Path | None, *, out: Path | None, output: CommandOutput
 ) -> None:
-    """Fit what SPEC.toml asks for to a table of runs, and print it; with ``out``, write it too."""
+    """Fit a table of runs as requested in SPEC.toml and print it; if ``out``, also write it."""
     spec = None if spec_path is None else load_spec(spec_path)
     runs = read_runs(path, spec)
     with at_place(f"{path}: "):
@@ -681,7 +681,7 @@ def fit_runs(
     }
     files: list[Path] = []
     if out is not None:
-        # brings the page, which an answer on the screen does without
+        # imports the page, which output to the screen does not need
         from reduction.report.surface_page import write_surfaces
 
         files = write_surfaces(
@@ -696,7 +696,7 @@ def fit_runs(
 
 
 def notes_of_fit(runs: RunSeries, surfaces: ResponseSurfaces) -> tuple[str, ...]:
-    """What a reader of surfaces has to know."""
+    """Notes for the user of surfaces."""
     drift = drift_over_order(surfaces, runs.run_order)
     return (
         *runs.notes,
@@ -713,7 +713,7 @@ def notes_of_fit(runs: RunSeries, surfaces: ResponseSurfaces) -> tuple[str, ...]
 
 
 def fit_series(runs: RunSeries, spec: ExperimentSpec | None, path: Path) -> ResponseSurfaces:
-    """Quadratic surfaces of a table of runs; errors name its file."""
+    """Quadratic surfaces for a table of runs; errors name its file."""
     with at_place(f"{path}: "):
         return _fit(runs, spec)
 

@@ -1,4 +1,4 @@
-"""The command explore."""
+"""Implements the command explore."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from reduction.record.errors import SettingsError
 def serve(
     processed: Path, *, campaign: Path | None, port: int, opens: bool, output: CommandOutput
 ) -> None:
-    """Serve the page of a campaign until Ctrl-C, or until the system asks it to end."""
+    """Serve the page of a campaign until Ctrl-C or a request of the system to end."""
     if output.quiet and not opens:
         raise SettingsError(
             "the address would be shown nowhere",
@@ -44,7 +44,7 @@ def serve(
             {"address": server.address, "campaign": str(path), "port": server.server_port}
         )
         if opens:
-            with suppress(webbrowser.Error):  # the address was printed
+            with suppress(webbrowser.Error):  # the address has been printed
                 webbrowser.open(server.address)
         try:
             server.serve_forever()

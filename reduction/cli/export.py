@@ -1,4 +1,4 @@
-"""The command export."""
+"""Implements the command export."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ _HYDRODYNAMICS_NEEDED = 'two numbers, "1.6, 0.02": across the line, along it'
 def _stated_hydrodynamics(
     drag: str | None, added_mass: str | None, source: str | None
 ) -> dict[str, Hydrodynamics]:
-    """Coefficients that stand in place of the assumed cylinder.
+    """Stated coefficients that replace those of the assumed cylinder.
 
     Examples
     --------
@@ -115,7 +115,7 @@ def _with_syrope(
     form: str | None,
     rated_break_strength: float | None = None,
 ) -> ExportLine:
-    """Give a line with dynamics the working curves of a Syrope model."""
+    """Add the working curves of a Syrope model to a line with dynamics."""
     if working_curve is None and greatest_mean_tension is None:
         return line
     if form != "syrope":
@@ -143,7 +143,7 @@ def _with_syrope(
         greatest_mean_tension, "force", rated_break_strength=rated_break_strength
     )
     strain, tension, _ = curve_from_zero(line.strain, line.tension)
-    # 30 %RBS is the end of many printed curves, but for the last digit of a product
+    # 30 %RBS is the end of many printed curves, apart from rounding in a product
     if math.isclose(greatest, tension[-1], rel_tol=_ROUNDING):
         greatest = float(tension[-1])
     syrope = Syrope(
@@ -202,7 +202,7 @@ _LEVELS: dict[str, Dimension] = {
 
 @dataclass(frozen=True)
 class ExportRequest:
-    """What is exported, how, and what the user states of the line, in words with units."""
+    """Export request: format and the user's statements on the line, in words with units."""
 
     sources: tuple[str, ...]
     to: str
@@ -230,7 +230,7 @@ class ExportRequest:
 
 @dataclass(frozen=True)
 class ExportedFiles:
-    """What an export wrote: a line, the coefficients of response surfaces, or all tables."""
+    """Exported files: of a line, of response-surface coefficients, or of all tables."""
 
     exported: ExportLine | ValueTable | str
     paths: tuple[Path, ...]
@@ -238,7 +238,7 @@ class ExportedFiles:
     checks: tuple[ClientCheck, ...] = ()
 
     def plot(self, **options: Any) -> Any:
-        """Draw the exported curve, as `xarray.DataArray.plot` does; it needs matplotlib.
+        """Draw the exported curve, like `xarray.DataArray.plot`; requires matplotlib.
 
         Raises
         ------
@@ -258,7 +258,7 @@ class ExportedFiles:
         return curve.plot(**options)
 
     def _repr_html_(self) -> str:
-        """Show in a notebook which files were written, and what is to be known of them."""
+        """Show the written files and the notes on them in a notebook."""
         checks = (
             f"{one.program}: {one.quantity} at {one.at}: {one.found:.4g} {one.unit}, promised "
             f"{one.promised:.4g} {one.unit}"
@@ -276,7 +276,7 @@ def write_export(request: ExportRequest) -> ExportedFiles:
     Raises
     ------
     ReductionError
-        If the source, the form or a level is not known, or the source cannot be written so.
+        If the source, format or level is unknown, or the source does not support the format.
     """
     if request.extrapolate not in ("refuse", "flag"):
         raise SettingsError(
@@ -327,7 +327,7 @@ def write_export(request: ExportRequest) -> ExportedFiles:
     if request.verify:
         checks = verify_deck(line, to, form or next(iter(FORMS.get(to, ())), ""), paths)
         line = replace(line, notes=(*line.notes, *in_words(checks)))
-        # the header carries what the program gave
+        # the header contains the values returned by the program
         paths = export_line(line, to, out, form=form, units=request.units)
     doubts, notes = doubts_first(line.notes)
     about = (*_stiffness_said(request), *guards_of(line), *closeness_of(line, to, form))
@@ -345,7 +345,7 @@ _FOR_WAVES = {
 
 
 def _stiffness_said(request: ExportRequest) -> tuple[str, ...]:
-    """Which stiffness of a published rope is written, and which is not."""
+    """Statement of which stiffness of a published rope is written, and which is not."""
     source = published_sources().get(request.sources[0]) if len(request.sources) == 1 else None
     if source is None:
         return ()
@@ -400,7 +400,7 @@ def _written_workbook(tables: Path, request: ExportRequest) -> ExportedFiles:
 
 
 def export_source(request: ExportRequest, *, output: CommandOutput) -> None:
-    """Write an export, and say what was written."""
+    """Write an export, and report what was written."""
     folder = request.out.parent
     there = set(folder.iterdir()) if folder.is_dir() else set()
     done = write_export(request)
@@ -436,7 +436,7 @@ def export_source(request: ExportRequest, *, output: CommandOutput) -> None:
 
 
 def _line_document(line: ExportLine, request: ExportRequest, done: ExportedFiles) -> dict[str, Any]:
-    """What is known of an exported line, for JSON."""
+    """Information on an exported line, for JSON."""
     return {
         "line": line.name,
         "form": request.form,
@@ -479,7 +479,7 @@ def _line_of(
     levels: dict[str, str],
     extrapolate: Literal["refuse", "flag"],
 ) -> ExportLine:
-    """The line that SOURCE means: a published one, that of an archive, or a composite of tests."""
+    """The line of SOURCE: published, from an archive, or a composite of tests."""
     surfaces = _surfaces_of(sources) if levels else None
     is_folder = len(sources) == 1 and Path(sources[0]).is_dir()
     if surfaces is not None or (levels and is_folder):
@@ -559,7 +559,7 @@ def _is_of_a_rise(sources: Sequence[str]) -> bool:
 
 
 def _surfaces_of(sources: Sequence[str]) -> Path | None:
-    """Archive of surfaces that SOURCE is, or that lies in the folder of its campaign."""
+    """Archive of surfaces that SOURCE is, or that is in its campaign folder."""
     if len(sources) != 1:
         return None
     path = Path(sources[0])
@@ -576,7 +576,7 @@ def _of_levels(
     extrapolate: Literal["refuse", "flag"],
     stated: dict[str, Any],
 ) -> ExportLine:
-    """A rope of a campaign: K_ap and H by its surfaces or levels, K_0 and curve by a slow pull."""
+    """A rope of a campaign: K_ap and H from surfaces or levels, K_0 and curve from a slow pull."""
     given = [f"{name} {value}" for name, value in chosen.items() if value is not None]
     if given:
         raise SettingsError(
@@ -615,7 +615,7 @@ def _of_levels(
 
 
 def _strength_of_shares(sources: Sequence[str], stated: dict[str, Any]) -> float | None:
-    """What %RBS is a share of: of a published line what it is at the look-up, else as stated."""
+    """Reference of %RBS: for a published line as in the look-up, else as stated."""
     line = published_sources().get(sources[0]) if len(sources) == 1 else None
     if line is not None and line.rated_break_strength > 0:
         return line.rated_break_strength
@@ -623,7 +623,7 @@ def _strength_of_shares(sources: Sequence[str], stated: dict[str, Any]) -> float
 
 
 def _refuse_half_levels(source: str, levels: dict[str, str]) -> None:
-    """Dynamics are at a point: all of its levels are needed, or none."""
+    """Refuse a partial set of levels, since dynamics need all of them, or none."""
     missing = [f"--{name.replace('_', '-')}" for name in _LEVELS if name not in levels]
     if levels and missing:
         raise SettingsError(
@@ -636,7 +636,7 @@ def _refuse_half_levels(source: str, levels: dict[str, str]) -> None:
 def _of_assembly(
     path: Path, chosen: dict[str, str | None], levels: dict[str, str], stated: dict[str, Any]
 ) -> ExportLine:
-    """The line of an assembly, whose specification says the rest."""
+    """The line of an assembly from its specification."""
     given = [f"{name} {value}" for name, value in chosen.items() if value is not None]
     if given:
         raise SettingsError(

@@ -1,4 +1,4 @@
-"""The command figures."""
+"""Implements the command figures."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def draw_figures(
     units: str | None,
     output: CommandOutput,
 ) -> None:
-    """Draw figures of the reports, with a page of each report unless one figure is asked for."""
+    """Draw figures of the reports, with a page for each report unless one figure is requested."""
     rows = _asked(report, figure)
     own = [] if campaign is None else lines_of_source(str(campaign))
     drawn = [row for row in rows if row.is_drawn]

@@ -1,4 +1,4 @@
-"""The command lookup."""
+"""Implements the command lookup."""
 
 from __future__ import annotations
 
@@ -54,8 +54,8 @@ _OF_CYCLES = (
     "dissipation_spring_constant", "relaxation_time", "dashpot_coefficient",
 )  # fmt: skip
 
-# tension along a curve over strain is kept by the name of its branches; rope programmes call K_ap
-# dynamic stiffness, and the answers of a run EA
+# the tension curve over strain is stored under the name of its branches; rope programmes call K_ap
+# dynamic stiffness, and the results of a run call it EA
 _BY_WORDS = {
     "tension": "branch_tension",
     "dynamicstiffness": "apparent_spring_constant",
@@ -66,13 +66,13 @@ _ENDINGS = (".nc", ".toml", ".csv")
 
 
 def lines_of_source(source: str) -> list[LineSource]:
-    """Every line that SOURCE names."""
+    """All lines of SOURCE."""
     published = published_sources()
     if source == "published":
         return list(published.values())
     if source in published:
         return [published[source]]
-    # xarray and the archive, which published lines do without, are half of the time of a look-up
+    # published lines need neither xarray nor the archive, half of the time of a look-up
     from reduction.lines.archive_source import lines_of_archive, lines_of_folder
 
     path = Path(source)
@@ -98,7 +98,7 @@ def lines_of_source(source: str) -> list[LineSource]:
 
 
 def name_of_quantity(text: str) -> str:
-    """Name of a quantity that is asked for by the symbol of its source, or as ``tension``.
+    """Name of a quantity requested by its symbol in the source, or as ``tension``.
 
     Examples
     --------
@@ -117,7 +117,7 @@ def _is_path(source: str) -> bool:
 
 
 def _no_products(path: Path) -> SettingsError:
-    """Why a path has nothing to look up, and which command makes it."""
+    """Error for a path without anything to look up, with the command that creates it."""
     if path.is_dir():
         problem, found = "the folder holds no archive of a campaign", str(path)
     else:
@@ -132,13 +132,13 @@ def _no_products(path: Path) -> SettingsError:
 
 
 def one_line_of(lines: Sequence[LineSource], quantity: str, name: str | None) -> LineSource:
-    """The line that was meant: by its name, else the only one that has the quantity.
+    """The requested line: by name, or the only one with the quantity.
 
-    Of an experiment and its runs, the experiment.
+    For an experiment and its runs, the experiment.
     """
     named = [line for line in lines if name in (None, line.name)]
     if not named:
-        # of "T-1 new" the test or the specimen alone, as far as it leaves one
+        # for "T-1 new", the test or specimen alone if it is unique
         named = [
             line
             for line in lines
@@ -152,7 +152,7 @@ def one_line_of(lines: Sequence[LineSource], quantity: str, name: str | None) ->
         )
     having = [line for line in named if quantity in line.quantities]
     if not having and name is not None:
-        # a rope is called by its specimen, and so are its tests
+        # a rope and its tests are named after the specimen
         parts = [line for line in lines if name in (line.name.split(" ")[-1], *line.specimens)]
         having = [line for line in parts if quantity in line.quantities]
     if not having and len(named) > 1:
@@ -189,17 +189,17 @@ LEVEL_DIMENSIONS: dict[str, Dimension] = {
 _ROUNDING = 1e-12
 
 MOST_POINTS = 100_000
-"""Of a grid: what a table of text, or one JSON object, can reasonably hold."""
+"""Maximum of a grid: as much as a text table or a JSON object can reasonably hold."""
 
 
 @dataclass(frozen=True)
 class LookupRequest:
-    """What is to be looked up: options as they were given.
+    """Request for a look-up: options in their original form.
 
-    ``levels`` are texts with units, by name; ``search`` what `find_lines` takes, ``conditions``
-    what `in_conditions` does; ``name`` the line of SOURCE; ``grid`` whether a level may have
-    several values, and one that is not given its low, centre and high, or those of each test;
-    ``out`` the file of a table.
+    ``levels`` are texts with units, by name; ``search`` holds arguments of `find_lines`,
+    ``conditions`` those of `in_conditions`; ``name`` is the line of SOURCE; ``grid`` allows several
+    values of a level, and defaults to its low, centre and high, or to those of each test; ``out``
+    is the file of a table.
     """
 
     quantity: str
@@ -216,7 +216,7 @@ class LookupRequest:
 def parsed_search(
     words: Mapping[str, str | None], diameter: str | None, tolerance: str | None
 ) -> dict[str, Any]:
-    """What `find_lines` takes, of texts; nothing of what was not given."""
+    """Arguments of `find_lines` from texts, without those not given."""
     search: dict[str, Any] = {name: text for name, text in words.items() if text is not None}
     if tolerance is not None and diameter is None:
         raise SettingsError(
@@ -233,13 +233,13 @@ def parsed_search(
 def _points_of(
     wanted: LookupRequest, line: LineSource, *others: LineSource
 ) -> tuple[list[dict[str, Floats]], bool]:
-    """Points at which lines are looked up, by level, and whether slack ones were left out."""
+    """Points of a look-up by level, and whether slack ones were left out."""
     lines = (line, *others)
     rows = _tested_rows(wanted, line) if wanted.grid else None
     if rows is not None:
         return [rows for _ in lines], False
     filled = _filled(wanted, lines) if wanted.grid else {}
-    # in the order of the factors, whatever was said first
+    # in the order of the factors, not of the options
     names = list(dict.fromkeys([*filled, *wanted.levels]))
     points: list[dict[str, Floats]] = []
     for one in lines:
@@ -274,7 +274,7 @@ def _points_of(
 
 
 def _tested_rows(wanted: LookupRequest, line: LineSource) -> dict[str, Floats] | None:
-    """Levels of single tests, those that differ; of those that are asked for where some are."""
+    """Distinct levels of single tests; only those requested if any is."""
     levels = _levels_of(line, wanted.quantity)
     if levels is None:
         return None
@@ -290,14 +290,14 @@ def _tested_rows(wanted: LookupRequest, line: LineSource) -> dict[str, Floats] |
 
 
 def _levels_of(line: LineSource, quantity: str) -> LineLevels | None:
-    """Tests at single levels that a look-up of the quantity is made from."""
+    """Tests at single levels used to look up the quantity."""
     if quantity in line.surfaces or any(one.quantity == quantity for one in line.curves):
         return None
     return next((one for one in line.levels if one.quantity == quantity), None)
 
 
 def _filled(wanted: LookupRequest, lines: Sequence[LineSource]) -> dict[str, Floats]:
-    """Low, centre and high of the tested ranges of all lines, by level, also of given levels."""
+    """Low, centre and high of the tested ranges of all lines by level, including given ones."""
     ends = [_ends(wanted, line) for line in lines]
     filled = {}
     for name in ends[0]:
@@ -316,7 +316,7 @@ def _filled(wanted: LookupRequest, lines: Sequence[LineSource]) -> dict[str, Flo
 
 
 def _ends(wanted: LookupRequest, line: LineSource) -> dict[str, tuple[float, float]]:
-    """Range of each variable that was tested; of a damping that of the spring in it."""
+    """Tested range of each variable; for damping, that of the spring in it."""
     is_dashpot = wanted.quantity == "dashpot_coefficient" and line.has_dashpot
     name = "dissipation_spring_constant" if is_dashpot else wanted.quantity
     surface = line.surfaces.get(name)
@@ -328,7 +328,7 @@ def _ends(wanted: LookupRequest, line: LineSource) -> dict[str, tuple[float, flo
     of_name = [curve for curve in line.curves if curve.quantity == name]
     for curve in of_name:
         is_meant = not wanted.levels or curve.variable in wanted.levels
-        # where one branch alone is known it need not be asked for
+        # a single branch is used without a request
         is_branch = curve.branch == wanted.branch or not curve.branch or len(of_name) == 1
         if is_branch and is_meant:
             return {curve.variable: (curve.low, curve.high)}
@@ -352,7 +352,7 @@ def _numbers(name: str, text: str, line: LineSource) -> Floats:
 
 
 def list_sources(source: str, search: Mapping[str, Any], *, output: CommandOutput) -> None:
-    """Print what SOURCE holds: each line, its quantities, and over which range."""
+    """Print the contents of SOURCE: each line, its quantities and their ranges."""
     lines = find_lines(lines_of_source(source), **search)
     unit, factor = ("in", 1 / 0.0254) if output.units == "us" else ("mm", 1e3)
     force, scale = output.unit("N")
@@ -361,7 +361,7 @@ def list_sources(source: str, search: Mapping[str, Any], *, output: CommandOutpu
         f"100 %RBS\n[{force}]", "quantities", texts=5,
     )  # fmt: skip
     _fold_last(table)
-    # what is copied into the next command is never broken
+    # names to copy into the next command are never wrapped
     table.columns[0].no_wrap = True
     widths = (len(name) for line in lines for name in line.quantities)
     table.columns[-1].min_width = 1 + max(widths, default=0)
@@ -381,7 +381,7 @@ def list_sources(source: str, search: Mapping[str, Any], *, output: CommandOutpu
 
 
 def _show_levels(line: LineSource, output: CommandOutput) -> None:
-    """Levels at which a rope was tested, by test, with EA."""
+    """Print the test levels of a rope by test, with EA."""
     levels = line.levels[0]
     of, factor = output.unit(quantity_of(levels.quantity).unit)
     points = {name: levels.at[:, place] for place, name in enumerate(levels.variables)}
@@ -469,7 +469,7 @@ def _described(line: LineSource) -> dict[str, Any]:
 
 
 def look_up_values(source: str, wanted: LookupRequest, *, output: CommandOutput) -> None:
-    """Print design values; several values of a level, parted by commas, make a grid."""
+    """Print design values; comma-separated values of a level form a grid."""
     form = _form_of(wanted.out)
     line = line_of_request(source, wanted)
     (points,), left_out = _points_of(wanted, line)
@@ -481,7 +481,7 @@ def look_up_values(source: str, wanted: LookupRequest, *, output: CommandOutput)
     _show(line, found, points, output)
     files: list[str] = []
     if wanted.out is not None and form is not None:
-        # brings xarray, which an answer on the screen does without
+        # imports xarray, which output to the screen does not need
         from reduction.lines.export_tables import table_of_values
 
         files = _write_table(table_of_values(line, found, points), wanted.out, form, output)
@@ -565,7 +565,7 @@ def _population_table(
             short(factor * of(found.standard_deviation), 3),
             _span(factor, of(values.kind_low), of(values.kind_high)),
             _span(factor, of(values.line_low), of(values.line_high)),
-            # no stiffness, no energy is below zero
+            # stiffness and energy are never below zero
             within(factor * of(found.lower), half) if of(found.lower) > 0 else "no limit",
             within(factor * of(found.upper), half),
             _span(factor, max(of(found.both_low), 0.0), of(found.both_high)),
@@ -574,7 +574,7 @@ def _population_table(
 
 
 def look_up_ranked(source: str, wanted: LookupRequest, *, output: CommandOutput) -> None:
-    """Print lines in the order of a quantity at one load, ties marked."""
+    """Print lines ranked by a quantity at one load, with ties marked."""
     from reduction.lines.line_rank import outside_words, rank_lines
 
     lines = lines_to_rank(source, wanted)
@@ -661,19 +661,19 @@ def look_up_ranked(source: str, wanted: LookupRequest, *, output: CommandOutput)
 
 
 def line_of_request(source: str, wanted: LookupRequest) -> LineSource:
-    """The one line that is asked for, as it was tested in the conditions that are."""
+    """The single requested line, with only its tests in the requested conditions."""
     lines = find_lines(lines_of_source(source), **wanted.search)
     return _in_conditions(one_line_of(lines, wanted.quantity, wanted.name), wanted)
 
 
 def lines_with(source: str, wanted: LookupRequest) -> list[LineSource]:
-    """Lines that have the quantity, as they were tested in the conditions that are asked for."""
+    """Lines with the quantity, with only their tests in the requested conditions."""
     lines = find_lines(lines_of_source(source), **wanted.search)
     return [_in_conditions(line, wanted) for line in lines if wanted.quantity in line.quantities]
 
 
 def lines_to_rank(source: str, wanted: LookupRequest) -> list[LineSource]:
-    """Those of `lines_with` that are meant; refused where there is none."""
+    """Selected lines from `lines_with`; an error if there are none."""
     lines = [one for one in lines_with(source, wanted) if wanted.name in (None, one.name)]
     if not lines:
         raise SettingsError(f"no line has {wanted.quantity}", found=source, needed="two or more")
@@ -687,7 +687,7 @@ def _in_conditions(line: LineSource, wanted: LookupRequest) -> LineSource:
 
 
 def _form_of(out: Path | None) -> str | None:
-    """Format that the name of a file asks for."""
+    """Format given by the suffix of a file."""
     if out is None:
         return None
     from reduction.lines.export_tables import format_of_file
@@ -696,7 +696,7 @@ def _form_of(out: Path | None) -> str | None:
 
 
 def _write_table(table: ValueTable, out: Path, form: str, output: CommandOutput) -> list[str]:
-    """Write the table of an answer, and say so."""
+    """Write the table of an answer, and report it."""
     from reduction.lines.deck_formats import export_table
 
     paths = export_table(table, form, out, units=output.system)
@@ -726,7 +726,7 @@ def _table(
     factor: float,
     system: UnitSystem,
 ) -> Table:
-    """One row a point; of the intervals those that are known."""
+    """One row per point, with the known intervals."""
     heads, levels = _shown_levels(points, line.rated_break_strength, found.value.size, system)
     is_levels = _levels_of(line, found.quantity) is not None
     run, of = "one more run", "the surface" if found.interval_of else "this test"
@@ -742,7 +742,7 @@ def _table(
         if np.isfinite(low).any()
     ]
     is_weaker = np.isfinite(line.tensile_strength)
-    # a stiffness over the break strength is what rope makers and rules state
+    # rope makers and rules state stiffness relative to break strength
     is_share = is_levels and found.unit == "N" and np.isfinite(line.rated_break_strength)
     table = table_of(
         *heads, f"value\n[{unit}]", *(("value\n[MBL]",) if is_share else ()),
@@ -772,7 +772,7 @@ def _table(
 
 
 def _slow_pulls_at(line: LineSource, points: Mapping[str, Floats]) -> list[tuple[str, Floats]]:
-    """K_0 by each printed way to it."""
+    """K_0 from each printed method."""
     mean = points["mean_tension"]
     return [(of, evaluate_curve(curve, mean).value) for of, curve in line.slow_pulls.items()]
 
@@ -780,7 +780,7 @@ def _slow_pulls_at(line: LineSource, points: Mapping[str, Floats]) -> list[tuple
 def _consistent(
     line: LineSource, found: DesignValues, points: Mapping[str, Floats]
 ) -> tuple[ConsistentValues, ...]:
-    """K_1 and tau that go with K_ap and H at points of a surface; nothing of tests at levels."""
+    """K_1 and tau consistent with K_ap and H at surface points; empty for tests at levels."""
     if found.quantity not in (K_AP, ENERGY, K_1, TIME, DASHPOT) or not line.surfaces:
         return ()
     return consistent_values(line, **points) if is_of_loads(points) else ()
@@ -789,7 +789,7 @@ def _consistent(
 def _show_consistent(
     line: LineSource, found: DesignValues, points: Mapping[str, Floats], output: CommandOutput
 ) -> None:
-    """Of a rope with slow pulls: every K_0, and the K_1 and tau that go with its K_ap and H."""
+    """Print every K_0 of a rope with slow pulls, and K_1 and tau that fit its K_ap and H."""
     force, scale = output.unit("N")
     if found.quantity == K_0 and len(line.slow_pulls) > 1:
         misfit = {
@@ -873,7 +873,7 @@ def _remarks(found: DesignValues, place: int) -> list[str]:
 
 
 def _said_of_lines(output: CommandOutput, *pairs: tuple[LineSource, DesignValues]) -> None:
-    """What is stated of each line, its rule, its errata and notes; each sentence once."""
+    """Print the statements, rule, errata and notes of each line, without repeated sentences."""
     told = []
     for line, found in pairs:
         of = f" of {line.name}" if len(pairs) > 1 else ""
@@ -897,11 +897,11 @@ def _said_of_lines(output: CommandOutput, *pairs: tuple[LineSource, DesignValues
 def _shown_levels(
     points: Mapping[str, Floats], strength: float, size: int, system: UnitSystem
 ) -> tuple[list[str], list[list[str]]]:
-    """Headings and cells of the levels, tensions in %RBS as well where that is known."""
+    """Headings and cells of the levels, with tensions also in %RBS if that is known."""
     heads, columns = [], []
     for name, values in points.items():
         unit, factor = _shown(name, system)
-        # names stand below each other's words: there is little room beside seven columns
+        # words of a name are stacked: there is little room beside seven columns
         words = name.replace("_", "\n")
         heads.append(f"{words}\n[{unit}]")
         columns.append([as_given(factor * float(value)) for value in values.ravel()])
@@ -912,13 +912,13 @@ def _shown_levels(
 
 
 def _fold_last(table: Table) -> None:
-    """Let the last column, of words, take the room that numbers leave."""
+    """Give the last column, of words, the space left by the numbers."""
     last = table.columns[-1]
     last.justify, last.no_wrap, last.overflow = "left", False, "fold"
 
 
 def _span(factor: float, low: float, high: float) -> str:
-    """An interval for a table; a dash where there is none."""
+    """An interval for a table; a dash if there is none."""
     if not (np.isfinite(low) and np.isfinite(high)):
         return "-"
     ends, half = (factor * float(low), factor * float(high)), factor * float(high - low) / 2
@@ -934,7 +934,7 @@ def _shown(name: str, system: UnitSystem) -> tuple[str, float]:
 def _document(
     line: LineSource, found: DesignValues, points: Mapping[str, Floats], *, grid: bool
 ) -> dict[str, Any]:
-    """What ``--json`` says, in SI: numbers of a single point, lists of a grid."""
+    """Output of ``--json`` in SI: numbers for a single point, lists for a grid."""
 
     def of(values: Any) -> Any:
         shaped = np.atleast_1d(values).ravel()
@@ -1014,7 +1014,7 @@ def _document(
 def look_up_against(
     source: str, other: str, wanted: LookupRequest, *, output: CommandOutput
 ) -> None:
-    """Print values of two lines, their difference and ratio, and whether the intervals allow it."""
+    """Print values of two lines, their difference and ratio, and its significance."""
     form = _form_of(wanted.out)
     lines = lines_of_source(source)
     first = one_line_of(find_lines(lines, **wanted.search), wanted.quantity, wanted.name)
@@ -1046,7 +1046,7 @@ def look_up_against(
 
 
 def _other(lines: list[LineSource], name: str, quantity: str, first: LineSource) -> LineSource:
-    """The second line: one of SOURCE by its name, else what the name means by itself."""
+    """The second line: one of SOURCE by name, else from a source of that name."""
     of_source = [line for line in lines if line.name == name]
     found = of_source or lines_of_source(name)
     having = [line for line in found if quantity in line.quantities]
@@ -1074,7 +1074,7 @@ def _show_difference(
 ) -> None:
     unit, factor = output.unit(found.unit)
     branch = f", {found.first.branch} branch" if found.first.branch else ""
-    # one specimen in two tests has one name
+    # one specimen in two tests has the same name
     told = [
         f"{line.name} of {line.source}" if first.name == second.name else line.name
         for line in (second, first)
@@ -1140,7 +1140,7 @@ def _difference_table(
 
 
 def _with_halves(found: DesignValues, place: int, factor: float) -> tuple[float, ...]:
-    """A value and the half widths of its intervals, as they are shown."""
+    """A value and the half-widths of its intervals in display units."""
     spans = ((found.surface_low, found.surface_high), (found.low, found.high))
     halves = ((high - low).ravel()[place] / 2 for low, high in spans)
     return tuple(factor * float(one) for one in (found.value.ravel()[place], *halves))
@@ -1177,7 +1177,7 @@ def _difference_document(
     *,
     grid: bool,
 ) -> dict[str, Any]:
-    """What ``--json`` says, in SI: numbers of a single point, lists of a grid."""
+    """Output of ``--json`` in SI: numbers for a single point, lists for a grid."""
 
     def of(values: Any) -> Any:
         shaped = np.atleast_1d(values).ravel()

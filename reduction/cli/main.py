@@ -1,11 +1,11 @@
-"""The command line: every command with its options; the work is imported when it is called.
+"""The command line: all commands with their options; code is imported when it is needed.
 
-Each stands with its options in the module of its group; the work is elsewhere. Heavy
-packages are imported inside the commands, so that ``--help`` answers at once.
+The implementations are in other modules. Heavy packages are imported inside the commands, so that
+``--help`` responds at once.
 """
 
-# annotations are values in this module: as texts, those of every command would be evaluated twice
-# whenever one starts
+# annotations are values in this module: as texts, those of all commands would be evaluated twice at
+# each start
 
 import gc
 import os
@@ -211,7 +211,7 @@ OptionalSpecPath = Annotated[
 
 
 class _DesignName(StrEnum):
-    """Designs that the command line knows."""
+    """Designs available on the command line."""
 
     BOX_BEHNKEN = "box-behnken"
     PLACKETT_BURMAN = "plackett-burman"
@@ -256,7 +256,7 @@ def surface(
 
 
 class _PredictionName(StrEnum):
-    """Predictions that the command line knows."""
+    """Predictions available on the command line."""
 
     HOSE = "hose"
     ARMOUR = "armour"
@@ -319,7 +319,7 @@ class _BranchName(StrEnum):
 
 
 class _Extrapolation(StrEnum):
-    """What is done outside the tested range."""
+    """Treatment of values outside the tested range."""
 
     REFUSE = "refuse"
     FLAG = "flag"
@@ -461,7 +461,7 @@ def lookup(
 
 
 class _CurveName(StrEnum):
-    """What of a cycle becomes one curve."""
+    """Part of a cycle used for one curve."""
 
     MEAN = "mean"
     ASCENDING = "ascending"
@@ -911,14 +911,14 @@ def diff(
 
 
 class _Application(typer.Typer):
-    """The command, which ends in words also where it is interrupted before it has begun."""
+    """The application, which ends with a message even if interrupted during start-up."""
 
     def __call__(self, *words: Any, **options: Any) -> Any:
-        """Run it."""
-        # numpy, which is not loaded yet, takes this as it is: threads for matrices as small as
-        # those of a reduction wait for each other, and longer than the products take
+        """Run the command."""
+        # read by numpy on loading: for matrices as small as these, threads wait for each other
+        # longer than the products take
         os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-        # an archive is many small objects without circles: looked through for those less often
+        # an archive has many small objects without reference cycles: collect less often
         gc.set_threshold(100_000, 20, 50)
         try:
             return super().__call__(*words, **options)

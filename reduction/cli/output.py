@@ -1,4 +1,4 @@
-"""Output of a command: text, tables, one JSON object, or nothing."""
+"""Prints the output of a command: text, tables, one JSON object, or nothing."""
 
 from __future__ import annotations
 
@@ -24,17 +24,17 @@ from reduction.readers.remote_files import in_words
 from reduction.record.errors import ReductionError, SettingsError, refused_by_system
 from reduction.record.plain_text import visible, without_secrets
 
-if TYPE_CHECKING:  # help is printed without the units
+if TYPE_CHECKING:  # help is printed without importing the units
     from reduction.quantities.units import UnitSystem
 
 NOTHING = "-"
-"""What stands in an empty cell, so that every line has as many columns."""
+"""Text of an empty cell, so that every line has the same number of columns."""
 
 
 def plain_table(
     heads: Sequence[str], columns: Sequence[Sequence[str]], *, is_number: Sequence[bool]
 ) -> str:
-    """Return a heading and rows, two spaces or more between the columns.
+    """Return a heading and rows as text, with at least two spaces between columns.
 
     Examples
     --------
@@ -46,7 +46,7 @@ def plain_table(
     """
     padded = []
     for head, column, is_right in zip(heads, columns, is_number, strict=True):
-        # nothing inside a cell looks like the space between two
+        # single spaces inside cells, unlike the gaps between columns
         cells = [" ".join(cell.split()) or NOTHING for cell in (head, *column)]
         widths = [len(cell) if cell.isascii() else cell_len(cell) for cell in cells]
         size = max(widths)
@@ -67,7 +67,7 @@ _LEAST_WORDS = 20
 
 @dataclass
 class CommandOutput:
-    """How one command talks; ``status`` is what it exits with."""
+    """Output channel of one command; ``status`` is its exit status."""
 
     json: bool = False
     quiet: bool = False
@@ -75,10 +75,10 @@ class CommandOutput:
     status: int = 0
     answered: bool = False
     names: dict[str, str] = field(default_factory=dict)
-    """Addresses on the net by the paths of their copies, which nothing that is said names."""
+    """Remote addresses by the paths of their copies, which replace these in all output."""
 
     def say(self, text: str, *, is_verbatim: bool = False) -> None:
-        """One line of text on standard output, unless JSON or nothing was asked for."""
+        """Print a line on standard output, except with JSON or no output."""
         if self.json or self.quiet:
             return
         said = visible(in_words(text, self.names))
@@ -86,18 +86,18 @@ class CommandOutput:
 
     @property
     def is_text(self) -> bool:
-        """Text is said: neither JSON nor nothing was asked for."""
+        """Whether text is printed: neither JSON nor no output was requested."""
         return not (self.json or self.quiet)
 
     def show(self, table: Table) -> None:
-        """A table on standard output, where text is said, with every digit of its numbers."""
+        """Print a table on standard output if text is printed, with all digits of its numbers."""
         if not self.is_text:
             return
         table = _changed(table, lambda cell, _: visible(in_words(cell, self.names)))
         if not sys.stdout.isatty():
             typer.echo(_line_by_line(table))
             return
-        # for eyes alone: what reads a pipe has no use for a blank in a number
+        # only on a terminal: programs that read a pipe do not expect blanks in numbers
         table = _changed(table, lambda cell, is_right: grouped(cell) if is_right else cell)
         console = Console(highlight=False)
         has_room = _least_width(table, console) <= console.width
@@ -105,48 +105,48 @@ class CommandOutput:
 
     @property
     def system(self) -> UnitSystem:
-        """Units of what is shown."""
+        """Unit system for display."""
         return cast("UnitSystem", self.units)
 
     def unit(self, si_unit: str) -> tuple[str, float]:
-        """Unit in which numbers are shown, and what those in SI are multiplied with."""
+        """Display unit, and the factor to it from SI."""
         from reduction.quantities.units import display_unit
 
         return display_unit(si_unit, self.system)
 
     def say_each(self, what: str, texts: Iterable[object]) -> None:
-        """Lines of one kind: notes, sources."""
+        """Print several lines of one kind, such as notes or sources."""
         for text in texts:
             self.say(f"{what}: {text}")
 
     def answer(self, document: object) -> None:
-        """The JSON object of ``--json``; the only thing on standard output then."""
+        """Print the JSON object of ``--json``, then the only text on standard output."""
         if self.json:
-            # a path in JSON has its backslashes doubled
+            # a path in JSON has doubled backslashes
             names = {json_module.dumps(path)[1:-1]: name for path, name in self.names.items()}
             text = json_module.dumps(document, indent=2, allow_nan=False)
             typer.echo(in_words(text, names))
             self.answered = True
 
     def error(self, text: str) -> None:
-        """One error on standard error."""
+        """Print an error on standard error."""
         said = visible(without_secrets(in_words(text, self.names)))
         typer.echo(_between_words(said, sys.stderr), err=True)
 
     def defect(self, error: Exception) -> None:
-        """An error that is no fault of the person's."""
+        """Print an error that is a defect of this program."""
         self.error(
             f"internal error, a defect of this program: {type(error).__name__}: {error}. "
             "Set REDUCTION_DEBUG=1 to see where, and please report it."
         )
 
     def raise_status(self, status: int) -> None:
-        """Keep the highest status seen."""
+        """Keep the highest status so far."""
         self.status = max(self.status, status)
 
 
 def _changed(table: Table, change: Callable[[str, bool], str]) -> Table:
-    """A table with other texts: of a cell, and of whether it stands flush right."""
+    """A table with changed texts, by cell and by whether it is right-aligned."""
     said = copy(table)
     said.columns = [column.copy() for column in table.columns]
     said.rows = []
@@ -158,7 +158,7 @@ def _changed(table: Table, change: Callable[[str, bool], str]) -> Table:
 
 
 def _between_words(text: str, stream: TextIO) -> str:
-    """Lines that a terminal would break within a word, broken between words; else as it is."""
+    """Break lines between words where a terminal would break them inside a word."""
     if not stream.isatty():
         return text
     width = Console(file=stream).width
@@ -176,7 +176,7 @@ def _between_words(text: str, stream: TextIO) -> str:
 
 
 def _least_width(table: Table, console: Console) -> int:
-    """Columns in which no number is cut, and a column of words has twenty at most."""
+    """Width at which no number is cut, with at most twenty columns for words."""
     options = console.options.update(max_width=10_000)
     total = 0
     for column in table.columns:
@@ -190,12 +190,12 @@ def _least_width(table: Table, console: Console) -> int:
 
 
 def _words(cell: object) -> str:
-    """A cell without its markup, on one line."""
+    """A cell without markup, on one line."""
     return " ".join(Text.from_markup(str(cell), emoji=False).plain.split())
 
 
 def _line_by_line(table: Table) -> str:
-    """A table for a pipe, under its title."""
+    """A table for a pipe, below its title."""
     plain = plain_table(
         [_words(column.header) for column in table.columns],
         [[_words(cell) for cell in column.cells] for column in table.columns],
@@ -205,7 +205,7 @@ def _line_by_line(table: Table) -> str:
 
 
 def _row_by_row(table: Table) -> Table:
-    """A table of a heading and a cell a line, rows parted by an empty line."""
+    """A table with a heading and a cell per line, and empty lines between rows."""
     found = Table.grid(padding=(0, 2, 0, 0))
     found.title, found.title_style, found.title_justify = table.title, "bold", "left"
     heads = [" ".join(str(column.header).split()) for column in table.columns]
@@ -219,7 +219,7 @@ def _row_by_row(table: Table) -> Table:
 
 @contextmanager
 def guarded(output: CommandOutput) -> Iterator[CommandOutput]:
-    """Run a command body; turn every ending into a message and an exit status."""
+    """Run a command body; convert every outcome to a message and an exit status."""
     try:
         if output.units not in ("si", "us"):
             raise SettingsError("--units is not known", found=repr(output.units), needed="si or us")
@@ -230,7 +230,7 @@ def guarded(output: CommandOutput) -> Iterator[CommandOutput]:
         output.error("interrupted; archives that were finished are kept")
         output.status = INTERRUPTED
     except BrokenPipeError:
-        # the reader of a pipe went away: not an error of ours, and nothing more can be said
+        # the reader of the pipe has closed it: not our error, and no more can be printed
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     except OSError as error:
         if error.errno is None:

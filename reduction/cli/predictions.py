@@ -1,4 +1,4 @@
-"""The commands predict and compare."""
+"""Implements the commands predict and compare."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ from reduction.report.text_style import shown
 def _show_designs(
     designs: Sequence[DesignedHose], target: HoseTarget, output: CommandOutput
 ) -> None:
-    """Print each way to reach a target, and why there is none."""
+    """Print each design that reaches a target, or the reason why there is none."""
     force, per_newton = output.unit("N")
     small, per_metre = ("in", 1 / 0.0254) if output.system == "us" else ("mm", 1e3)
     load = "" if target.tension is None else f" and {per_newton * target.tension:.5g} {force}"
@@ -77,7 +77,7 @@ def _show_designs(
 
 
 def _designed(one: DesignedHose) -> dict[str, Any]:
-    """What ``--json`` says of one way to reach a target, in SI."""
+    """Output of ``--json`` for one design that reaches a target, in SI."""
     answer: dict[str, Any] = {"varied": one.varied, "refusal": one.refusal or None}
     if one.design is None or one.events is None:
         return answer
@@ -116,7 +116,7 @@ _EVENTS = {
 
 
 def predict_hose(path: Path, *, out: Path | None, output: CommandOutput) -> None:
-    """Predict the hose of SPEC.toml and print it; with ``out``, write archive, tables and page."""
+    """Predict the hose of SPEC.toml and print it; if ``out``, write archive, tables and page."""
     plan, file = load_hose(path)
     target = None if file.target is None else HoseTarget(**file.target.model_dump())
     hose = predict_from_plan(plan)
@@ -213,7 +213,7 @@ def _show_hose(hose: PredictedHose, output: CommandOutput) -> None:
 
 
 def _spread(hose: PredictedHose, event: str) -> dict[str, float]:
-    """Standard uncertainty of strain and tension at an event; NaN where none is known."""
+    """Standard uncertainty of strain and tension at an event; NaN if unknown."""
     found = getattr(hose.uncertainty, "cord_break" if event == "break" else event, None)
     known = found is not None and bool(hose.uncertainty.source)
     return {
@@ -223,7 +223,7 @@ def _spread(hose: PredictedHose, event: str) -> dict[str, float]:
 
 
 def _hose_document(hose: PredictedHose) -> dict[str, Any]:
-    """What ``--json`` says of a hose, in SI."""
+    """Output of ``--json`` for a hose, in SI."""
     prediction, uncertainty = hose.prediction, hose.uncertainty
     known = bool(uncertainty.source)
     return {
@@ -303,7 +303,7 @@ _OF_LAYER = {
 
 
 def predict_cable(path: Path, *, out: Path | None, output: CommandOutput) -> None:
-    """Predict the armour of SPEC.toml and print it; with ``out``, write tables and page."""
+    """Predict the armour of SPEC.toml and print it; if ``out``, write tables and page."""
     case = load_armour_case(path)
     with at_place(f"{path}: "):
         found = predict_armour_case(
@@ -407,7 +407,7 @@ def _show_armour(found: PredictedArmour, output: CommandOutput) -> None:
 
 
 def _armour_document(found: PredictedArmour) -> dict[str, Any]:
-    """What ``--json`` says of an armour, in SI: by theory, one number a layer."""
+    """Output of ``--json`` for an armour, in SI: by theory, one number per layer."""
     quantities = _OF_WIRE | _MORE
     theories: dict[str, Any] = {
         theory: {name: plain(getattr(response, name)[:, 0]) for name in quantities}
@@ -460,7 +460,7 @@ _UNITS = {
 
 
 def predict_wave(path: Path, *, out: Path | None, output: CommandOutput) -> None:
-    """Predict the wave load of SPEC.toml and print it; with ``out``, write table and page."""
+    """Predict the wave load of SPEC.toml and print it; if ``out``, write table and page."""
     name, case = path.stem, load_wave_case(path)
     with at_place(f"{path}: "):
         found = predict_wave_load(**case)
@@ -533,7 +533,7 @@ def _show_wave_load(found: PredictedWaveLoad, output: CommandOutput) -> None:
 
 
 def _wave_load_document(found: PredictedWaveLoad) -> dict[str, Any]:
-    """What ``--json`` says of a wave load, in SI."""
+    """Output of ``--json`` for a wave load, in SI."""
     load, theory = found.load, found.theory
     return {
         "time": plain(load.time),
@@ -565,7 +565,7 @@ _EVENT_WORDS = {"pick_up": "cords pick up", "working": "working load", "break": 
 
 
 def compare_test(measured: Path, spec: Path, *, out: Path | None, output: CommandOutput) -> None:
-    """Compare a test with the hose of SPEC.toml and print it; with ``out``, write products."""
+    """Compare a test with the hose of SPEC.toml and print it; if ``out``, write products."""
     hose, file = load_hose(spec)
     plan = ComparisonPlan(
         name=hose.name,
@@ -679,7 +679,7 @@ def _shown_unit(name: str, system: UnitSystem) -> tuple[str, float]:
 
 
 def _comparison_document(named: NamedComparison) -> dict[str, Any]:
-    """What ``--json`` says of a comparison, in SI; every difference is predicted less measured."""
+    """Output of ``--json`` for a comparison, in SI; differences are predicted minus measured."""
     found = named.comparison
     judged, validation = found.differences[found.judged], found.validation
     return {

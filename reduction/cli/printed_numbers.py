@@ -1,4 +1,4 @@
-"""Numbers as a command says them: null for what is not known, short text for a table."""
+"""Formats numbers for commands: null if unknown, short text for tables."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _LARGE, _HUGE = 1e5, 1e7
 
 
 def plain(values: ArrayLike) -> Any:
-    """Numbers for JSON, nested as they are; None where there is no finite one."""
+    """Numbers for JSON in the same nesting; None if not finite."""
     array = np.asarray(values)
     if array.ndim:
         return [plain(entry) for entry in array]
@@ -25,17 +25,17 @@ def plain(values: ArrayLike) -> Any:
 
 
 def short(value: float, digits: int = 5) -> str:
-    """A number for a table; a dash where there is none."""
+    """A number for a table; a dash if there is none."""
     return plain_number(value, digits) if math.isfinite(value) else "-"
 
 
 def as_given(value: float) -> str:
-    """A level for a table: of a large one no digit before the point is lost."""
+    """A level for a table, with all digits before the point."""
     return f"{value:.0f}" if _LARGE <= abs(value) < _HUGE else short(value)
 
 
 def within(value: float, *halves: float) -> str:
-    """A number that is known within half widths of intervals, to two digits of the narrowest.
+    """A number with the precision of its interval half-widths: two digits of the narrowest.
 
     Examples
     --------
@@ -47,10 +47,10 @@ def within(value: float, *halves: float) -> str:
 
 
 def table_of(*headings: str, texts: int = 1, title: str | None = None) -> Table:
-    """An empty table whose first columns are text and whose others are numbers."""
+    """An empty table whose first columns are text and the others numbers."""
     table = Table(box=None, pad_edge=False, title=title, title_justify="left", title_style="bold")
     for number, heading in enumerate(headings):
-        # where there is little room names are broken, and numbers never
+        # on narrow screens names are broken, but never numbers
         if number < texts:
             table.add_column(escape(heading), overflow="fold")
         else:

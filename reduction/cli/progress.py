@@ -1,4 +1,4 @@
-"""Progress of a campaign on standard error."""
+"""Prints the progress of a campaign on standard error."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ _WORDS = {
     "survey": "reading", "reduce": "reducing", "tables": "writing tables",
     "report": "writing the report",
 }  # fmt: skip
-"""Stages of a run, in words for a person."""
+"""Descriptions of the stages of a run."""
 
-_MOST_LETTERS = 100  # of what stands beside the status of a test
+_MOST_LETTERS = 100  # of the text beside the status of a test
 
 
 class _Count(MofNCompleteColumn):
-    """How many of how many; nothing where nobody knows how many there are."""
+    """Count out of a total; empty if the total is unknown."""
 
     def render(self, task: Task) -> Text:
         """Text of the column."""
@@ -41,7 +41,7 @@ class _Count(MofNCompleteColumn):
 
 
 class _CampaignProgress:
-    """Tells a person how far a campaign is."""
+    """Prints the progress of a campaign."""
 
     def __init__(self, bar: Progress | None = None, *, is_quiet: bool = False) -> None:
         self._bar = bar
@@ -51,7 +51,7 @@ class _CampaignProgress:
         self._running = ""
 
     def stage(self, name: str, n_tests: int) -> None:
-        """A stage begins."""
+        """Start a stage."""
         self._stage, self._done, self._total = name, 0, n_tests
         self._running = ""
         if self._bar is not None:
@@ -61,12 +61,12 @@ class _CampaignProgress:
         self._show()
 
     def begun(self, test: str) -> None:
-        """Work on a test began."""
+        """Start work on a test."""
         self._running = test
         self._show()
 
     def ended(self, test: str, status: TestStatus | None = None) -> None:
-        """Work on a test ended: a line where it has a status."""
+        """End work on a test; print a line if it has a status."""
         self._done += 1
         self._running = ""
         self._show()
@@ -74,7 +74,7 @@ class _CampaignProgress:
             return
         width = len(str(self._total))
         words = [f"{self._done:{width}}/{self._total} {test} {status.status}"]
-        if status.message and not status.exit_status:  # an error is said once, at the end
+        if status.message and not status.exit_status:  # an error is printed only once, at the end
             words[0] += f": {textwrap.shorten(status.message, _MOST_LETTERS, placeholder='...')}"
         if status.status != "unchanged":
             words.append(f"{status.seconds:.1f} s")
@@ -87,7 +87,7 @@ class _CampaignProgress:
 
     def _show(self) -> None:
         if self._bar is not None and self._task is not None:
-            # at once: what is short would be over before the bar is drawn again by itself
+            # refresh at once: a short stage would be over before the next refresh
             self._bar.update(
                 self._task, description=self._words(), completed=self._done, refresh=True
             )
@@ -104,7 +104,7 @@ class _CampaignProgress:
 
 @contextmanager
 def campaign_progress(output: CommandOutput) -> Iterator[_CampaignProgress]:
-    """Lines on standard error, and a bar below them on a terminal; nothing where none is wanted."""
+    """Print lines on standard error, with a bar on a terminal; nothing if disabled."""
     if not output.is_text or not sys.stderr.isatty():
         yield _CampaignProgress(is_quiet=not output.is_text)
         return

@@ -1,6 +1,6 @@
-"""Addresses where a command takes a path: fetched to a local copy.
+"""Remote addresses in place of paths: fetched to a local copy.
 
-What a command says names the addresses, never the copies.
+Messages name the addresses, never the copies.
 """
 
 from __future__ import annotations
@@ -28,13 +28,13 @@ from reduction.record.plain_text import shown_address
 if TYPE_CHECKING:
     from reduction.campaign.plan import Campaign
 
-# a machine that is shut down or a queue that ends a job; a terminal that is closed, where there are
+# from a machine shutting down or a queue ending a job; from a closed terminal, if supported
 _REQUESTS = [one for one in Signals if one.name in ("SIGTERM", "SIGHUP")]
 
 
 @contextmanager
 def campaign_at(path: Path, *, allow_remote: bool, output: CommandOutput) -> Iterator[Campaign]:
-    """Load a campaign with its logs at hand."""
+    """Load a campaign and fetch its logs."""
     from reduction.campaign.load import staged_campaign  # a look-up needs no campaign
 
     with ExitStack() as opened:
@@ -53,7 +53,7 @@ def campaign_at(path: Path, *, allow_remote: bool, output: CommandOutput) -> Ite
 
 @contextmanager
 def in_order() -> Iterator[None]:
-    """Take a request to end as an interruption: lock, workers and copies are put away first."""
+    """Treat a request to end like an interruption: lock, workers and copies are cleaned up."""
     before = {}
     if current_thread() is main_thread():
         asked = [number for number in _REQUESTS if getsignal(number) == SIG_DFL]

@@ -1,4 +1,4 @@
-"""The command reproduce."""
+"""Implements the command reproduce."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ _COLUMNS = (
 
 
 def reproduce_reports(report: str | None, *, out: Path | None, output: CommandOutput) -> None:
-    """Recompute and print counts, errata and open cells; with ``out``, write page and table."""
+    """Recompute and print counts, errata and open cells; if ``out``, write page and table."""
     reports = reproduce(None if report is None else _known(report))
     for one, items in reports.items():
         _show(one, items, output)
@@ -63,7 +63,7 @@ def reproduce_reports(report: str | None, *, out: Path | None, output: CommandOu
 
 
 def reproduce_erratum(report: str | None, erratum: str, *, output: CommandOutput) -> None:
-    """Print one known fault of a page: what is right, why, and its cells."""
+    """Print one known fault of a page: the correct value, the reason, and its cells."""
     reports = reproduce(None if report is None else _known(report))
     faults = [one for name, items in reports.items() for one in touched_errata(name, items)]
     found = [one for one in faults if one.erratum.id.lower() == erratum.lower()]
@@ -153,7 +153,7 @@ def _unexplained(item: ReproducedItem) -> str:
 
 
 def _document(reports: Mapping[ReportId, Sequence[ReproducedItem]]) -> dict[str, Any]:
-    """What ``--json`` says; numbers are in the unit of the page, which is beside them."""
+    """Output of ``--json``; numbers have the unit of the page, which is given with them."""
     return {
         "reports": {report: counts_of(items) for report, items in reports.items()},
         "items": [_described(item) for items in reports.values() for item in items],

@@ -1,4 +1,4 @@
-"""Errors of usage: one line on standard error, or JSON."""
+"""Reports usage errors in one line on standard error, or as JSON."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _MANY = re.compile(r"(?<![\d.])\d{6,}")
 
 
 def grouped(text: str) -> str:
-    """A number, or the ends of an interval, with a blank between thousands from 100000 on.
+    """A number or interval with a blank between thousands from 100000 on.
 
     Examples
     --------
@@ -38,14 +38,14 @@ USAGE = 2
 
 _LONGEST = 500
 
-# click's own class, which some versions of typer carry within themselves
+# the class of click, which some versions of typer include
 _UsageError: type[Exception] = typer.BadParameter.__mro__[1]
 
 _URL = re.compile(r"^([a-z][a-z0-9+.-]+):/+", re.IGNORECASE)
 
 
 def here(path: Path) -> Path:
-    """A path of this machine; an address on the net is refused in words."""
+    """A local path; a remote address is refused with an explanation."""
     shown = _address_in(path)
     if shown:
         raise typer.BadParameter(
@@ -55,7 +55,7 @@ def here(path: Path) -> Path:
 
 
 def written_here(path: Path | None) -> Path | None:
-    """A path of this machine to write to, where one is given; an address is refused in words."""
+    """A local path to write to, if given; an address is refused with an explanation."""
     shown = _address_in(path)
     if shown:
         raise typer.BadParameter(
@@ -65,7 +65,7 @@ def written_here(path: Path | None) -> Path | None:
 
 
 def _address_in(path: Path | None) -> str:
-    """What may be shown of an address that was given as a path; empty where there is none."""
+    """Safe form of an address given as a path; empty if there is none."""
     address = _URL.match(str(path))
     if address is None:
         return ""
@@ -73,16 +73,16 @@ def _address_in(path: Path | None) -> str:
 
 
 class Commands(TyperGroup):
-    """The commands; the answer to a line that none of them can read is in the form of theirs."""
+    """The command group; unparsable lines get an answer in the form of its commands."""
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:
-        """What each command does, whole, where no frame is drawn."""
+        """Print the full description of each command if no frame is drawn."""
         known = [(name, self.commands[name]) for name in self.list_commands(ctx)]
         with formatter.section("Commands"):
             formatter.write_dl([(name, one.get_short_help_str(_LONGEST)) for name, one in known])
 
     def main(self, args: Sequence[str] | None = None, *rest: Any, **options: Any) -> Any:
-        """Run the command that the line names."""
+        """Run the command in the arguments."""
         given = list(sys.argv[1:] if args is None else args)
         options["standalone_mode"] = False
         _draw_help(self, is_drawn=sys.stdout.isatty())
@@ -96,14 +96,14 @@ class Commands(TyperGroup):
 
 
 def _draw_help(command: Any, *, is_drawn: bool) -> None:
-    """Frames and colours in the help of a command and those below it, or plain text for a pipe."""
+    """Set frames and colours for the help of a command and its subcommands, or plain text."""
     command.rich_markup_mode = "rich" if is_drawn else None
     for below in getattr(command, "commands", {}).values():
         _draw_help(below, is_drawn=is_drawn)
 
 
 def _refuse(given: Sequence[str], error: Any) -> int:
-    """One line on standard error; help where nothing was asked for."""
+    """Print one line on standard error, or the help if there are no arguments."""
     message = error.format_message()
     if not given:
         typer.echo(message, err=True)

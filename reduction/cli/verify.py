@@ -1,4 +1,4 @@
-"""The command verify."""
+"""Implements the command verify."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from reduction.record.errors import ArchiveError, SettingsError
 def verify_products(
     processed: Path, *, campaign: Path | None, allow_remote: bool, output: CommandOutput
 ) -> None:
-    """Verify one campaign, or all below a folder; a finding is exit status 6."""
+    """Verify one campaign, or all below a folder; findings give exit status 6."""
     folders = processed_folders(processed)
     if campaign is not None and folders != [processed]:
         raise SettingsError(
@@ -29,7 +29,7 @@ def verify_products(
     for folder in folders:
         try:
             path = campaign or find_campaign(folder, name=folder.absolute().name)
-        except SettingsError as error:  # the other folders are looked at all the same
+        except SettingsError as error:  # the other folders are still checked
             output.error(f"{folder}: {error}")
             output.raise_status(error.exit_status)
             answers.append({"processed": str(folder), "is_sound": False, "problem": str(error)})

@@ -1,4 +1,4 @@
-"""Axes that every archive may have: errors that numbers share, and notes."""
+"""Axes common to all archives: shared errors, and notes."""
 
 from __future__ import annotations
 

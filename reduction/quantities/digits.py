@@ -1,29 +1,29 @@
-"""Numbers as a person reads them: without a power of ten where digits alone will do."""
+"""Formats numbers for reading, with powers of ten only where digits do not suffice."""
 
 from __future__ import annotations
 
 from math import isfinite
 
 _LOW, _HIGH, _HIGHEST = 1e-4, 1e7, 1e9
-"""Where a number has no power of ten; to the third where it ends by its uncertainty."""
+"""Range of numbers shown without a power of ten; up to the third if rounded by uncertainty."""
 
 _MOST_PLACES = 12
 
 
 def plain_number(value: float, digits: int = 5) -> str:
-    """Return a number of so many digits; before the point zeros stand for those that it has not.
+    """Return a number to a given number of digits; zeros fill the places before the point.
 
     Parameters
     ----------
     value : float
         The number. [any]
     digits : int
-        Of it, without zeros at its end. [1]
+        Number of significant digits, without trailing zeros. [1]
 
     Returns
     -------
     text : str
-        With a power of ten below 0.0001 and from ten millions on.
+        Text with a power of ten below 0.0001 and from ten million on.
 
     Examples
     --------
@@ -37,23 +37,23 @@ def plain_number(value: float, digits: int = 5) -> str:
 
 
 def fixed_number(value: float, places: int, *, mark: str = ",") -> str:
-    """Return a number to so many places; below zero they are zeros before the point.
+    """Return a number to a given number of decimal places; negative ones are before the point.
 
-    What rounds to zero has no sign; a half goes to the even digit.
+    A value that rounds to zero has no sign; a half rounds to the even digit.
 
     Parameters
     ----------
     value : float
         The number. [any]
     places : int
-        Behind the point. [1]
+        Decimal places. [1]
     mark : str, optional
-        Between thousands.
+        Thousands separator.
 
     Returns
     -------
     text : str
-        Without a power of ten.
+        Text without a power of ten.
 
     Examples
     --------
@@ -62,26 +62,26 @@ def fixed_number(value: float, places: int, *, mark: str = ",") -> str:
     >>> fixed_number(280991.3, -2, mark="")
     '281000'
     """
-    # the same in every language: one quotient, one product
+    # the same in every language: one division, one multiplication
     unit = 10.0 ** max(-places, 0)
     rounded = round(value / unit) * unit if places < 0 else round(value, places)
     return f"{rounded + 0.0:,.{max(places, 0)}f}".replace(",", mark)
 
 
 def places_of(value: float, digits: int) -> int:
-    """Return the place of the last of so many digits, below zero where it is before the point.
+    """Return the decimal place of the last significant digit, negative before the point.
 
     Parameters
     ----------
     value : float
         The number. [any]
     digits : int
-        Of it. [1]
+        Number of significant digits. [1]
 
     Returns
     -------
     places : int
-        Twelve at most; zero of the number zero. [1]
+        At most twelve; zero for the number zero. [1]
 
     Examples
     --------
@@ -95,21 +95,21 @@ def places_of(value: float, digits: int) -> int:
 
 
 def places_within(value: float, *halves: float) -> int | None:
-    """Return the places of a number that is known within half widths: two digits of the narrowest.
+    """Return the decimal places for a number with given half-widths: two digits of the narrowest.
 
-    The number keeps two digits of its own at least, and has seven at most.
+    The number has at least two and at most seven digits.
 
     Parameters
     ----------
     value : float
         The number. [any]
     *halves : float
-        Half widths of its intervals; NaN of one that is not known. [as value]
+        Half-widths of its intervals; NaN if unknown. [as value]
 
     Returns
     -------
     places : int or None
-        None where no half width is known, or the number needs a power of ten. [1]
+        None if no half-width is known, or the number needs a power of ten. [1]
 
     Examples
     --------

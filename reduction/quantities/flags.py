@@ -1,4 +1,4 @@
-"""Meanings of flags: what each value, or each bit, of a flag says."""
+"""Meaning of each value, or each bit, of a flag."""
 
 from __future__ import annotations
 

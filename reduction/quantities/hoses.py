@@ -1,4 +1,4 @@
-"""Numbers of hoses: predictions, and measured curves against them."""
+"""Quantities of hoses: predictions, and measured curves compared with them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Numbers of the three-parameter line, of holds, and of rope programmes."""
+"""Quantities of the three-parameter line, of holds, and of rope programmes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Numbers of the modulus curves: bins, segments, first loading, rubber, ratios."""
+"""Quantities of the modulus curves: bins, segments, first loading, rubber, ratios."""
 
 from __future__ import annotations
 

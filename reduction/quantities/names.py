@@ -1,7 +1,7 @@
-"""The names: one row a quantity, the same in code, netCDF, tables and documents.
+"""All names: one row per quantity, the same in code, netCDF, tables and documents.
 
-A name that is not here may not be a variable of a product or a column of a table.  Symbols stand
-only beside their source.
+Any variable of a product or column of a table must be listed here.  Symbols are given only with
+their source.
 """
 
 from __future__ import annotations
@@ -32,20 +32,20 @@ RESPONSES = (
     "loss_factor",
     "dashpot_coefficient",
 )
-"""What a response surface can be of."""
+"""Possible responses of a surface."""
 
 SCALES = {
     "log_frequency_times_": "logarithm of frequency times {}",
     "log_": "logarithm of {}",
     "box_cox_": "Box-Cox transform of {}",
 }
-"""What stands before a response in the name of a surface of its transform, longest first."""
+"""Prefixes of a transformed response in the name of its surface, longest first."""
 
 SURFACE_NAMES = (*RESPONSES, *(f"{scale}{name}" for scale in SCALES for name in RESPONSES))
-"""Names of surfaces: of a response, or of its transform, which has no unit."""
+"""Names of surfaces: a response, or its transform, which has no unit."""
 
 RESPONSE_PATTERNS = (*OF_EVERY_SURFACE, *OF_RESPONSES)
-"""What is said of a response; its name, unit and unit squared stand in angle brackets."""
+"""Quantities of a response; its name, unit and unit squared are in angle brackets."""
 
 OF_TEST = (*OF_RECORD, *OF_MODULI, *OF_LINE, *OF_PROGRAMME, *OF_STEPS)
 
@@ -60,16 +60,16 @@ SINGLE_QUANTITIES: dict[str, Quantity] = {
         *OF_PREDICTIONS, *OF_PROPERTIES, *AXES, *OF_TEST,
     )
 }  # fmt: skip
-"""Names that stand for themselves; of one that several products have, the row of a test."""
+"""Fixed names; for a name in several products, the row of a test."""
 
 
 def _squared(unit: str) -> str:
-    """Unit of a square: ``J m-1`` to ``J2 m-2``."""
+    """Square of a unit: ``J m-1`` to ``J2 m-2``."""
     return re.sub(r"([A-Za-z]+)(-?\d+)?", lambda found: f"{found[1]}{2 * int(found[2] or 1)}", unit)
 
 
 def response_of_surface(name: str) -> str:
-    """The response that a surface is of, whatever its scale.
+    """The response of a surface, whatever its scale.
 
     Examples
     --------
@@ -80,10 +80,10 @@ def response_of_surface(name: str) -> str:
 
 
 def rows_of_response(name: str) -> Iterator[Quantity]:
-    """Give what is said of one surface, of a response or its transform; or of several together."""
+    """Yield the quantities of one surface (of a response or its transform), or of several."""
     of = response_of_surface(name)
     scale = name.removesuffix(of)
-    # a surface of a transform is evaluated in the unit of the response itself
+    # a surface of a transform is evaluated in the unit of the response
     own = "response_unit" if name == "response" else SINGLE_QUANTITIES[of].unit
     unit = "1" if scale else "unit" if name == "response" else own
     own_words = of.replace("_", " ")
@@ -91,7 +91,7 @@ def rows_of_response(name: str) -> Iterator[Quantity]:
     if scale:
         own_words = f"{own_words}, by the {words}"
     units = {"<unit>": unit, "<unit squared>": _squared(unit), "<response unit>": own}
-    # what is measured is not transformed
+    # measured quantities are not transformed
     for row in OF_EVERY_SURFACE if scale else RESPONSE_PATTERNS:
         said = own_words if row.unit == "<response unit>" else words
         yield row._replace(
@@ -100,7 +100,7 @@ def rows_of_response(name: str) -> Iterator[Quantity]:
             long_name=f"{said}: {row.long_name}",
             uncertainty_is=f"{said}: {row.uncertainty_is}" if row.uncertainty_is else "",
             group=row.group or ("coefficients" if scale else ""),
-            # a table has the responses below each other
+            # a table has one response below another
             tables=row.tables if name == "response" else (),
         )
 
@@ -110,29 +110,29 @@ _OF_SURFACES = tuple(row for name in SURFACE_NAMES for row in rows_of_response(n
 QUANTITIES: dict[str, Quantity] = SINGLE_QUANTITIES | {
     row.name: row for row in (*_OF_SURFACES, *rows_of_response("response"))
 }
-"""Every name that may stand in a product or a table, without its companions."""
+"""All names allowed in a product or a table, without their companions."""
 
 
 def quantity(name: str) -> Quantity:
-    """Return the row of a name; `KeyError` where there is none."""
+    """Return the row of a name; `KeyError` if unknown."""
     return QUANTITIES[name]
 
 
 TEST_SCHEMA = schema_from(OF_TEST, AXES)
-"""Every variable that a reduced test may have."""
+"""All possible variables of a reduced test."""
 
 STEPWISE_SCHEMA = TEST_SCHEMA | schema_from(IN_PLACE_OF_RECORD)
-"""The same of a test with weights; some names stand along ``step`` there."""
+"""The same for a test with weights; some names have the axis ``step`` there."""
 
 SURFACE_SCHEMA = schema_from(_SHARED_ERRORS[:1], OF_EXPERIMENTS, _OF_SURFACES, _NOTES)
-"""Every variable that an archive of experiments may have."""
+"""All possible variables of an archive of experiments."""
 
 PREDICTION_SCHEMA = schema_from(OF_PREDICTIONS, _NOTES)
 
 COMPARISON_SCHEMA = schema_from(OF_COMPARISONS, AXES)
 
 PROPERTY_SCHEMA = schema_from(OF_PROPERTIES, _SHARED_ERRORS)
-"""Every variable that an archive of change-in-length properties may have."""
+"""All possible variables of an archive of change-in-length properties."""
 
 OUTCOME_SCHEMA = schema_from(OF_OUTCOMES)
 
@@ -142,4 +142,4 @@ ON_PAGE: dict[str, list[Quantity]] = {
     table: [row for row in _SHOWN if row.page[0] == table]
     for table in dict.fromkeys(row.page[0] for row in _SHOWN)
 }
-"""Tables of the page to the rows that name them."""
+"""Rows by the table of the page that names them."""

@@ -1,4 +1,4 @@
-"""Numbers of outcomes without a log: breaks, abrasion, cycles to failure."""
+"""Quantities of outcomes without a log: breaks, abrasion, cycles to failure."""
 
 from __future__ import annotations
 

@@ -1,8 +1,7 @@
-"""One row a number: what it is, where it stands in an archive, and where it is shown.
+"""One row per quantity: its meaning, its place in an archive, and where it is shown.
 
-A number is declared once.  Its variable in the archive, with uncertainty and other companions,
-its columns in CSV tables, its column on the page and its line in the reference are all written
-from its row.
+A quantity is declared once.  Its variable in the archive with uncertainty and other companions, its
+columns in CSV tables, its column on the page and its line in the reference all derive from its row.
 """
 
 from __future__ import annotations
@@ -14,7 +13,7 @@ from typing import Any, NamedTuple
 TEXT = "U"
 
 COMPONENT = "uncertainty_component"
-"""Axis of the errors that numbers share."""
+"""Axis of the errors shared by numbers."""
 
 READING = "a reading; its uncertainty is that of the channel"
 
@@ -61,7 +60,7 @@ SUFFIXES = {
     "_maximum": ("maximum over the cycles: {}", "f8", "bound: highest value seen"),
     "_scatter": ("standard deviation over the cycles: {}", "f8", "a measure of spread"),
 }
-"""Suffix: its long name, type, and why it has no uncertainty of its own."""
+"""Suffix: its long name, type, and the reason for having no uncertainty."""
 
 GROUPS = {
     "specimens": "specimens: diameter readings and history",
@@ -97,54 +96,54 @@ GROUPS = {
     "uncertainty": "random parts of uncertainties, and contributions of shared errors",
     "notes": "warnings and notes on the results",
 }
-"""Groups of archives and their contents; the root holds the most-used numbers."""
+"""Groups of archives and their contents; the root holds the most used quantities."""
 
 _PARTS = ("_random_standard_uncertainty", "_uncertainty_contribution")
 
 
 class Quantity(NamedTuple):
-    """One number, label or flag of an archive or a table.
+    """One quantity, label or flag of an archive or a table.
 
-    A tuple: each start makes 6,000, and a frozen data class takes four times as long.
+    It is a tuple because each start makes 6,000, and a frozen data class takes four times as long.
 
     Parameters
     ----------
     name : str
-        In code, archives, tables and documents.
+        Name in code, archives, tables and documents.
     unit : str
-        SI, as CF writes it; empty for text.
+        SI unit in CF notation; empty for text.
     long_name : str
-        What it means, in words.
+        Meaning in words.
     dims : tuple of str
-        In order; empty for a scalar.
+        Dimensions in order; empty for a scalar.
     dtype : str
         ``f8``, ``i4``, ``i1``, ``u2`` or `TEXT`.
     no_uncertainty : str
-        Why there is no standard uncertainty; empty where there is one.
+        Reason for having no standard uncertainty; empty if there is one.
     companions : tuple of str
-        Those of `SUFFIXES` that stand beside it.
+        Suffixes from `SUFFIXES` stored beside it.
     uncertainty_dims : tuple of str, optional
-        Of the standard uncertainty, where it has fewer.
+        Dimensions of the standard uncertainty, if it has fewer.
     uncertainty_is : str
-        What the standard uncertainty is, where the usual words would not say it.
+        Description of the standard uncertainty, if the usual words do not fit.
     qualified_by : tuple of str
-        Other variables that say how good it is.
+        Other variables that describe its quality.
     flags : dict of str to int
-        Meaning to value, or to mask where ``is_mask``.
+        Value, or mask if ``is_mask``, by meaning.
     bounds : str
         Name of the variable with the edges of the cells.
     group : str
-        Of the archive; empty in the root.
+        Group of the archive; empty for the root.
     tables : tuple of str
-        CSV tables that have it as a column.
+        CSV tables with it as a column.
     page : tuple of str
-        Table of the page, and the heading of its column there.
+        Table of the page, and its column heading there.
     percent : bool
-        Whether people are shown it in percent.
+        Whether it is displayed in percent.
     source : str
         Report and symbol: 000 is WHOI-2004-06, 002 WHOI-2005-10, 003 CG-D-39-80.
     standard_name : str, optional
-        Of CF, where its table has one.
+        CF standard name, if there is one.
     """
 
     name: str
@@ -169,37 +168,37 @@ class Quantity(NamedTuple):
 
     @property
     def is_text(self) -> bool:
-        """True for labels."""
+        """Whether it is a label."""
         return self.dtype == TEXT
 
     @property
     def is_bounds(self) -> bool:
-        """True for the edges of cells, which take their attributes from the centres."""
+        """Whether it holds cell edges, whose attributes are those of the centres."""
         return "bound" in self.dims
 
     @property
     def has_uncertainty(self) -> bool:
-        """True where a standard uncertainty belongs to the number."""
+        """Whether it has a standard uncertainty."""
         return "_standard_uncertainty" in self.companions
 
     @property
     def shares_errors(self) -> bool:
-        """True where contributions of shared errors stand beside it."""
+        """Whether contributions of shared errors are stored beside it."""
         return "_uncertainty_contribution" in self.companions
 
     @property
     def contribution_dims(self) -> tuple[str, ...]:
-        """Dimensions of those contributions, without the axis of the errors."""
+        """Dimensions of those contributions, without the error axis."""
         return self.dims if self.uncertainty_dims is None else self.uncertainty_dims
 
     @property
     def ancillary(self) -> tuple[str, ...]:
-        """Names of the variables that qualify it; parts of the uncertainty go with that."""
+        """Names of the variables that qualify it; parts of the uncertainty qualify that instead."""
         own = (one for one in self.companions if one not in _PARTS)
         return (*(f"{self.name}{suffix}" for suffix in own), *self.qualified_by)
 
     def companion(self, suffix: str) -> Quantity:
-        """Return what stands beside it under a suffix."""
+        """Return the companion with a suffix."""
         long_name, dtype, why = SUFFIXES[suffix]
         dims = self.dims
         if suffix in ("_standard_uncertainty", *_PARTS):
@@ -219,7 +218,7 @@ class Quantity(NamedTuple):
         )
 
     def variables(self) -> Iterator[Quantity]:
-        """Give the number and what stands beside it."""
+        """Yield the quantity and its companions."""
         yield self
         yield from map(self.companion, self.companions)
 
@@ -228,7 +227,7 @@ Rows = Iterable[Quantity]
 
 
 def along(dims: tuple[str, ...], *rows: Quantity, group: str = "") -> Iterator[Quantity]:
-    """Give rows their dimensions, and the group of the archive that they stand in."""
+    """Set the dimensions of rows, and their group in the archive."""
     if group and group not in GROUPS:
         raise ValueError(f"there is no group {group!r} in archives")
     return (row._replace(dims=dims, group=group) for row in rows)
@@ -242,19 +241,19 @@ def measured(
     shares_errors: bool = False,
     **more: Any,
 ) -> Quantity:
-    """Return a real with its standard uncertainty and other companions."""
+    """Return a real quantity with its standard uncertainty and other companions."""
     parts = _PARTS if shares_errors else ()
     companions = ("_standard_uncertainty", *suffixes, *parts)
     return Quantity(name, unit, long_name, companions=companions, **more)
 
 
 def stated(name: str, unit: str, long_name: str, why: str, **more: Any) -> Quantity:
-    """Return a real without a standard uncertainty, and the reason."""
+    """Return a real quantity without a standard uncertainty, with the reason."""
     return Quantity(name, unit, long_name, no_uncertainty=why, **more)
 
 
 def count(name: str, long_name: str, **more: Any) -> Quantity:
-    """Return a number that is counted."""
+    """Return a count."""
     return Quantity(name, "1", long_name, dtype="i4", no_uncertainty=COUNT, **more)
 
 
@@ -264,17 +263,17 @@ def label(name: str, long_name: str, **more: Any) -> Quantity:
 
 
 def flag(name: str, long_name: str, values: Mapping[str, int], **more: Any) -> Quantity:
-    """Return a flag with one meaning a value."""
+    """Return a flag with one meaning per value."""
     return Quantity(name, "1", long_name, dtype="i1", no_uncertainty="flag", flags=values, **more)
 
 
 def mask(name: str, long_name: str, masks: Mapping[str, int], **more: Any) -> Quantity:
-    """Return a flag in which each bit has a meaning."""
+    """Return a flag with one meaning per bit."""
     return flag(name, long_name, masks, **more)._replace(dtype="u2", is_mask=True)
 
 
 def again(row: Quantity, why: str = "", *, shares_errors: bool = False, **more: Any) -> Quantity:
-    """Return a quantity where another product, or another table, has it too."""
+    """Return a quantity for use in another product or table."""
     why = why or row.no_uncertainty
     companions = () if why else ("_standard_uncertainty", *(_PARTS if shares_errors else ()))
     own = {"uncertainty_dims": None, "qualified_by": (), "tables": (), "page": ("", "")}
@@ -284,5 +283,5 @@ def again(row: Quantity, why: str = "", *, shares_errors: bool = False, **more: 
 
 
 def schema_from(*rows: Rows) -> dict[str, Quantity]:
-    """Return the variables of a product by name, each with what stands beside it."""
+    """Return the variables of a product by name, each with its companions."""
     return {one.name: one for some in rows for row in some for one in row.variables()}

@@ -1,4 +1,4 @@
-"""Numbers of a reduced test: specimens, samples, splice, cycles."""
+"""Quantities of a reduced test: specimens, samples, splice, cycles."""
 
 from __future__ import annotations
 

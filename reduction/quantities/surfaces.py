@@ -1,4 +1,4 @@
-"""Numbers of experiments: designs, runs, response surfaces, screening, forms of stiffness."""
+"""Quantities of experiments: designs, runs, response surfaces, screening, forms of stiffness."""
 
 from __future__ import annotations
 

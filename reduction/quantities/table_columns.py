@@ -1,4 +1,4 @@
-"""Numbers that stand in tables, in a look-up or in the catalogue, and in no archive."""
+"""Quantities that are in tables, in a look-up or in the catalogue, but in no archive."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from reduction.quantities.row import (
 OF_TABLES: tuple[Quantity, ...] = (
     label("test", "test"),
     label("synthetic", "whether the data are synthetic"),
-    # of reduced tests
+    # columns for reduced tests
     count("n_cycles", "number of complete cycles in the test"),
     *along(
         ("specimen", "cycle"),
@@ -35,7 +35,7 @@ OF_TABLES: tuple[Quantity, ...] = (
     ),
     stated("strain_bin_low", "1", "lower edge of the strain bin", BOUND),
     stated("strain_bin_high", "1", "upper edge of the strain bin", BOUND),
-    # over the tests of a campaign
+    # statistics over the tests of a campaign
     measured("envelope_minimum", "Pa", "lowest tangent modulus of all tests of the campaign"),
     label("envelope_minimum_test", "test with the lowest tangent modulus"),
     measured("envelope_maximum", "Pa", "highest tangent modulus of all tests of the campaign"),
@@ -48,12 +48,12 @@ OF_TABLES: tuple[Quantity, ...] = (
         "1",
         "static interval modulus divided by dynamic tangent modulus, same strain and branch",
     ),
-    # of experiments, whose responses differ from row to row
+    # columns for experiments, whose responses differ from row to row
     label("response", "response, or its transform"),
     label("unit", "unit of the column, or of the response in a row"),
     label("response_unit", "unit of the response before any transform"),
     label("coefficient_engineering_unit", "unit of the coefficient in engineering units"),
-    # of the list of columns
+    # columns of the list of columns
     label("table", "file that contains the column"),
     label("column", "column"),
     label("meaning", "contents of the column"),
@@ -78,7 +78,7 @@ OF_CATALOGUE: tuple[Quantity, ...] = (
     label("medium", "test medium"),
     stated("least_strain", "1", "minimum strain of the stored samples and cycles", BOUND),
     stated("greatest_strain", "1", "maximum strain of the stored samples and cycles", BOUND),
-    # rows that an archive numbers by their place alone
+    # rows numbered only by their position in an archive
     count("anova_row", "row of the analysis of variance, from 1"),
     count("elastomer_fit", "number of the hyperelastic fit, from 1"),
     count("elastomer_parameter", "number of the hyperelastic parameter, from 1"),

@@ -1,7 +1,7 @@
-"""Units at the edge: text with a unit in, SI out, and SI to what a reader is shown.
+"""Unit conversion at the interfaces: text with a unit to SI, and SI to displayed values.
 
-Inside the package every number is SI.  The factors are pint's, which are exact
-by definition for the pound-force, the inch and the foot.
+Inside the package every number is SI.  The factors are from pint, and exact by definition for the
+pound-force, the inch and the foot.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Literal
 from reduction.record.errors import SettingsError
 from reduction.record.plain_text import cut
 
-if TYPE_CHECKING:  # it takes longer to load than a look-up takes without it
+if TYPE_CHECKING:  # importing it takes longer than a look-up without it
     import pint
 
 Dimension = Literal[
@@ -58,7 +58,7 @@ _PINT_SI = {
     "m N-1": "m/N",
 }
 
-# as test machines write them, where pint has no such name
+# spellings of test machines that pint lacks
 _SPELLINGS = {
     "Sec": "s", "SEC": "s", "Secs": "s", "Sek": "s", "sek": "s", "mSec": "ms", "msec": "ms",
     "lb": "pound", "te": "tonne", "IN": "in", "KN": "kN", "MM": "mm", "Kgf": "kgf", "KGF": "kgf",
@@ -121,21 +121,22 @@ _USUAL: dict[tuple[str, Dimension], tuple[float, float]] = {
     ("1/m", "per_length"): (1.0, 0.0),
     ("1/in", "per_length"): (39.37007874015748, 0.0),
 }
-"""Factor and offset of the units that logs and campaigns have most, as pint gives them; each unit
-with all its dimensions but that of information."""
+"""Factor and offset from pint for the most common units of logs and campaigns; each unit with all
+its dimensions except information.
+"""
 
-# what pint lets out when a text is no unit expression, beside errors of its own
+# exceptions of pint for a text that is not a unit, beside its own errors
 _NO_UNIT = (
     ValueError, TypeError, AttributeError, SyntaxError, AssertionError, ArithmeticError, TokenError,
 )  # fmt: skip
 
-# no unit of a test house is longer, and a tower of powers would never end
+# longer than any unit of a test house; a tower of powers would never finish
 _LONGEST, _MOST_POWERS = 40, 4
 
-# pint passes over a comment, and over much that follows or precedes a unit
+# pint ignores a comment, and much of what precedes or follows a unit
 _STRAY = re.compile(r"[^\w *·/^().%°²³-]")
 
-# a dimension that shares its units with another one stands behind it
+# a dimension that shares its units with another is listed after it
 _AS_FORCE_FIRST: tuple[Dimension, ...] = (
     "force", "number", *(name for name in DIMENSIONS if name not in ("force", "number")),
 )  # fmt: skip
@@ -143,7 +144,7 @@ _AS_FORCE_FIRST: tuple[Dimension, ...] = (
 
 @lru_cache(maxsize=1)
 def _registry() -> pint.UnitRegistry[float]:
-    """Units of pint, with those of test houses that it lacks."""
+    """Unit registry of pint, with the test-house units that it lacks."""
     import pint
 
     known: pint.UnitRegistry[float] = pint.UnitRegistry(cache_folder=None)
@@ -159,7 +160,7 @@ def _pint_text(unit: str) -> str:
     text = _SPELLINGS.get(text, text)
     if text in ("", "1", "-"):
         return "dimensionless"
-    # the powers, and the degree, square and dot signs, that test houses write
+    # powers, degree, square and dot signs used by test houses
     text = re.sub(r"(?<=[A-Za-z])([23])(?!\w)", r"**\1", text)
     return (
         text.replace("%", "percent")
@@ -176,19 +177,19 @@ def _pint_text(unit: str) -> str:
 
 @lru_cache(maxsize=512)
 def scale_to_si(unit: str, dimension: Dimension) -> tuple[float, float]:
-    """Factor and offset that turn a value in ``unit`` into SI: ``factor * value + offset``.
+    """Factor and offset that convert a value in ``unit`` to SI: ``factor * value + offset``.
 
     Parameters
     ----------
     unit : str
-        As the test house writes it: ``lbf``, ``ft``, ``kN``, ``mm``, ``%``, ``°C``.
+        Unit as written by the test house: ``lbf``, ``ft``, ``kN``, ``mm``, ``%``, ``°C``.
     dimension : Dimension
-        What the channel or setting has to be.
+        Required dimension of the channel or setting.
 
     Returns
     -------
     factor, offset : float
-        To SI; the offset is zero for all but temperatures.
+        Conversion to SI; the offset is zero except for temperatures.
 
     Raises
     ------
@@ -238,10 +239,10 @@ def _scale_by_pint(unit: str, dimension: Dimension) -> tuple[float, float]:
             needed=f"a unit of {dimension}, such as {target}",
         )
     try:
-        # pound is a mass in pint; a test house that writes lb for a load means lbf
+        # the pound is a mass in pint; a test house that writes lb for a load means lbf
         text = "lbf" if dimension == "force" and unit.strip() in ("lb", "lbs") else _pint_text(unit)
         target_unit = known.Unit(_PINT_SI.get(target, target))
-        # turns and radians a second are frequencies too; pint has them 2 pi and 1 times a hertz
+        # in pint, turns and radians per second are frequencies too, 2 pi and 1 times a hertz
         if dimension == "frequency" and "radian" in dict(
             known.Quantity(1.0, text).to_root_units().unit_items()
         ):
@@ -260,20 +261,20 @@ def _scale_by_pint(unit: str, dimension: Dimension) -> tuple[float, float]:
 
 
 def scale_of_unit(unit: str) -> tuple[str, float, float]:
-    """SI unit of a unit whose dimension nobody has stated, and the way to it.
+    """SI unit and conversion for a unit of unstated dimension.
 
     Parameters
     ----------
     unit : str
-        As a person or a header of this package writes it: ``lbf``, ``J/m``, ``J m-1``,
-        ``Pa s``; ``lb`` is a force here too.
+        Unit as written by a user or in a header of this package: ``lbf``, ``J/m``, ``J m-1``, ``Pa
+        s``; ``lb`` is a force here too.
 
     Returns
     -------
     si_unit : str
-        As in `DIMENSIONS` where one fits, else made of base units.
+        Unit from `DIMENSIONS` if one matches, else composed of base units.
     factor, offset : float
-        To SI: ``factor * value + offset``.
+        Conversion to SI: ``factor * value + offset``.
 
     Raises
     ------
@@ -287,7 +288,7 @@ def scale_of_unit(unit: str) -> tuple[str, float, float]:
     >>> scale_of_unit("J m-1")
     ('N', 1.0, 0.0)
     """
-    # a power may stand behind its unit, as in products
+    # a power may follow its unit, as in products
     text = re.sub(r"(?<=[A-Za-z])(-?\d+)\b", r"**\1", unit.strip())
     for dimension in _AS_FORCE_FIRST:
         if (text, dimension) in _USUAL:
@@ -333,27 +334,27 @@ _PER_SI = {
     "ft s-1": 3.2808398950131235,
     "lbf s": 0.22480894309971053,
 }
-"""What a value in SI is multiplied with to be shown, as pint gives it."""
+"""Factor from SI to the displayed unit, from pint."""
 
 _UNIT_AND_POWER = re.compile(r"([^\s\d/-]+)(-?\d+)?")
 
 
 def combined_unit(unit: str, others: Sequence[str], powers: Sequence[int]) -> str:
-    """Unit of a coefficient: that of the response over those of its factors.
+    """Unit of a coefficient: that of the response divided by those of its factors.
 
     Parameters
     ----------
     unit : str
-        Of the response.
+        Unit of the response.
     others : sequence of str
-        Of the factors.
+        Units of the factors.
     powers : sequence of int
-        Of the factors in the term.
+        Powers of the factors in the term.
 
     Returns
     -------
     combined : str
-        As products write units.
+        Unit in the notation of products.
 
     Examples
     --------
@@ -362,7 +363,7 @@ def combined_unit(unit: str, others: Sequence[str], powers: Sequence[int]) -> st
     >>> combined_unit("N", ["Hz", "N"], [0, 2])
     'N-1'
     """
-    # a unit that is no product of powers stands as it is
+    # a unit that is not a product of powers is kept unchanged
     is_product = re.fullmatch(rf"({_UNIT_AND_POWER.pattern}\s*)+", unit) and "(" not in unit
     total: Counter[str] = Counter()
     factors = [(unit, 1)] if is_product else []
@@ -377,7 +378,7 @@ def combined_unit(unit: str, others: Sequence[str], powers: Sequence[int]) -> st
 
 
 def display_unit(si_unit: str, system: UnitSystem) -> tuple[str, float]:
-    """Unit to show and the factor from SI to it.
+    """Display unit, and the factor from SI to it.
 
     Parameters
     ----------
@@ -389,14 +390,14 @@ def display_unit(si_unit: str, system: UnitSystem) -> tuple[str, float]:
     Returns
     -------
     unit : str
-        What to print.
+        Unit to print.
     factor : float
-        Value in SI times this is the value to print.
+        Ratio of the printed value to the value in SI.
 
     Raises
     ------
     SettingsError
-        If the system is neither.
+        If the system is neither of these.
 
     Examples
     --------
@@ -424,22 +425,21 @@ def parse_quantity(
     Parameters
     ----------
     text : str or float
-        A number and a unit; a bare number only where the dimension is a plain
-        number or a strain.
+        A number and a unit; a bare number only if the dimension is number or strain.
     dimension : Dimension
-        What it has to be.
+        Required dimension.
     rated_break_strength : float, optional
-        What ``%RBS`` (also ``%MBS``, ``%MBL``) refers to. [N]
+        Reference of ``%RBS`` (also ``%MBS``, ``%MBL``). [N]
 
     Returns
     -------
     value : float
-        In SI.
+        Value in SI.
 
     Raises
     ------
     SettingsError
-        If there is no unit, or the wrong one.
+        If the unit is missing or wrong.
 
     Examples
     --------
@@ -486,10 +486,10 @@ def parse_quantity(
 
 
 def _finite(number: str | float, text: str | float) -> float:
-    """A value in SI; `SettingsError` where it is no number or beyond every float."""
+    """A value in SI; `SettingsError` if it is not a number, or not finite."""
     try:
         value = float(number)
-    except OverflowError:  # a whole number of hundreds of digits
+    except OverflowError:  # an integer of hundreds of digits
         value = math.inf
     if not math.isfinite(value):
         raise SettingsError(
@@ -499,24 +499,24 @@ def _finite(number: str | float, text: str | float) -> float:
 
 
 def parse_in_unit(text: str, unit: str) -> float:
-    """Value in SI of a text with a unit, for a quantity of which only the SI unit is known.
+    """Value in SI of a text with a unit, given the SI unit of the quantity.
 
     Parameters
     ----------
     text : str
-        A number and a unit; a bare number where the quantity is one.
+        A number and a unit; a bare number if the quantity has no unit.
     unit : str
-        As in `reduction.quantities.names`.
+        SI unit as in `reduction.quantities.names`.
 
     Returns
     -------
     value : float
-        [unit]
+        Value in SI. [unit]
 
     Raises
     ------
     SettingsError
-        If it is no number with a unit, or the unit is one of something else.
+        If it is not a number with a unit, or the unit has another dimension.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Numbers of a test with weights that were hung by hand."""
+"""Quantities of a test with weights hung by hand."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""A log of any format to a record in SI."""
+"""Reads logs of any format into records in SI."""

@@ -1,8 +1,8 @@
-"""Text in repeated blocks, as MTS MPT/793 writes it: lines are sorted, then parsed at once.
+"""Text in repeated blocks, as in MTS MPT/793 files: lines are sorted, then parsed together.
 
-A block is a line that begins with the layout's ``block_marker``, a name row, a unit row
-where the layout has one, and rows of fields down to the next block.  Blocks may differ
-in length, and a part of the file may end within one.  Every other line is metadata.
+A block is a line that begins with the layout's ``block_marker``, a name row, a unit row if the
+layout has one, and rows of fields down to the next block.  Blocks may differ in length, and a part
+of the file may end inside one.  Every other line is metadata.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ _NEWLINE, _RETURN = b"\n\r"
 
 @dataclass(frozen=True)
 class _BlockLines:
-    """Lines of a part as places in its bytes."""
+    """Lines of a part, stored as byte positions."""
 
     data: bytes
     starts: Integers
@@ -54,7 +54,7 @@ class _BlockLines:
         return filled
 
     def look_like_rows(self, delimiter: str, n_fields: Integers) -> Bools:
-        """Lines that have so many fields, shape (n_lines,), or begin as a number does."""
+        """Lines with that many fields, shape (n_lines,), or that begin like a number."""
         codes = np.frombuffer(self.data, np.uint8)
         parts = np.flatnonzero(codes == ord(delimiter))
         n_parts = np.searchsorted(parts, self.stops) - np.searchsorted(parts, self.starts)
@@ -65,7 +65,7 @@ class _BlockLines:
 
 
 def _block_lines(file: TextFile, layout: Layout) -> Iterator[_BlockLines]:
-    """Parts of a file; one that ends in a header leaves it to the next."""
+    """Parts of a file; a header at the end of a part is carried over to the next."""
     held, row, is_open = b"", 0, False
     for part in file:
         row = row if held else part.first_row
@@ -95,7 +95,7 @@ def _block_lines(file: TextFile, layout: Layout) -> Iterator[_BlockLines]:
 
 
 def _header_length(layout: Layout) -> int:
-    """Lines of a header below the one that opens the block."""
+    """Header lines below the line that opens a block."""
     return 1 + layout.has_unit_row
 
 
@@ -126,7 +126,7 @@ _KEPT_LINES = 200
 
 @dataclass
 class _Kind:
-    """Blocks with one header."""
+    """Blocks with the same header."""
 
     n_fields: int
     first_row: int
@@ -158,12 +158,12 @@ def read_blocks(
 
 
 class _BlockReader:
-    """What has been read so far."""
+    """State of the reader between parts."""
 
     def __init__(self, path: Path, layout: Layout, folder: Path | None, watch: Watch) -> None:
         self.path, self.layout, self.folder, self.watch = path, layout, folder, watch
         self.kinds: dict[bytes, _Kind] = {}
-        self.open: _Kind | None = None  # that of the block that goes on
+        self.open: _Kind | None = None  # kind of the block that continues
         self.chosen: _Kind | None = None
         self.wanted: list[tuple[DeclaredColumn, int]] = []
         self.log: GrowingLog | None = None
@@ -173,14 +173,14 @@ class _BlockReader:
         self.n_loose = 0
 
     def take(self, lines: _BlockLines) -> None:
-        """Sort the lines of one more part, and read its rows."""
+        """Sort the lines of the next part, and read its rows."""
         kinds = [self.open, *(self._opened(lines, line) for line in lines.openers.tolist())]
         self.open = kinds[-1]
         n_header = _header_length(self.layout)
         number = np.arange(lines.starts.size)
         block = np.searchsorted(lines.openers, number, side="right")
         is_below = number - np.append(-n_header - 1, lines.openers)[block] > n_header
-        # of a kind that is not read a row has to begin as a number does
+        # rows of a kind that is not read must begin like a number
         n_fields = np.array(
             [kind.n_fields if kind and kind is self.chosen else 0 for kind in kinds]
         )
@@ -212,7 +212,7 @@ class _BlockReader:
         self.log.add(read_fields(rows, self.wanted, self.chosen.n_fields), rows.first_row)
 
     def finish(self, file: TextFile, name: str) -> RawLog:
-        """The log, when there are no more parts."""
+        """The log, after the last part."""
         if self.log is None:
             raise self.refusal or _no_block(self.path, self.layout)
         if not self.log.n_rows:
@@ -237,7 +237,7 @@ class _BlockReader:
         )
 
     def _opened(self, lines: _BlockLines, opener: int) -> _Kind:
-        """Kind of the block that a line opens: that of all blocks with its header."""
+        """Kind of the block opened by a line, shared by all blocks with the same header."""
         last = opener + _header_length(self.layout)
         text = lines.data[lines.starts[opener + 1] : lines.stops[last]]
         header = text.replace(b"\r\n", b"\n").rstrip(b"\n")
@@ -254,7 +254,7 @@ class _BlockReader:
         return kind
 
     def _choose(self, lines: _BlockLines, opener: int, names: list[str], kind: _Kind) -> None:
-        """Read blocks of this kind if it is the first that has every declared column."""
+        """Read blocks of this kind if it is the first with every declared column."""
         row = lines.first_row + opener
         try:
             wanted = [
@@ -272,7 +272,7 @@ class _BlockReader:
         self.log = GrowingLog([want for want, _ in wanted], self.folder)
 
     def _keep_loose(self, lines: _BlockLines, is_loose: Bools) -> None:
-        """Keep lines between the rows as metadata, the first of them."""
+        """Keep the first lines between the rows as metadata."""
         for line in np.flatnonzero(is_loose & lines.filled()).tolist():
             if (text := lines.text(line)).strip():
                 if self.n_loose < _KEPT_LINES:
@@ -295,7 +295,7 @@ class _BlockReader:
 
 
 def _with_separators(path: Path, lines: _BlockLines, layout: Layout) -> Layout:
-    """The layout with the decimal mark of an MTS file's first line."""
+    """The layout with the decimal mark stated in the first line of an MTS file."""
     first = lines.text(0)
     if not first.startswith(_MTS):
         return layout

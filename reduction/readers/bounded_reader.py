@@ -1,9 +1,9 @@
-"""Binary files are read in a process of their own, with a bound on its memory and time.
+"""Reads binary files in a separate process with a limit on memory and time.
 
-The libraries that read them believe what a file says of itself.  Where that takes more memory or
-time than a log may, or ends the process, it is the process of the reader and not that of the run.
-One such process is kept for all files, because its start takes a second; after a failure the next
-file gets a new one.  It is started anew, not forked: a fork of a process with threads may hang.
+The reading libraries trust the sizes that a file states.  If that exceeds the memory or time limit
+of a log, or ends the process, only the reader process is lost, not the run. One process is kept for
+all files, because its start takes a second; after a failure the next file gets a new one.  It is
+started anew, not forked: a fork of a process with threads may hang.
 """
 
 from __future__ import annotations
@@ -36,18 +36,18 @@ if sys.platform == "linux":
 
 Result = TypeVar("Result")
 
-_ROOM = 300_000_000  # bytes beside unpacked_size: columns that are made, libraries at first use
+_ROOM = 300_000_000  # bytes beyond unpacked_size: new columns, libraries at first use
 
-_GRACE = 1.0  # s, for a reader to say itself between two blocks that its time is over
+_GRACE = 1.0  # s, in which a reader can report between two blocks that its time is over
 
-# threads of the libraries take memory, and pools of arrow are set aside a gigabyte at a time
+# library threads take memory, and arrow reserves pools in steps of a gigabyte
 _ENVIRONMENT = {"OPENBLAS_NUM_THREADS": "1", "ARROW_DEFAULT_MEMORY_POOL": "system"}
 
 _AT_WORK = threading.Lock()
 
 
 class _Reader:
-    """The process, and the two pipes to it."""
+    """The reader process and the two pipes to it."""
 
     def __init__(self) -> None:
         code = f"import sys; sys.path[:] = {sys.path!r}; from {__name__} import serve; serve()"
@@ -61,11 +61,11 @@ class _Reader:
         self.parent = os.getpid()
 
     def is_ready(self) -> bool:
-        """Whether it can be asked: it did not end, and this process is no fork of its parent."""
+        """Whether it is running and this process is not a fork of its parent."""
         return self.parent == os.getpid() and self.process.poll() is None
 
     def ask(self, request: bytes) -> tuple[Any, Exception | None]:
-        """Value or error; `EOFError` where the process ended without."""
+        """Value or error; `EOFError` if the process ended without an answer."""
         requests, answers = self.process.stdin, self.process.stdout
         try:
             requests.write(request)  # type: ignore[union-attr]  # both are pipes
@@ -88,7 +88,7 @@ _reader: _Reader | None = None
 
 @atexit.register
 def _end_reader() -> None:
-    """End the process that reads, if there is one; the next file starts another."""
+    """Stop the reader process, if any; the next file starts another."""
     global _reader
     if _reader is not None and _reader.parent == os.getpid():
         _reader.end()
@@ -98,7 +98,7 @@ def _end_reader() -> None:
 def bounded(
     function: Callable[..., Result], path: Path, *given: Any, watch: Watch, **named: Any
 ) -> Result:
-    """Result of a function in the process that reads."""
+    """Call a function in the reader process and return its result."""
     global _reader
     scratch = (
         named.get("parts", LogParts()).folder,
@@ -119,7 +119,7 @@ def bounded(
             if status == 1 and seconds > watch.limits.time:
                 raise watch.too_slow(seconds) from None
             raise watch.broken(_how_it_ended(status)) from None
-        except BaseException:  # what it would answer later belongs to no other request
+        except BaseException:  # a late answer would be taken for that of another request
             _end_reader()
             raise
         finally:
@@ -141,37 +141,37 @@ def _how_it_ended(status: int) -> str:
 
 
 def _taken_over(name: str, folder: Path, dtype: np.dtype[Any]) -> NDArray[Any]:
-    """A column on disk that the process which reads has written."""
+    """A column that the reader process has written to disk."""
     with open(name, "r+b") as file:
         return mapped(file, os.fstat(file.fileno()).st_size, folder, dtype)
 
 
 def _remove(folder: Path, prefix: str) -> None:
-    """Remove the names of scratch files; what was taken over stays as long as its arrays."""
+    """Remove the names of scratch files; opened ones last as long as their arrays."""
     for left in folder.glob(f"{prefix}*"):
-        with suppress(OSError):  # other systems keep the name of a mapped file
+        with suppress(OSError):  # some systems keep the name of a mapped file
             left.unlink()
 
 
-# what follows runs in the process that reads
+# the code below runs in the reader process
 
 
 class _Answer(pickle.Pickler):
-    """Columns on disk go as the names of their files."""
+    """Pickles columns on disk as the names of their files."""
 
     def reducer_override(self, given: Any) -> Any:
-        """How to make an array again; all else as usual."""
+        """Rebuild arrays on disk from their file name; others as usual."""
         place = name_of_scratch_file(given) if isinstance(given, np.ndarray) else None
         return NotImplemented if place is None else (_taken_over, (*place, given.dtype))
 
 
 def serve() -> None:
-    """Answer requests until there are no more."""
+    """Answer requests until the pipe closes."""
     requests, answers = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
     silence = os.open(os.devnull, os.O_RDWR)
     os.dup2(silence, 0)
-    os.dup2(silence, 1)  # a library that prints
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # which is for the run; it ends this process
+    os.dup2(silence, 1)  # for libraries that print
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # left to the run, which ends this process
     if sys.platform == "linux":
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     while _is_answered(requests, answers, silence):
@@ -179,26 +179,26 @@ def serve() -> None:
 
 
 def _is_answered(requests: IO[bytes], answers: IO[bytes], silence: int) -> bool:
-    """Answer one request; False where there is none."""
+    """Answer one request; False if there is none."""
     try:
         folder, scratch, limits, path, work = pickle.load(requests)  # noqa: S301  # of the run
     except EOFError:
         return False
     with suppress(OSError):
-        os.chdir(folder)  # of relative paths
+        os.chdir(folder)  # for relative paths
     name_scratch_files(scratch[1])
     answer: tuple[Any, Exception | None]
     watch = Watch(path, limits)
     try:
         function, path, given, named = pickle.loads(work)  # noqa: S301  # of the run
-        # a call into a library that does not come back is ended, whether the run is there or not
+        # a library call that never returns is ended, even if the run is gone
         faulthandler.dump_traceback_later(limits.time + _GRACE, exit=True, file=silence)
         _bound_memory(limits.unpacked_size)
-        watch = Watch(path, limits)  # what was loaded first does not count
+        watch = Watch(path, limits)  # loading time before this does not count
         answer = function(path, *given, watch=watch, **named), None
     except Exception as error:
         answer = None, _portable_error(error)
-    except BaseException as error:  # a failed check in a library of Rust
+    except BaseException as error:  # a failed check in a Rust library
         answer = None, watch.broken(f"{type(error).__name__}: {error}"[:200])
     try:
         _Answer(answers, protocol=5).dump(answer)
@@ -211,7 +211,7 @@ def _is_answered(requests: IO[bytes], answers: IO[bytes], silence: int) -> bool:
 
 
 def _bound_memory(n_bytes: int) -> None:
-    """Bound what this process may take beside what it has; what is mapped from files is free."""
+    """Limit the memory growth of this process; mapped files do not count."""
     if sys.platform == "linux":
         pages = int(Path("/proc/self/statm").read_text().split()[5])
         most = pages * resource.getpagesize() + _ROOM + n_bytes
@@ -223,9 +223,9 @@ def _bound_memory(n_bytes: int) -> None:
 
 
 def _portable_error(error: Exception) -> Exception:
-    """The error as it goes to the run, with the place where that is a fault of this package."""
+    """The error in a form to send to the run, with its location if it is a bug of this package."""
     place = "".join(traceback.format_exception(error))
-    error.__cause__ = error.__context__ = None  # errors of libraries, of which few can be pickled
+    error.__cause__ = error.__context__ = None  # library errors, few of which can be pickled
     error = error.with_traceback(None)
     if isinstance(error, (ReductionError, MemoryError)):
         return error

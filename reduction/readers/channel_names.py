@@ -1,6 +1,6 @@
-"""Which column of an unknown log is which channel: by names, units and values.
+"""Matches the columns of an unknown log to channels by names, units and values.
 
-What it says is for a person to confirm, so that a wrong guess costs a look, not a number.
+The result is for a person to confirm, so that a wrong guess costs a check, not a wrong number.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ _NOT_MEASURED = (
     r"geschwindigkeit|consigne|peak|valley|目标|指令"
 )
 
-_ELONGATION = (  # a position where it is stated in a unit of length, else a strain
+_ELONGATION = (  # a position if stated in a unit of length, else a strain
     r"elongation|allongement|alargamiento|allungamento|verlängerung|dehnung|伸长|伸び|伸長|удлинение"
 )
 
@@ -48,7 +48,7 @@ _LENGTH = (
     r"变形|変形|변위|перемещение"
 )
 
-# ranked: the first pattern that fits a column wins; the second text rules a column out
+# ranked: the first pattern that matches a column wins; the second text excludes a column
 _NAMES: dict[str, tuple[Dimension, tuple[str, ...], str]] = {
     "time": (
         "time",
@@ -93,9 +93,9 @@ FOREIGN_WORDS = re.compile(
     r"prüf|länge|für\b|déplacement|force|é\w+\b|ó\w\b",
     re.IGNORECASE,
 )
-"""Words of logs that no code of letters but the right one reads."""
+"""Words of logs that only the right character encoding decodes."""
 
-_MANY = ("tension", "strain")  # one a specimen
+_MANY = ("tension", "strain")  # one per specimen
 
 _SUFFIXES = {
     "s": "s", "sec": "s", "ms": "ms", "min": "min", "ft": "ft", "in": "inch", "mm": "mm",
@@ -107,14 +107,14 @@ _BRACKETED = re.compile(r"\s*[\(\[]([^()\[\]]*)[\)\]]\s*$")
 
 _FOUR_DIGITS = re.compile(r"([01]\d|2[0-3])[0-5]\d")
 
-_RISING = 0.9  # share of the steps of a time column that do not go back
+_RISING = 0.9  # minimum share of steps in a time column that do not go back
 
-_SAME = 1 - 1e-6  # correlation of two columns that are one signal
+_SAME = 1 - 1e-6  # correlation above which two columns are one signal
 
 
 @dataclass(frozen=True)
 class SeenColumn:
-    """One column as it was seen: ``texts`` and ``values`` (NaN where no number) of some rows."""
+    """A column as sampled: ``texts`` and ``values`` (NaN if not a number) of some rows."""
 
     number: int
     name: str = ""
@@ -126,7 +126,7 @@ class SeenColumn:
 
 @dataclass(frozen=True)
 class _Proposal:
-    """Channels as lines of TOML, whether any was found, and what is a guess in them."""
+    """Channels as lines of TOML, whether any was found, and the guesses among them."""
 
     lines: tuple[str, ...]
     keys: tuple[str, ...]
@@ -138,7 +138,7 @@ _EXTREME = re.compile(r"\b(max|min|maximum|minimum|peak|valley)\b", re.IGNORECAS
 
 @lru_cache(maxsize=4096)
 def is_unit(text: str, dimension: Dimension | None = None) -> bool:
-    """Whether a text is a unit, of one dimension or of any."""
+    """Whether a text is a unit of one dimension, or of any."""
     if not text:
         return False
     for wanted in (dimension,) if dimension is not None else DIMENSIONS:
@@ -151,12 +151,12 @@ def is_unit(text: str, dimension: Dimension | None = None) -> bool:
 
 
 def _one_width(text: str) -> str:
-    """A text with the letters and brackets that East Asian programs write wide made narrow."""
+    """A text with full-width East Asian letters and brackets replaced by narrow ones."""
     return unicodedata.normalize("NFKC", text).strip()
 
 
 def _plain(name: str) -> str:
-    """A name in lower case, without unit in brackets or suffix, words parted by blanks."""
+    """A name in lower case, without its unit, with words separated by blanks."""
     text = _BRACKETED.sub("", _one_width(name)).strip()
     words = [word for word in re.split(r"[\W_]+", text.lower()) if word]
     if len(words) > 1 and words[-1] in _SUFFIXES:
@@ -165,7 +165,7 @@ def _plain(name: str) -> str:
 
 
 def _stated_units(column: SeenColumn) -> list[str]:
-    """What a column may state as its unit: in a row of units, in brackets, behind its name."""
+    """Texts that may be the unit of a column: in a unit row, in brackets, after its name."""
     name = _one_width(column.name)
     found = [column.unit.strip().strip("()[]").strip()]
     if bracketed := _BRACKETED.search(name):
@@ -180,9 +180,9 @@ def _stated_units(column: SeenColumn) -> list[str]:
 
 
 def _unit(column: SeenColumn, dimension: Dimension) -> str | None:
-    """Unit that a column states; ``?`` where it states none, None where it is another kind."""
+    """Unit stated by a column; ``?`` if it states none, None if it has another dimension."""
     for text in _stated_units(column):
-        if text.startswith("%") and dimension != "strain":  # of a break strength
+        if text.startswith("%") and dimension != "strain":  # percent of a break strength
             return None
         if dimension == "force" and text in ("lb", "lbs", *FORCE_OF_MASS):
             return FORCE_OF_MASS.get(text, "lbf")
@@ -190,13 +190,13 @@ def _unit(column: SeenColumn, dimension: Dimension) -> str | None:
             return text
         if is_unit(text):
             return None
-    if dimension == "time" and _plain(column.name) == "x value":  # as LabVIEW writes it
+    if dimension == "time" and _plain(column.name) == "x value":  # written by LabVIEW
         return "s"
     return "1" if dimension == "number" else UNKNOWN
 
 
 def _is_clock(column: SeenColumn) -> bool:
-    """Whether all texts are clock times; four digits only where one begins with 0."""
+    """Whether all texts are clock times; four digits only if one begins with 0."""
     order = (orders_of_dates(column.texts) or (None,))[0]
     texts = [plain_date(text, order) for text in column.texts if text]
     return (
@@ -210,7 +210,7 @@ def _is_clock(column: SeenColumn) -> bool:
 
 
 def _fits(key: str, column: SeenColumn) -> bool:
-    """Whether the values can be those of a channel."""
+    """Whether the values are possible for a channel."""
     values = column.values[np.isfinite(column.values)]
     if key == "time" and _is_clock(column):
         return True
@@ -235,16 +235,16 @@ def _candidates(key: str, columns: Sequence[SeenColumn]) -> list[tuple[SeenColum
             unit = _unit(column, dimension)
             if unit == UNKNOWN and (
                 (pattern == _ELONGATION and key == "crosshead_position")
-                # a word for a place beside one for a force: "Actuator Force"
+                # "Actuator Force": a word for a position beside one for a force
                 or (key == "crosshead_position" and _is_of_force(plain))
             ):
                 continue
             if unit is not None and _fits(key, column):
                 found.append((rank, column, unit))
-    if any(unit != UNKNOWN for _, _, unit in found):  # what states something that is no unit
+    if any(unit != UNKNOWN for _, _, unit in found):  # a stated text is not a unit
         found = [one for one in found if one[2] != UNKNOWN or not _stated_units(one[1])]
-    # a machine's own coordinate is far from any specimen, its travel begins with the test; the
-    # counter of a position is that position again, and the only one in some logs
+    # a machine's own coordinate is far from any specimen; its travel begins with the test.  A
+    # digital position repeats the position, but some logs have no other
     found.sort(key=lambda one: re.search("absol|digital", _plain(one[1].name)) is not None)
     best: dict[int, tuple[SeenColumn, str]] = {}
     for _, column, unit in found:
@@ -257,7 +257,7 @@ def _is_of_force(plain: str) -> bool:
 
 
 def _by_unit(key: str, columns: Sequence[SeenColumn]) -> list[tuple[SeenColumn, str]]:
-    """The one column that states a unit of a channel's dimension, where there is one alone."""
+    """The column that states a unit of a channel's dimension, if it is the only one."""
     dimension, _, barred = _NAMES[key]
     found = []
     for column in columns:
@@ -275,7 +275,7 @@ def _label(column: SeenColumn) -> str:
 
 
 def _reference(column: SeenColumn, columns: Sequence[SeenColumn]) -> str:
-    """The column's name where it is the only one of that name, else its number."""
+    """The column's name if it is unique, else its number."""
     names = [other.name.strip() for other in columns if other.is_named]
     return _label(column) if names.count(column.name.strip()) == 1 else str(column.number)
 
@@ -285,7 +285,7 @@ def _line(key: str, column: str, unit: str, more: str = "") -> str:
 
 
 def _date_order(column: SeenColumn) -> tuple[str, list[str]]:
-    """Which number of a date is the day, as TOML, and what stands behind it."""
+    """Order of day and month in a date, as TOML, with the reasons."""
     orders = orders_of_dates(column.texts)
     if orders is None:
         return "", []
@@ -301,7 +301,7 @@ def _date_order(column: SeenColumn) -> tuple[str, list[str]]:
 def _without_repeats(
     taken: list[tuple[SeenColumn, str]],
 ) -> tuple[list[tuple[SeenColumn, str]], list[str]]:
-    """Columns without those that repeat another one in another unit; and what is said of them."""
+    """Columns without repeats of another column in another unit, with remarks."""
     kept: list[tuple[SeenColumn, str]] = []
     remarks = []
     for column, unit in taken:
@@ -316,11 +316,11 @@ def _without_repeats(
     return kept, remarks
 
 
-_DISAGREE = 0.01  # of a range: what two readings of one signal differ by without a word
+_DISAGREE = 0.01  # of the range: maximum difference of two readings of one signal without a remark
 
 
 def _disagreement(column: SeenColumn, same: SeenColumn, unit: str) -> str:
-    """By what two columns of one signal differ, where they have one unit."""
+    """Difference between two columns of one signal that have the same unit."""
     is_known = np.isfinite(column.values) & np.isfinite(same.values)
     if unit == UNKNOWN or column.unit != same.unit:
         return ""
@@ -343,7 +343,7 @@ def _are_one_signal(one: SeenColumn, other: SeenColumn) -> bool:
 
 
 def _side_by_side(columns: Sequence[SeenColumn]) -> int:
-    """How many tests a table has beside each other, each with a time of its own.
+    """Number of tests side by side in a table, each with its own time column.
 
     Examples
     --------
@@ -399,7 +399,7 @@ def propose_channels(columns: Sequence[SeenColumn]) -> _Proposal:
             taken, repeated = _without_repeats(sorted(candidates, key=lambda c: c[0].number))
             remarks += repeated
             n_loads = sum(name.startswith("tension.") for name in chosen)
-            if key == "strain" and n_loads:  # one a specimen, as are the loads
+            if key == "strain" and n_loads:  # one per specimen, like the loads
                 taken = taken[:n_loads]
         for place, (column, unit) in enumerate(taken, start=1):
             full = f"{key}.{place}" if key in _MANY else key
@@ -456,20 +456,20 @@ def propose_channels(columns: Sequence[SeenColumn]) -> _Proposal:
     return _Proposal(tuple(lines), tuple(keys), tuple(remarks))
 
 
-_STILL = 0.01  # of the seen range of a channel: it is at rest within it
+_STILL = 0.01  # of the sampled range of a channel: smaller movement is rest
 
 _LEAST_REST = 5  # samples
 
-_TOLD = 0.005  # of the seen range of a load: a reading at rest that is worth a word
+_TOLD = 0.005  # of the sampled range of a load: smallest reading at rest that is reported
 
-_FAR, _MANY_VALUES = 12.0, 10  # a range over the scatter of its steps, and values in it
+_FAR, _MANY_VALUES = 12.0, 10  # minimum range over the scatter of its steps, and number of values
 
-_OPPOSED = -0.7  # correlation of load and position where one of them has the wrong sign
+_OPPOSED = -0.7  # correlation of load and position below which one sign is wrong
 
 
 @dataclass(frozen=True)
 class _Start:
-    """How a log begins: its first rest, or its first sample where it has none."""
+    """Start of a log: its first rest, or its first sample if it has no rest."""
 
     n_samples: int
     words: str
@@ -478,7 +478,7 @@ class _Start:
 
     @classmethod
     def of(cls, chosen: dict[str, tuple[SeenColumn, str]]) -> _Start | None:
-        """The first rest of position and loads; None where nothing moves or a channel is empty."""
+        """The first rest of position and loads; None if nothing moves or a channel is empty."""
         if "crosshead_position" not in chosen:
             return None
         position = _without_blanks(chosen["crosshead_position"][0].values)
@@ -491,7 +491,7 @@ class _Start:
         if not np.isfinite(channels).all() or not _has_moved(position):
             return None
         away = np.abs(channels - np.median(channels[:, :_LEAST_REST], axis=1)[:, None])
-        # a load that is all noise has no range to be within
+        # a load that is only noise has no range to compare with
         moves = np.flatnonzero(np.any(away > _STILL * np.ptp(channels, axis=1)[:, None], axis=0))
         n_samples = _still_samples(channels, int(moves[0]))
         words = f"the first {n_samples} samples"
@@ -501,7 +501,7 @@ class _Start:
         return cls(n_samples, words, position, loads)
 
     def settings(self, key: str, unit: str) -> tuple[str, list[str]]:
-        """What the start says of a channel, as TOML, and what stands behind it."""
+        """Settings of a channel from the start of the log, as TOML, with the reasons."""
         if key == "crosshead_position":
             sign, said = self._sign(key)
             datum, more = self._datum(unit, -1 if sign else 1)
@@ -513,13 +513,13 @@ class _Start:
         return sign + zero, said + more
 
     def _sign(self, key: str) -> tuple[str, list[str]]:
-        """The sign of a channel against which tension would fall as the specimen stretches."""
+        """Sign reversal of a channel if tension would otherwise fall as the specimen stretches."""
         for load in self.loads.values() if key == "crosshead_position" else [self.loads[key]]:
             if not np.ptp(load) > 0 or not np.corrcoef(self.position, load)[0, 1] < _OPPOSED:
                 return "", []
             is_pulled = abs(float(load.max())) > abs(float(load.min()))
             if is_pulled == (key != "crosshead_position"):
-                return "", []  # the other one of the two has it
+                return "", []  # the sign belongs to the other one
         if not self.loads:
             return "", []
         end = "above" if key == "crosshead_position" else "below"
@@ -531,7 +531,7 @@ class _Start:
         position = sign * self.position
         begin, travel = float(position[0]), float(np.ptp(position))
         seen = f"the position begins at {begin:g} {unit} and travels {travel:g} {unit} at the start"
-        # a length from pin to pin is above zero, and in most tests above a fourth of the travel
+        # a pin-to-pin length is positive, and in most tests above a quarter of the travel
         if begin > 0.25 * travel and float(position.min()) > 0.1 * travel:
             return ', datum = "pin-to-pin"', [
                 f"guess: datum pin-to-pin, because {seen}: a displacement would begin near 0"
@@ -566,7 +566,7 @@ class _Start:
 
 
 def _without_blanks(values: Floats) -> Floats:
-    """Values with straight lines across those that are missing; as given where most are."""
+    """Values interpolated linearly across missing ones; unchanged if most are missing."""
     known = np.isfinite(values)
     if known.all() or np.count_nonzero(known) < max(_MANY_VALUES, values.size / 10):
         return values
@@ -575,7 +575,7 @@ def _without_blanks(values: Floats) -> Floats:
 
 
 def _still_samples(channels: Floats, n_samples: int) -> int:
-    """How many of the first samples are a rest: none where they are the begin of a ramp."""
+    """Number of first samples at rest; none if they are the start of a ramp."""
     half = n_samples // 2
     if not half:
         return 0
@@ -584,14 +584,14 @@ def _still_samples(channels: Floats, n_samples: int) -> int:
 
 
 def _has_moved(position: Floats) -> bool:
-    """Whether a position has left its first rest: noise and the steps of a converter are none."""
+    """Whether a position has left its first rest; noise and converter steps do not count."""
     if np.unique(position).size <= _MANY_VALUES:
         return False
     return bool(np.ptp(position) > _FAR * np.std(np.diff(position)))
 
 
 def _round(value: float, scatter: float) -> str:
-    """A mean to the digits that its scatter leaves it."""
+    """A mean rounded to the digits that its scatter justifies."""
     share = scatter / abs(value) if value else 0.0
     digits = max(2, min(6, 2 - math.floor(math.log10(share)))) if share else 4
     return f"{value:.{digits}g}"

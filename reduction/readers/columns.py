@@ -1,4 +1,4 @@
-"""Declared columns of a log: found once, units checked, numbers checked."""
+"""Declared columns of a log: found once, with their units and numbers checked."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ CLOCK_TEXT = re.compile(
     r"(\d{1,2}):?([0-5]\d)(?::([0-5]\d(?:[.,]\d+)?))?(?:\s*([AaPp])\.?[Mm]\.?)?"
     r"(Z|(?:\s*[+-][01]\d:?[0-5]\d))?"
 )
-"""A time of day, with a date before it or none; other dates become one of these by `plain_date`."""
+"""A time of day, with or without a date before it; `plain_date` converts other dates to this."""
 
 _MONTHS = ("jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec")
 
@@ -37,11 +37,11 @@ _NAMED_DATE = re.compile(
 
 _DATE_OF_EITHER_ORDER = re.compile(r"(\d{1,2})([-/])(\d{1,2})\2(\d{4}|\d\d)(?=[T ])")
 
-_CENTURY = 69  # years of two digits from here on are of the last one, as POSIX has them
+_CENTURY = 69  # two-digit years from here on belong to the last century, as in POSIX
 
 
 def plain_date(text: str, order: DateOrder | None) -> str:
-    """A clock time whose date, if one is before it, is that of `CLOCK_TEXT` where it can be.
+    """A clock time with its date, if any, in the form of `CLOCK_TEXT` where possible.
 
     Examples
     --------
@@ -64,7 +64,7 @@ def plain_date(text: str, order: DateOrder | None) -> str:
 
 
 def orders_of_dates(texts: Sequence[str]) -> tuple[DateOrder, ...] | None:
-    """In which orders all dates of clock times are dates; None where none has a date of either.
+    """Date orders in which all dates are valid; None if no clock time has a date in either order.
 
     Examples
     --------
@@ -128,7 +128,7 @@ def clock_to_seconds(
 
 
 def _order_to_set(texts: Sequence[str]) -> str | None:
-    """What a layout is to state of the dates of a clock."""
+    """Date order that the layout should state for a clock."""
     orders = orders_of_dates(texts)
     if orders is None:
         return None
@@ -143,7 +143,7 @@ def _order_to_set(texts: Sequence[str]) -> str | None:
 
 
 def clock_reading(text: str) -> tuple[float, float] | None:
-    """Number of the day, NaN without a date, and seconds from midnight; None if no clock time."""
+    """Day number (NaN without a date) and seconds from midnight; None if not a clock time."""
     match = CLOCK_TEXT.fullmatch(text)
     day = math.nan if match is None else _day_of(match)
     is_no_day = match is not None and bool(match[1] or match[4]) and math.isnan(day)
@@ -159,13 +159,13 @@ def clock_reading(text: str) -> tuple[float, float] | None:
 
 
 def is_of_a_zone(text: str) -> bool:
-    """Whether a clock time says how far it is from that of Greenwich, so that nobody sets it."""
+    """Whether a clock time states its UTC offset, so that it is not set for daylight saving."""
     match = CLOCK_TEXT.fullmatch(text)
     return match is not None and bool(match[11])
 
 
 def _of_zone(text: str | None) -> float:
-    """Seconds by which the clock of a zone is ahead of that of Greenwich."""
+    """Seconds by which the zone of a clock is ahead of UTC."""
     digits = (text or "").strip(" Z").replace(":", "")
     if not digits:
         return 0.0
@@ -174,18 +174,18 @@ def _of_zone(text: str | None) -> float:
 
 
 def _day_of(match: re.Match[str]) -> float:
-    """Number of the day before a clock time; NaN where there is none."""
+    """Day number from the date before a clock time; NaN without a date."""
     year, month, day = (
         (match[1], match[2], match[3]) if match[1] else (match[6], match[5], match[4])
     )
     try:
         return float(date(int(year), int(month), int(day)).toordinal())
-    except (TypeError, ValueError):  # no date, or the 31st of February
+    except (TypeError, ValueError):  # no date, or an impossible one such as 31 February
         return math.nan
 
 
 FORCE_OF_MASS = {"kg": "kgf", **dict.fromkeys(("t", "to", "te", "tonne", "tonnes"), "tf")}
-"""Forces that scales write as masses."""
+"""Force units that scales write as masses."""
 
 _BRACKETS = {"(": ")", "[": "]", "{": "}", "<": ">"}
 
@@ -195,25 +195,25 @@ _LONGEST_SHOWN = 200
 
 _LONGEST_UNIT = 30
 
-_POWER = re.compile(r"\*\*|\^")  # one at most: 9**9**9 would take for ever
+_POWER = re.compile(r"\*\*|\^")  # at most one: 9**9**9 would take forever
 
 
 @dataclass(frozen=True)
 class DeclaredColumn:
-    """One column that a layout asks for; ``key`` is its name in `RawLog.columns`."""
+    """One column requested by a layout; ``key`` is its name in `RawLog.columns`."""
 
     key: str
     column: str | int
     unit: str
     dimension: Dimension
     is_compared: bool = True
-    """Whether a unit that the file states must agree: not for a clock, nor for a voltage."""
+    """Whether a unit stated by the file must agree: not for a clock or a voltage."""
     has_factor: bool = False
-    """Whether a factor is stated, be it 1: the file may then be in another quantity."""
+    """Whether a factor is stated, even 1: the file may then be in another quantity."""
 
 
 def declared_columns(layout: Layout) -> tuple[DeclaredColumn, ...]:
-    """Columns of a layout in its order; own time stamps follow their channel."""
+    """Columns of a layout in its order; a channel's own time stamps follow it."""
     wanted = []
     for key, channel in layout.channels.items():
         is_compared = channel.unit != CLOCK and channel.factor == 1
@@ -247,7 +247,7 @@ def find_column(
     in_order: bool = True,
     row: int | None = None,
 ) -> int:
-    """Place from 0 of a declared column among the names of a file."""
+    """Index (from 0) of a declared column among the names of a file."""
     stripped = [name.strip() for name in names]
     if isinstance(wanted.column, int):
         if in_order and 1 <= wanted.column <= len(names):
@@ -286,7 +286,7 @@ def find_column(
 
 
 def _why_not_there(wanted: str, names: Sequence[str], *, is_text: bool) -> str | None:
-    """What keeps a name from being found: another delimiter, another spelling, lines above."""
+    """Likely reason why a name is not found: another delimiter or spelling, or lines above."""
     for mark in ";,\t|":
         if any(wanted in map(str.strip, name.split(mark)) for name in names if mark in name):
             shown = {"\t": "\\t"}.get(mark, mark)
@@ -303,7 +303,7 @@ def _why_not_there(wanted: str, names: Sequence[str], *, is_text: bool) -> str |
 
 
 def stated_scale(text: str, dimension: Dimension) -> tuple[float, float]:
-    """Factor and offset to SI of a unit that a file states, which may be any text at all."""
+    """Factor and offset to SI of a unit stated by a file, which may be any text."""
     try:
         if len(text) <= _LONGEST_UNIT and len(_POWER.findall(text)) < 2:
             return scale_to_si(text, dimension)
@@ -315,7 +315,7 @@ def stated_scale(text: str, dimension: Dimension) -> tuple[float, float]:
 
 
 def check_unit(path: Path, wanted: DeclaredColumn, found: str, *, row: int | None = None) -> None:
-    """Compare the unit that a file states with the declared one; blank states nothing."""
+    """Compare the unit stated by the file with the declared one; a blank states nothing."""
     text = found.strip()
     if text[:1] in _BRACKETS and text.endswith(_BRACKETS[text[0]]):
         text = text[1:-1].strip()
@@ -347,7 +347,7 @@ def check_unit(path: Path, wanted: DeclaredColumn, found: str, *, row: int | Non
 
 
 def check_lengths(path: Path, columns: dict[str, Floats]) -> int:
-    """Number of rows that the columns share; a channel with own time stamps has its own."""
+    """Number of rows shared by the columns; a channel with own time stamps has its own."""
     pairs = [(key, f"{key}.time") for key in columns if f"{key}.time" in columns]
     shared = [key for key in columns if not any(key in pair for pair in pairs)]
     for group in (shared, *pairs):
@@ -368,7 +368,7 @@ def check_lengths(path: Path, columns: dict[str, Floats]) -> int:
 
 
 def without_marks(values: NDArray[Any], layout: Layout) -> Floats:
-    """As float64, with NaN where a missing mark that is a number stands (-9999), shape as given."""
+    """Values as float64, with NaN for numeric missing marks (-9999); the shape is kept."""
     marks = []
     for mark in layout.missing:
         try:
@@ -383,7 +383,7 @@ def without_marks(values: NDArray[Any], layout: Layout) -> Floats:
     return array
 
 
-_LONGEST_NAME = 200  # characters at the end of a name in which a unit may stand
+_LONGEST_NAME = 200  # characters at the end of a name searched for a unit
 
 _UNIT_IN_NAME = re.compile(r".*[\(\[]\s*([^()\[\]]*[^()\[\]\d\s][^()\[\]]*)[\)\]]\s*$")
 
@@ -395,7 +395,7 @@ _UNIT_WORDS = {
     "voltage": ("mV", "V"),
     "strain": ("mm/mm", "mm/m", "in/in", "m/m", "%", "pct"),
 }
-"""Units that a column's name may end in without brackets, by dimension."""
+"""Units that may end a column name without brackets, by dimension."""
 
 # load_kN, Kraft/kN, "Load, kN", "F in kN", "Load kN"
 UNIT_BEHIND_NAME = re.compile(
@@ -403,11 +403,11 @@ UNIT_BEHIND_NAME = re.compile(
     + "|".join(unit for units in _UNIT_WORDS.values() for unit in units)
     + r")\s*$"
 )
-"""A name that ends in its unit without brackets, which is the first group."""
+"""A name that ends in its unit without brackets; the unit is the first group."""
 
 
 def keep_line(metadata: dict[str, str], line: str, row: int, layout: Layout) -> None:
-    """Keep a line as metadata: ``name: value`` or two fields by name, all else by row."""
+    """Keep a line as metadata: ``name: value`` or two fields by name, others by row."""
     text = line.removeprefix(layout.comment).strip() if layout.comment else line.strip()
     fields = [field for field in split_line(text, layout) if field]
     if not fields:
@@ -430,7 +430,7 @@ def check_units(
     units: Sequence[str],
     unit_row: int | None,
 ) -> None:
-    """Compare the units that the file states with the declared ones."""
+    """Compare the units stated by the file with the declared ones."""
     for want, place in wanted:
         if not want.is_compared or want.dimension == "number":
             continue
@@ -446,7 +446,7 @@ def check_units(
 
 
 def _check_dimension_in_name(path: Path, want: DeclaredColumn, stated: str) -> None:
-    """Refuse a column whose name ends in the unit of something else than it is declared to be."""
+    """Refuse a column whose name ends in a unit of another dimension than declared."""
     known = {dimension for dimension, units in _UNIT_WORDS.items() if stated in units}
     if want.has_factor or want.dimension not in _UNIT_WORDS or want.dimension in known:
         return
@@ -483,7 +483,7 @@ def _check_unit_in_name(path: Path, want: DeclaredColumn, stated: str) -> None:
         )
 
 
-_EXACT = 2**53  # whole numbers beyond this have no float64 of their own
+_EXACT = 2**53  # integers beyond this are not exact in float64
 
 _KINDS = {
     "b": "true or false",
@@ -508,16 +508,16 @@ _MISSING = (
 
 _INFINITE = ("infinite", "finite numbers", None)
 
-_FAULTS = (_LARGE, _MISSING, _INFINITE)  # what is told first
+_FAULTS = (_LARGE, _MISSING, _INFINITE)  # faults in the order in which they are reported
 
 
 class _CheckedColumn:
-    """A declared column, shape (n_rows,); declared missing marks are NaN."""
+    """A declared column, shape (n_rows,), with NaN for declared missing marks."""
 
     def __init__(
         self, path: Path, wanted: DeclaredColumn, layout: Layout, folder: Path | None
     ) -> None:
-        """Begin with no rows."""
+        """Start with no rows."""
         self._path, self._wanted, self._layout = path, wanted, layout
         self._writer = ColumnWriter(folder)
         self._nan_is_missing = any(mark.lower() == "nan" for mark in layout.missing)
@@ -536,7 +536,7 @@ class _CheckedColumn:
                 if self._wanted.unit == CLOCK
                 else f"real numbers in {self._wanted.unit}",
             )
-        # damage makes NaNs that signal; a wider float may be infinite here, which is told
+        # damage gives signalling NaNs; a wider float may overflow here, which is reported
         with np.errstate(invalid="ignore", over="ignore"):
             array = values.astype(np.float64, copy=False)
             column = without_marks(values, self._layout)
@@ -566,7 +566,7 @@ class _CheckedColumn:
         return self._writer.finish()
 
     def _look(self, fault: tuple[str, str, str | None], values: Floats, bad: Bools) -> None:
-        """Count values of a fault, and keep the first of them."""
+        """Count the values with a fault, and keep the first of them."""
         places = np.flatnonzero(bad)
         if places.size:
             first = (0, self._writer.size + int(places[0]), float(values[places[0]]))
@@ -574,28 +574,28 @@ class _CheckedColumn:
             self._found[fault] = (count + places.size, place, value)
 
 
-_PART = 16 << 20  # bytes of a matrix that are read at a time
+_PART = 16 << 20  # bytes of a matrix read at a time
 
 
 @dataclass(frozen=True)
 class ColumnTable:
-    """The columns of a binary file, before any is read.
+    """The columns of a binary file before any is read.
 
     Parameters
     ----------
     names, units : tuple of str
-        As the file has them; empty text where it says nothing.
+        From the file; empty text where it states none.
     load : callable
-        Values of one column by its place from 0, in parts of so many rows where the file
-        can be read so; one part at least.
+        Values of one column by its index from 0, in parts of the given number of rows if the file
+        can be read so; at least one part.
     n_rows : int
-        Of the longest column that is read in parts; 0 where the columns are read whole.
+        Rows of the longest column read in parts; 0 if the columns are read whole.
     where : str
-        What holds the columns, for messages: ``group 'log'``.
+        Location of the columns, for messages: ``group 'log'``.
     in_order : bool
         Whether a column may be named by its number.
     sizes : tuple of int
-        Values of each column, where the file states them; empty where only reading tells.
+        Number of values in each column if the file states it, else empty.
     """
 
     names: tuple[str, ...]
@@ -608,7 +608,7 @@ class ColumnTable:
 
 
 class _Matrix(Protocol):
-    """An array, or a data set that is read when it is asked for rows."""
+    """An array, or a data set whose rows are read on request."""
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -616,10 +616,10 @@ class _Matrix(Protocol):
 
     @property
     def dtype(self) -> np.dtype[Any]:
-        """With fields where the columns have names."""
+        """Type of the values, with fields if the columns have names."""
 
     def __getitem__(self, rows: slice, /) -> NDArray[Any]:
-        """Some rows."""
+        """Selected rows."""
 
 
 def matrix_table(
@@ -652,12 +652,12 @@ def matrix_table(
                 needed=f"{n_columns} {what}",
             )  # fmt: skip
     total = matrix.shape[0]
-    held: list[tuple[slice, NDArray[Any]]] = []  # rows that the columns before have read
+    held: list[tuple[slice, NDArray[Any]]] = []  # rows already read for earlier columns
 
     row_size = max(matrix.dtype.itemsize * (1 if fields else n_columns), 1)
 
     def load(place: int, n_rows: int) -> Iterator[NDArray[Any]]:
-        n_rows = max(min(n_rows, _PART // row_size), 1)  # all columns are read, few may be wanted
+        n_rows = max(min(n_rows, _PART // row_size), 1)  # all columns are read; few may be wanted
         for part in row_parts(total, n_rows, n_together):
             if not held or held[0][0] != part:
                 held[:] = [(part, matrix[part])]
@@ -675,7 +675,7 @@ def matrix_table(
 
 
 def row_parts(total: int, n_rows: int, n_together: int = 1) -> Iterator[slice]:
-    """Slices of so many rows, of whole pieces where the file keeps rows together; one at least.
+    """Slices of `n_rows` rows, of whole chunks if the file has them; at least one.
 
     Examples
     --------
@@ -696,7 +696,7 @@ def read_columns(
     parts: LogParts | None = None,
     watch: Watch | None = None,
 ) -> tuple[dict[str, Floats], int]:
-    """Declared columns of a binary file by channel key, and how many rows they have."""
+    """Declared columns of a binary file by channel key, and their number of rows."""
     made, parts, watch = made or {}, parts or LogParts(), watch or Watch(path)
     watch.check_columns(len(table.names))
     wanted = declared_columns(layout)
@@ -722,7 +722,7 @@ def read_columns(
         *((column.add, table.load(places[key], n_rows)) for key, column in checked.items()),
         *((writer.append, made[key](n_rows)) for key, writer in writers.items()),
     ]
-    while coming:  # side by side: columns of a matrix come from the same rows
+    while coming:  # in step: columns of a matrix come from the same rows
         watch.check_time()
         going = []
         for add, values in coming:
@@ -738,7 +738,7 @@ def read_columns(
 
 
 def _place(path: Path, wanted: DeclaredColumn, table: ColumnTable) -> int:
-    """Place of a declared column, whose unit is the declared one."""
+    """Index of a declared column, after a check of its unit."""
     place = find_column(path, wanted, table.names, where=table.where, in_order=table.in_order)
     if table.units[place]:
         check_unit(path, wanted, table.units[place])

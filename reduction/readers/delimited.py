@@ -33,14 +33,14 @@ from reduction.readers.text_rows import (
 from reduction.record.errors import LogError
 from reduction.record.notes import note
 
-_LINE = 1 << 12  # bytes that most lines of a header have at most
+_LINE = 1 << 12  # bytes; most header lines are shorter
 
 _KEPT_LINES = 1000
 
 
 @dataclass
 class _Head:
-    """What stands above the data rows."""
+    """Contents of the file above the data rows."""
 
     names: list[str] = field(default_factory=list)
     name_row: int | None = None
@@ -48,21 +48,21 @@ class _Head:
     unit_row: int | None = None
     metadata: dict[str, str] = field(default_factory=dict)
     n_loose: int = 0
-    """Lines that are not data, those that are not kept too."""
+    """Lines that are not data, including those not kept."""
     last_row: int = 0
     """Editor's row of the last line that is not blank."""
     first_line: str = ""
-    """First data row."""
+    """Text of the first data row."""
     first_row: int = 0
-    """Its editor's row, 0 where it has not been found yet."""
+    """Editor's row of the first data row; 0 until found."""
     n_fields: int = 0
-    """Fields in it."""
+    """Number of fields in the first data row."""
     is_over: bool = False
     wanted: list[tuple[DeclaredColumn, int]] = field(default_factory=list)
-    """Each declared column with its place."""
+    """Each declared column with its index."""
 
     def keep(self, line: str, row: int, layout: Layout) -> None:
-        """Keep a line that is not data, if it is one of the first."""
+        """Keep a line that is not data, up to a limit."""
         self.n_loose += 1
         if self.n_loose <= _KEPT_LINES:
             keep_line(self.metadata, line, row, layout)
@@ -108,7 +108,7 @@ def read_delimited(
 def _data_rows(
     path: Path, file: TextFile, head: _Head, layout: Layout, watch: Watch
 ) -> Iterator[TextRows]:
-    """Data rows of each part, once the head has been read."""
+    """Data rows of each part, after the head has been read."""
     for part in file:
         text, row = _tidy(part.text, layout), part.first_row
         if head.is_over:
@@ -145,7 +145,7 @@ def _data_rows(
 
 
 def _end_of_table(text: memoryview, layout: Layout) -> int | None:
-    """Place of the line at which the table ends, where one is stated and there."""
+    """Index of the line at which the table ends, if an end is stated and found."""
     if not layout.ends_at:
         return None
     found = re.search(rb"(?m)^[ \t\"]*" + re.escape(layout.ends_at.encode()), text)
@@ -164,7 +164,7 @@ def _fields(head: _Head, rows: TextRows) -> Fields:
 
 
 def _tidy(text: memoryview, layout: Layout) -> memoryview:
-    """One blank between fields where blanks part them, and no lines of blanks at the end."""
+    """Single blanks between blank-separated fields, without blank lines at the end."""
     if layout.delimiter != " ":
         return text
     single = re.sub(rb"[ \t]+", b" ", text)
@@ -172,7 +172,7 @@ def _tidy(text: memoryview, layout: Layout) -> memoryview:
 
 
 def _read_head(head: _Head, text: memoryview, first_row: int, layout: Layout) -> int | None:
-    """Take in lines above the data; place of the first data row, None where it is not there."""
+    """Read lines above the data; index of the first data row, None if not reached."""
     for row, (place, line) in enumerate(_lines(text), first_row):
         if line.strip():
             head.last_row = row
@@ -191,12 +191,12 @@ def _read_head(head: _Head, text: memoryview, first_row: int, layout: Layout) ->
 
 
 def without_comment_name(names: Sequence[str]) -> list[str]:
-    """Names of the columns but for LabVIEW's last one, Comment, which most of its rows lack."""
+    """Column names without LabVIEW's last one, Comment, which most rows lack."""
     return list(names[:-1] if names and names[-1].strip() == "Comment" else names)
 
 
 def _lines(text: memoryview) -> Iterator[tuple[int, str]]:
-    """Lines one by one with the place of each; those that are not asked for cost nothing."""
+    """Lines with their positions, generated on demand."""
     place, length = 0, _LINE
     while place < len(text):
         line, end, _ = bytes(text[place : place + length]).partition(b"\n")
@@ -220,7 +220,7 @@ def _no_rows(path: Path, head: _Head) -> LogError:
 
 
 def _count_fields(path: Path, head: _Head, layout: Layout) -> int:
-    """Fields in a data row; the name row may differ by trailing delimiters only."""
+    """Number of fields in a data row; the name row may differ only by trailing delimiters."""
     first = split_line(head.first_line, layout)
     n_names, n_fields = len(head.names), len(first)
     if n_names and (any(first[n_names:]) or any(head.names[n_fields:])):
@@ -236,7 +236,7 @@ def _count_fields(path: Path, head: _Head, layout: Layout) -> int:
 
 
 def _find_columns(path: Path, head: _Head, layout: Layout) -> list[tuple[DeclaredColumn, int]]:
-    """Each declared column with its place, found in the header and in the declared unit."""
+    """Each declared column with its index, after a check of its name and unit."""
     names = head.names or [""] * head.n_fields
     wanted = [
         (want, find_column(path, want, names[: head.n_fields], row=head.name_row))

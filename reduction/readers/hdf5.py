@@ -28,23 +28,23 @@ _LONGEST_UNIT = 200
 
 _PLAIN_CLASSES = (h5py.h5t.INTEGER, h5py.h5t.FLOAT, h5py.h5t.STRING, h5py.h5t.ENUM)
 
-_LARGEST = 1 << 20  # bytes; texts of any length stand elsewhere
+_LARGEST = 1 << 20  # bytes; texts of any length are stored elsewhere
 
 
 def _is_plain_attribute(item: h5py.Group | h5py.Dataset, name: str) -> bool:
-    """Whether an attribute that is there is of numbers or texts, as long as a file has them."""
+    """Whether an existing attribute holds numbers or text of acceptable length."""
     found = item.attrs.get_id(name)
     if found.get_type().get_class() not in _PLAIN_CLASSES or found.get_storage_size() > _LARGEST:
         return False
     try:
         np.dtype(found.dtype)
-    except (TypeError, ValueError):  # letters of no encoding, a float with more bits than numpy has
+    except (TypeError, ValueError):  # invalid text, or a float wider than numpy supports
         return False
     return True
 
 
 def plain_attribute(path: Path, item: h5py.Group | h5py.Dataset, name: str) -> NDArray[Any] | None:
-    """Value of an attribute, None where it is not there; `LogError` where it is not a plain one."""
+    """Value of an attribute, None if absent; `LogError` if it is not a plain one."""
     if name not in item.attrs:
         return None
     if not _is_plain_attribute(item, name):
@@ -56,7 +56,7 @@ def plain_attribute(path: Path, item: h5py.Group | h5py.Dataset, name: str) -> N
 
 
 def _unit_attribute(path: Path, dataset: h5py.Dataset) -> str:
-    """Unit that a data set states; empty text where it states none."""
+    """Unit stated by a data set; empty text if it states none."""
     for key in _UNIT_KEYS:
         found = plain_attribute(path, dataset, key)
         if found is not None:
@@ -64,7 +64,7 @@ def _unit_attribute(path: Path, dataset: h5py.Dataset) -> str:
                 v.decode(errors="replace") if isinstance(v, bytes) else str(v)
                 for v in found.ravel()[:1].tolist()
             )
-            return text[:_LONGEST_UNIT]  # longer than any: refused as another unit
+            return text[:_LONGEST_UNIT]  # longer than any unit, so refused as a mismatch
     return ""
 
 
@@ -75,7 +75,7 @@ _SHOWN = 40
 
 @contextmanager
 def open_hdf5(path: Path) -> Iterator[h5py.File]:
-    """Open an HDF5 file for a block."""
+    """Open an HDF5 file as a context manager."""
     try:
         file = h5py.File(path, "r", locking=False)
     except OSError as error:
@@ -92,12 +92,12 @@ def open_hdf5(path: Path) -> Iterator[h5py.File]:
 
 
 def _names_in(group: h5py.Group) -> Iterator[str]:
-    """Names that a group holds itself."""
+    """Names directly inside a group."""
     return (name for name in group if isinstance(group.get(name, getlink=True), h5py.HardLink))
 
 
 def find_member(path: Path, group: h5py.Group, name: str) -> h5py.Group | h5py.Dataset:
-    """Group or data set by its path below a group, never by way of a link."""
+    """Group or data set by its path below a group, without following links."""
     for part in (part for part in name.split("/") if part):
         if not isinstance(group, h5py.Group) or part not in group.keys():
             held = list(islice(_names_in(group), _SHOWN)) if isinstance(group, h5py.Group) else []
@@ -124,13 +124,13 @@ def find_member(path: Path, group: h5py.Group, name: str) -> h5py.Group | h5py.D
 def read_data_set(
     path: Path, dataset: h5py.Group | h5py.Dataset, watch: Watch | None = None
 ) -> NDArray[Any]:
-    """All values of a data set that stands in this file as it is meant to be read."""
+    """All values of a data set stored in this file in a readable form."""
     found = _plain(path, dataset)
     return _values(path, found, (), found.size, watch or Watch(path))
 
 
 def _plain(path: Path, dataset: h5py.Group | h5py.Dataset) -> h5py.Dataset:
-    """The data set, where it is one whose values can be read as they are."""
+    """The data set, if its values can be read as they are."""
     problem: str | None = None
     found: str | None
     if not isinstance(dataset, h5py.Dataset):
@@ -156,7 +156,7 @@ def _plain(path: Path, dataset: h5py.Group | h5py.Dataset) -> h5py.Dataset:
 
 
 def _no_type(dataset: h5py.Dataset) -> str | None:
-    """What the library says of a type that it cannot give as one of numpy."""
+    """Library message on a type that has no numpy equivalent."""
     try:
         np.dtype(dataset.dtype)
     except (TypeError, ValueError) as error:
@@ -165,7 +165,7 @@ def _no_type(dataset: h5py.Dataset) -> str | None:
 
 
 def _not_written(dataset: h5py.Dataset) -> str | None:
-    """How much of a data set the file holds, where that is not all."""
+    """Share of a data set written in the file, if not all of it is."""
     if not dataset.size:
         return None
     if dataset.chunks is None:
@@ -173,7 +173,7 @@ def _not_written(dataset: h5py.Dataset) -> str | None:
         return None if is_there else f"shape {dataset.shape}, and no values"
     sides = zip(dataset.shape, dataset.chunks, strict=True)
     n_needed = math.prod(-(-side // chunk) for side, chunk in sides)
-    # an empty one is told by its size, which is quicker than a count of what is there
+    # an empty one is recognised by its size, which is faster than counting the chunks
     n_stored = dataset.id.get_num_chunks() if dataset.id.get_storage_size() else 0
     if n_stored >= n_needed:
         return None
@@ -183,7 +183,7 @@ def _not_written(dataset: h5py.Dataset) -> str | None:
 def _values(
     path: Path, dataset: h5py.Dataset, selection: Any, n_values: int, watch: Watch
 ) -> NDArray[Any]:
-    """Some values of a data set, as many as stated."""
+    """Selected values of a data set, `n_values` in number, within the size limit."""
     each = dataset.dtype.itemsize
     watch.check_unpacked(n_values * each, f"'{dataset.name}'")
     if dataset.chunks is not None:
@@ -198,7 +198,7 @@ def _values(
 
 
 def _column(path: Path, dataset: h5py.Group | h5py.Dataset) -> tuple[h5py.Dataset, int]:
-    """A data set of one dimension, and its axis; a single row or column counts."""
+    """A one-dimensional data set and its axis; a single row or column qualifies."""
     dataset = _plain(path, dataset)
     if sum(size != 1 for size in dataset.shape) > 1:
         raise LogError(
@@ -217,7 +217,7 @@ def _series_parts(
     """Values of such a data set in parts, each of whole chunks of the file."""
     dataset, axis = _column(path, dataset)
     if dataset.dtype.kind not in "biufc":
-        # refused by its kind; texts of any length, read first, could be one text many times
+        # refused by its type; reading texts of any length could repeat one text many times
         yield np.empty(0, dtype=dataset.dtype)
     for part in row_parts(dataset.shape[axis], n_rows, _chunk_length(dataset, axis)):
         selection = (slice(None),) * axis + (part,)
@@ -225,13 +225,13 @@ def _series_parts(
 
 
 def _chunk_length(dataset: h5py.Dataset, axis: int) -> int:
-    """Rows that the file keeps together."""
+    """Rows stored together in the file."""
     return int(dataset.chunks[axis]) if dataset.chunks else 1
 
 
 @dataclass(frozen=True)
 class _DataSet:
-    """A data set whose rows are read when they are asked for."""
+    """A data set whose rows are read on request."""
 
     path: Path
     dataset: h5py.Dataset
@@ -261,14 +261,14 @@ class _DataSet:
 
 
 def data_set(path: Path, dataset: h5py.Group | h5py.Dataset, watch: Watch) -> _DataSet:
-    """A data set that stands in this file, before any of it is read."""
+    """A data set stored in this file, before any of it is read."""
     return _DataSet(path, _plain(path, dataset), watch)
 
 
 def read_texts(
     path: Path, dataset: h5py.Group | h5py.Dataset, watch: Watch | None = None
 ) -> tuple[str, ...]:
-    """Texts of a data set of strings, no more than a file may have columns."""
+    """Texts of a data set of strings, limited to the maximum number of columns."""
     watch = watch or Watch(path)
     dataset, axis = _column(path, dataset)
     texts: list[str] = []
@@ -276,8 +276,8 @@ def read_texts(
     if dataset.dtype.kind in "OSUT":
         watch.check_columns(dataset.size)
         if dataset.dtype.kind == "O" and h5py.check_string_dtype(dataset.dtype) is None:
-            raise _no_text(path, dataset)  # rows of any length, for which there is no bound
-        # one by one: each of them may be the same long text
+            raise _no_text(path, dataset)  # unbounded row length
+        # one by one, as each of them may be the same long text
         for part in row_parts(dataset.shape[axis], 1):
             for value in _values(path, dataset, (slice(None),) * axis + (part,), 1, watch).ravel():
                 text = value.decode(errors="replace") if isinstance(value, bytes) else value
@@ -300,7 +300,7 @@ def _no_text(path: Path, dataset: h5py.Dataset) -> LogError:
 def _hdf5_table(
     path: Path, file: h5py.File, layout: Layout, watch: Watch | None = None
 ) -> ColumnTable:
-    """Columns of the group or matrix that a layout names."""
+    """Columns of the group or matrix named by a layout."""
     watch = watch or Watch(path)
     group = find_member(path, file, layout.group)
     if layout.matrix:
@@ -346,7 +346,7 @@ def group_table(path: Path, group: h5py.Group, watch: Watch) -> ColumnTable:
 
 
 def _attributes(group: h5py.Group | h5py.Dataset) -> dict[str, str]:
-    """Attributes that are one text or number, as text."""
+    """Attributes with a single text or number, as text."""
     texts = {}
     for key in group.attrs:
         if group.attrs.get_id(key).shape != () or not _is_plain_attribute(group, key):

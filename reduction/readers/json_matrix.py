@@ -25,13 +25,13 @@ from reduction.readers.text_rows import decode
 from reduction.record.errors import LogError
 from reduction.record.measurement import Floats
 
-_VALUE, _LIST = 40, 90  # bytes that a number and a list take in memory
+_VALUE, _LIST = 40, 90  # bytes of a number and a list in memory
 
-_MOST_DIGITS = 300  # of whole numbers that are finite as float64
+_MOST_DIGITS = 300  # of integers that are finite in float64
 
 
 def read_json(path: Path, layout: Layout, *, name: str, watch: Watch | None = None) -> RawLog:
-    """Read a JSON log: a matrix, records, or an object of columns, where the layout says it is."""
+    """Read a JSON log: a matrix, records or an object of columns, at the place in the layout."""
     watch = watch or Watch(path)
     raw, content = json_content(path, watch, layout.encoding)
     setting = "matrix" if layout.matrix else "group"
@@ -56,7 +56,7 @@ def read_json(path: Path, layout: Layout, *, name: str, watch: Watch | None = No
 
 
 def _json_table(path: Path, rows: Any, place: str, content: Any, layout: Layout) -> ColumnTable:
-    """Columns of what stands in one place of a JSON log; they are numbers once they are loaded."""
+    """Columns of the value at one place of a JSON log; numbers are checked on loading."""
     where = f"'{place}'" if place else "the file"
     if isinstance(rows, dict) or (isinstance(rows, list) and rows and isinstance(rows[0], dict)):
         if layout.matrix_names or layout.matrix_units:
@@ -77,7 +77,7 @@ def _json_table(path: Path, rows: Any, place: str, content: Any, layout: Layout)
 
 
 def _object_table(path: Path, columns: dict[str, Any], where: str, layout: Layout) -> ColumnTable:
-    """An object of columns: one list of numbers a name; what is no list is no column."""
+    """An object of columns: one list of numbers per name; other values are not columns."""
     lists = {key: value for key, value in columns.items() if isinstance(value, list)}
     if not lists:
         raise LogError(
@@ -97,7 +97,7 @@ def _object_table(path: Path, columns: dict[str, Any], where: str, layout: Layou
 
 
 def _record_table(path: Path, records: list[Any], where: str, layout: Layout) -> ColumnTable:
-    """Records: one object a row; a key that a row lacks is missing there."""
+    """Records: one object per row; a key absent from a row is missing there."""
     for index, record in enumerate(records):
         if not isinstance(record, dict):
             raise LogError(
@@ -124,12 +124,12 @@ def _numbers(path: Path, values: list[Any], where: str, layout: Layout) -> Float
 
 
 def _whole(digits: str) -> int | float:
-    """A whole number; one that float64 cannot hold is infinite, which is refused as such."""
+    """An integer; one beyond float64 becomes infinite, which is refused later."""
     return int(digits) if len(digits) < _MOST_DIGITS else float(digits)
 
 
 def _once(path: Path, pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """An object, of which no key stands twice: the first would be lost without a word."""
+    """An object with duplicate keys refused: the first would be lost silently."""
     content = dict(pairs)
     if len(content) < len(pairs):
         names = [key for key, _ in pairs]
@@ -139,12 +139,12 @@ def _once(path: Path, pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 
 def json_content(path: Path, watch: Watch, encoding: str = "utf-8") -> tuple[bytes, Any]:
-    """Bytes of a JSON file, and what they say; of JSON Lines a list with what each line says."""
+    """Bytes of a JSON file and its content; for JSON Lines, a list with one value per line."""
     watch.check_unpacked(path.stat().st_size)
     raw = read_bytes(path)
     n_lists = raw.count(b"[") + raw.count(b"{")
     watch.check_unpacked(2 * len(raw) + _VALUE * raw.count(b",") + _LIST * n_lists)
-    # the words NaN and Infinity are not JSON; here they are text like any other mark
+    # the words NaN and Infinity are not JSON; they are kept as text, like any missing mark
     load = partial(
         json.loads, parse_constant=str, parse_int=_whole, object_pairs_hook=partial(_once, path)
     )
@@ -162,11 +162,11 @@ def json_content(path: Path, watch: Watch, encoding: str = "utf-8") -> tuple[byt
         ) from error
 
 
-_MORE = "Extra data"  # of the decoder, where a value ends before the file does
+_MORE = "Extra data"  # decoder message when a value ends before the file does
 
 
 def _lines(path: Path, text: bytes, load: Callable[[bytes], Any]) -> list[Any]:
-    """What each line of JSON Lines says; blank lines say nothing."""
+    """Content of each line of JSON Lines; blank lines are skipped."""
     values = []
     for row, line in enumerate(text.split(b"\n"), 1):
         if line.strip():
@@ -189,11 +189,11 @@ def _keys(content: Any) -> str:
 
 
 def _entry(path: Path, content: Any, key: str, setting: str) -> Any:
-    """What stands at a place: a key, or keys from the outermost in, parted by points."""
+    """Value at a place: a key, or nested keys from the outermost in, separated by points."""
     found, rest = content, key
     while rest:
         if isinstance(found, dict) and rest in found:
-            return found[rest]  # a key may hold a point itself
+            return found[rest]  # a key may itself contain a point
         name, _, rest = rest.partition(".")
         if isinstance(found, dict) and name in found:
             found = found[name]

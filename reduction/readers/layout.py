@@ -19,7 +19,7 @@ from reduction.record.samples import scratch_folder
 from reduction.record.settings import Limits
 
 UNKNOWN = "?"
-"""What a person is to replace in a file that `reduction init` wrote."""
+"""Placeholder to be replaced by the user in a file written by `reduction init`."""
 
 CLOCK = "clock"
 
@@ -51,10 +51,10 @@ class Channel(BaseModel):
 
     column: str | int
     unit: str = "1"
-    """Of time also ``clock``: text such as 0945 or 09:45:30, made elapsed seconds."""
+    """Time also accepts ``clock``: text such as 0945 or 09:45:30, converted to elapsed seconds."""
     factor: float = Field(default=1.0, gt=0, allow_inf_nan=False)
     unit_key: str = ""
-    """JSON: key of the text that states this channel's unit, checked against ``unit``."""
+    """Text key that states this channel's unit in JSON, checked against ``unit``."""
     sign: Literal[1, -1] = 1
     zero: str | None = None
     """Reading at zero load, subtracted before the sign is applied, with its unit."""
@@ -62,18 +62,18 @@ class Channel(BaseModel):
     reference_length: str | None = None
     """Thimble-to-thimble length at displacement zero, with its unit."""
     reference_tension: str | None = None
-    """Tension at which ``reference_length`` was read; slack where not given."""
+    """Tension at which ``reference_length`` was read; slack if not given."""
     standard_uncertainty: str | None = None
     verified_range: tuple[str, str] | None = None
     date_order: DateOrder | None = None
-    """Of a clock whose dates are written 05/06/2005: which of the two numbers is the day."""
+    """For a clock with dates such as 05/06/2005: which of the two numbers is the day."""
     time_column: str | int | None = None
-    """The channel's own time stamps, where it has them."""
+    """Column of the channel's own time stamps, if it has them."""
     time_unit: str = "s"
 
 
 def _check_keys(name: str, channel: Channel) -> None:
-    """Refuse what a channel declares and nothing would look at."""
+    """Refuse declared keys that nothing would read."""
     keys: tuple[str, ...] = ()
     if name != "crosshead_position":
         keys = ("datum", "reference_length", "reference_tension")
@@ -97,7 +97,7 @@ def _check_keys(name: str, channel: Channel) -> None:
 
 
 def _check_units(name: str, channel: Channel, dimension: Dimension) -> None:
-    """Refuse a unit that is not one of the channel's dimension."""
+    """Refuse a unit that does not match the channel's dimension."""
     if channel.unit != CLOCK or name != "time":
         scale_to_si(channel.unit, dimension)
     scale_to_si(channel.time_unit, "time")
@@ -111,12 +111,12 @@ def _check_units(name: str, channel: Channel, dimension: Dimension) -> None:
 
 
 def _are_signs(text: str) -> bool:
-    """Whether every character is one that a parser of lines can part fields by."""
+    """Whether every character can separate fields in a line parser."""
     return text.isascii() and not set(text) & set("\0\n\r")
 
 
 class Layout(BaseModel):
-    """What a log file looks like.  Rows count from 1, as an editor counts them."""
+    """Form of a log file.  Rows count from 1, as in an editor."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
 
@@ -129,7 +129,7 @@ class Layout(BaseModel):
     encoding: str = "utf-8"
     """A byte-order mark at the start of a file is always accepted."""
     comment: str = ""
-    """Lines that begin with this are kept as metadata; empty: there are none."""
+    """Lines that begin with this are kept as metadata; empty if there are none."""
     quote: str = '"'
     missing: tuple[str, ...] = ("", "NaN", "nan")
     preamble_rows: int = Field(default=0, ge=0)
@@ -209,7 +209,7 @@ class Layout(BaseModel):
             )
         # an MTS file of blocks states its decimal mark itself
         decimal = "" if self.format == "blocks" else self.decimal
-        # quoted fields may hold the mark that parts them: "11,044.03516", "0,05"
+        # quoted fields may contain the separator itself: "11,044.03516", "0,05"
         is_quoted = bool(self.quote) and self.delimiter != " "
         thousands = "" if is_quoted and self.thousands == self.delimiter else self.thousands
         decimal = "" if is_quoted and self.decimal == self.delimiter else decimal
@@ -241,7 +241,7 @@ class Layout(BaseModel):
         return self
 
     def _check_load_train(self) -> None:
-        """Refuse a mass whose place is not stated, and what is no mass or compliance."""
+        """Refuse a mass without a stated place, and values that are not a mass or compliance."""
         if self.attached_mass is not None and self.load_cell_at is None:
             raise SettingsError(
                 "a layout has an attached_mass, and does not say where the load cell is",
@@ -262,7 +262,7 @@ class Layout(BaseModel):
 
     @property
     def load_train(self) -> LoadTrain:
-        """What the layout states of it, in SI."""
+        """Load train stated by the layout, in SI."""
         mass, compliance = self.attached_mass, self.machine_compliance
         return LoadTrain(
             load_cell_at=self.load_cell_at,
@@ -274,7 +274,7 @@ class Layout(BaseModel):
 
     @staticmethod
     def dimension(name: str) -> Dimension:
-        """What a channel has to be, from its name; `SettingsError` where it is not known."""
+        """Dimension required of a channel, from its name; `SettingsError` if unknown."""
         dimension = _CHANNEL_DIMENSION.get(name.split(".")[0])
         if dimension is None:
             raise SettingsError(
@@ -299,19 +299,19 @@ _Limit = Literal["file_size", "unpacked_size", "line_length", "columns", "time"]
 
 
 def check_regular(path: Path, mode: int) -> None:
-    """`LogError` where a path is no regular file: a pipe or a device may never end.
+    """Raise `LogError` if a path is not a regular file: a pipe or device may never end.
 
     Parameters
     ----------
     path : pathlib.Path
         For the message.
     mode : int
-        As `os.stat` gives it, links followed.
+        From `os.stat`, links followed.
 
     Raises
     ------
     LogError
-        If it is anything else.
+        If the path is anything else.
     """
     if not stat.S_ISREG(mode):
         raise LogError(
@@ -323,14 +323,14 @@ def check_regular(path: Path, mode: int) -> None:
 
 
 class Watch:
-    """Holds one log against the limits while it is read.
+    """Check one log against the limits while it is read.
 
     Parameters
     ----------
     path : pathlib.Path
         The log.
     limits : Limits, optional
-        What it may be; the defaults where left out.
+        Limits of the log; defaults if omitted.
 
     Examples
     --------
@@ -342,13 +342,13 @@ most. If that is what was logged, raise columns under [limits] of campaign.toml.
     """
 
     def __init__(self, path: Path, limits: Limits | None = None) -> None:
-        """Begin to count the time."""
+        """Start the timer."""
         self.path = path
         self.limits = limits or Limits()
         self._begin = time.monotonic()
 
     def check_size(self, n_bytes: int) -> None:
-        """`LogError` where the file has more bytes than ``file_size``."""
+        """Raise `LogError` if the file has more bytes than ``file_size``."""
         if n_bytes > self.limits.file_size:
             raise self._beyond(
                 "file_size", "the file is too large", f"{n_bytes:,} bytes",
@@ -356,19 +356,19 @@ most. If that is what was logged, raise columns under [limits] of campaign.toml.
             )  # fmt: skip
 
     def check_unpacked(self, n_bytes: int, what: str = "the file") -> None:
-        """`LogError` where what a file unpacks to is more than ``unpacked_size``.
+        """Raise `LogError` if the file unpacks to more than ``unpacked_size``.
 
         Parameters
         ----------
         n_bytes : int
-            What it states, or what has come out of it so far.
+            Stated size, or bytes unpacked so far.
         what : str
             For the message: ``the workbook``, ``variable 'A'``.
 
         Raises
         ------
         LogError
-            If it is more.
+            If the size exceeds the limit.
         """
         if n_bytes > self.limits.unpacked_size:
             raise self._beyond(
@@ -377,7 +377,7 @@ most. If that is what was logged, raise columns under [limits] of campaign.toml.
             )  # fmt: skip
 
     def check_columns(self, n_columns: int, *, row: int | None = None) -> None:
-        """`LogError` where there are more columns than ``columns``."""
+        """Raise `LogError` if there are more columns than ``columns``."""
         if n_columns > self.limits.columns:
             raise self._beyond(
                 "columns", "the file has too many columns", f"{n_columns:,}",
@@ -385,27 +385,27 @@ most. If that is what was logged, raise columns under [limits] of campaign.toml.
             )  # fmt: skip
 
     def check_time(self) -> None:
-        """`LogError` where reading has taken longer than ``time``; to be called between blocks."""
+        """Raise `LogError` if reading has taken longer than ``time``; call it between blocks."""
         seconds = time.monotonic() - self._begin
         if seconds > self.limits.time:
             raise self.too_slow(seconds)
 
     def too_slow(self, seconds: float) -> LogError:
-        """Error of a file that took so long, and was not read."""
+        """Error for a file that took too long and was not read."""
         return self._beyond(
             "time", "the file takes too long to read", f"{seconds:.3g} s so far",
             f"{self.limits.time:g} s at most",
         )  # fmt: skip
 
     def too_much_memory(self) -> LogError:
-        """Error of a file whose reader was refused more memory."""
+        """Error for a file whose reader was refused more memory."""
         return self._beyond(
             "unpacked_size", "the file takes more memory than it may", "more when it is read",
             f"{self.limits.unpacked_size:,} bytes at most", before=_DAMAGED,
         )  # fmt: skip
 
     def broken(self, found: str) -> LogError:
-        """Error of a file that ended the process of its reader."""
+        """Error for a file that terminated the reader process."""
         return self._beyond(
             "unpacked_size", "the library that reads this format broke at the file", found,
             f"an intact file that takes {self.limits.unpacked_size:,} bytes of memory at most",
@@ -413,7 +413,7 @@ most. If that is what was logged, raise columns under [limits] of campaign.toml.
         )  # fmt: skip
 
     def long_line(self, row: int) -> LogError:
-        """Error of a line that is longer than ``line_length``."""
+        """Error for a line longer than ``line_length``."""
         return self._beyond(
             "line_length", "a line is too long to be a row of a log",
             f"more than {self.limits.line_length:,} bytes without a line end", "one line a row",
@@ -443,17 +443,17 @@ most. If that is what was logged, raise columns under [limits] of campaign.toml.
 
 @dataclass(frozen=True)
 class LogParts:
-    """Parts of a raw file; no number depends on them.
+    """Division of a raw file into parts; it does not affect any number.
 
     Parameters
     ----------
     in_memory : int
-        Bytes of a text file, or of the columns of a binary one, up to which its columns stay
-        in memory. [1]
+        Bytes of a text file, or of the columns of a binary one, up to which its columns stay in
+        memory. [1]
     n_bytes : int
         Bytes of a part, of text or of columns; a shorter file is one part. [1]
     folder : pathlib.Path
-        Where the scratch files of its columns lie.
+        Folder of the scratch files of its columns.
     """
 
     in_memory: int = 32 << 20
@@ -461,11 +461,11 @@ class LogParts:
     folder: Path = field(default_factory=scratch_folder)
 
     def folder_of(self, n_bytes: int) -> Path | None:
-        """Where columns of a file of that length lie; None in memory."""
+        """Folder for the columns of a file of that length; None for memory."""
         return self.folder if n_bytes > self.in_memory else None
 
     def length_of(self, n_bytes: int) -> int:
-        """Bytes of a part of a file of that length."""
+        """Bytes per part of a file of that length."""
         return max(min(self.n_bytes, n_bytes), 1)
 
 
@@ -473,7 +473,7 @@ _LONGEST = 100_000
 
 
 def short_metadata(found: Mapping[str, str]) -> tuple[dict[str, str], tuple[Note, ...]]:
-    """Return the texts that are short enough to be kept, and a note on each that is not.
+    """Return the texts short enough to keep, and a note on each of the others.
 
     Parameters
     ----------
@@ -483,9 +483,9 @@ def short_metadata(found: Mapping[str, str]) -> tuple[dict[str, str], tuple[Note
     Returns
     -------
     metadata : dict
-        Those of 100,000 characters or fewer.
+        Texts of 100,000 characters or fewer.
     notes : tuple of Note
-        One a text that is left out.
+        One for each text left out.
 
     Examples
     --------

@@ -1,8 +1,8 @@
 """MATLAB logs: v4 to v7 by scipy, v7.3 as HDF5.
 
-Columns are variables, or fields of one struct (``group``; ``run.log`` is a struct in a
-struct), or columns of a matrix.  Objects of MATLAB's own classes (table, timetable,
-string, function handles) are refused: only MATLAB can read them.
+Columns are variables, fields of one struct (``group``; ``run.log`` is a nested struct) or columns
+of a matrix.  Objects of MATLAB's own classes (table, timetable, string, function handles) are
+refused, because only MATLAB can read them.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ from reduction.record.errors import LogError
 
 
 def _has_narrow_numbers(value: Any) -> bool:
-    """Whether numbers in it, at any depth, are of a class that does not hold every stored one.
+    """Whether any number in it, at any depth, has a type too narrow for the stored values.
 
     Examples
     --------
@@ -50,7 +50,7 @@ def _has_narrow_numbers(value: Any) -> bool:
 
 
 def _equal_numbers(value: Any, stored: Any) -> bool:
-    """Whether all numbers in two values are the same, whatever their types.
+    """Whether all numbers in two values are equal, whatever their types.
 
     Examples
     --------
@@ -64,7 +64,7 @@ def _equal_numbers(value: Any, stored: Any) -> bool:
 
 
 def _numbers(value: Any) -> Iterator[NDArray[Any]]:
-    """Arrays of numbers in cells and structs, one after the other."""
+    """Numeric arrays in cells and structs, one after another."""
     waiting = [value]
     while waiting:
         found = waiting.pop()
@@ -82,23 +82,23 @@ OF_MATLAB_ALONE = (
     "A table or timetable can be read by MATLAB alone: save it as a struct of columns, "
     "table2struct(T, 'ToScalar', true)."
 )
-"""What to do about an object of one of MATLAB's own classes."""
+"""Advice for an object of one of MATLAB's own classes."""
 
 _COMPLEX = "complex numbers"
 
 _HEADER = 128  # bytes before the first variable of a file of version 5
 
-_LONGEST_HEAD = 1 << 16  # bytes of a variable before its values
+_LONGEST_HEAD = 1 << 16  # maximum bytes of a variable before its values
 
 _NOT_MATLAB = (
     MatReadError, ValueError, IndexError, OSError, TypeError, KeyError, EOFError, zlib.error,
     NotImplementedError, UnboundLocalError, struct.error,
-    ArithmeticError, AttributeError, SystemError,  # numbers of a type that there is not
+    ArithmeticError, AttributeError, SystemError,  # unknown numeric type
 )  # fmt: skip
 
 
 class _Variables(Mapping[str, Any]):
-    """Variables of a v4 to v7 file, each read when it is asked for."""
+    """Variables of a v4 to v7 file, each read on request."""
 
     def __init__(self, path: Path, watch: Watch) -> None:
         self.path, self.watch = path, watch
@@ -121,7 +121,7 @@ class _Variables(Mapping[str, Any]):
         if name in self.twice:
             raise _no_array(self.path, name, "two variables of that name")
         self.watch.check_time()
-        found = self._loaded(name, place, mat_dtype=True)  # true/false apart from numbers
+        found = self._loaded(name, place, mat_dtype=True)  # tells logical values from numbers
         if scipy.sparse.issparse(found):
             raise _no_array(self.path, name, "a sparse matrix")
         if np.iscomplexobj(found):
@@ -138,10 +138,10 @@ class _Variables(Mapping[str, Any]):
     def _loaded(self, name: str, place: tuple[int, int] | None, *, mat_dtype: bool) -> Any:
         try:
             with _strictly(), self.path.open("rb") as stream:
-                # the library would look for it from the first on
+                # the library would search from the first variable on
                 file: Any = stream if place is None else _alone(stream, *place)
                 return scipy.io.loadmat(file, mat_dtype=mat_dtype, variable_names=[name])[name]
-        except np.exceptions.ComplexWarning:  # of the imaginary part, which would be dropped
+        except np.exceptions.ComplexWarning:  # the imaginary part would be dropped
             raise _no_array(self.path, name, _COMPLEX) from None
         except (*_NOT_MATLAB, UserWarning, RuntimeWarning) as error:
             raise LogError(
@@ -158,7 +158,7 @@ class _Variables(Mapping[str, Any]):
 
 @contextmanager
 def _strictly() -> Iterator[None]:
-    """Refuse what scipy goes on with: an unknown order of bytes, texts of no letters."""
+    """Refuse input that scipy would accept: an unknown byte order, invalid text."""
     with warnings.catch_warnings():
         warnings.simplefilter("error", UserWarning)
         warnings.simplefilter("error", RuntimeWarning)
@@ -166,12 +166,12 @@ def _strictly() -> Iterator[None]:
 
 
 def _old(stream: Any) -> list[tuple[str, None]]:
-    """Variables of a file of version 4."""
+    """Variables of a version 4 file."""
     return [(name, None) for name, _, _ in scipy.io.whosmat(stream)]
 
 
 def _stored(stream: BinaryIO, watch: Watch) -> Iterator[tuple[str, tuple[int, int]]]:
-    """Variables of a file of version 5 to 7: where each begins, and how many bytes it has."""
+    """Variables of a version 5 to 7 file, each with its start and length in bytes."""
     order = "<" if stream.read(_HEADER)[126:] == b"IM" else ">"
     begin, size, count = _HEADER, stream.seek(0, io.SEEK_END), 0
     while begin < size:
@@ -179,7 +179,7 @@ def _stored(stream: BinaryIO, watch: Watch) -> Iterator[tuple[str, tuple[int, in
         watch.check_columns(count := count + 1)
         stream.seek(begin)
         length = 8 + struct.unpack(f"{order}4xI", stream.read(8))[0]
-        # an object of one of MATLAB's own classes has no shape, and the library fails at it
+        # an object of one of MATLAB's own classes has no shape, and the library fails on it
         with suppress(TypeError):
             for name, _, _ in scipy.io.whosmat(_alone(stream, begin, min(length, _LONGEST_HEAD))):
                 yield name, (begin, length)
@@ -187,7 +187,7 @@ def _stored(stream: BinaryIO, watch: Watch) -> Iterator[tuple[str, tuple[int, in
 
 
 def _alone(stream: BinaryIO, begin: int, length: int) -> Any:
-    """One variable as a file of its own."""
+    """One variable as a separate file."""
     stream.seek(0)
     head = stream.read(_HEADER)
     stream.seek(begin)
@@ -195,7 +195,7 @@ def _alone(stream: BinaryIO, begin: int, length: int) -> Any:
 
 
 def _no_array(path: Path, name: str, found: str) -> LogError:
-    """Error of a variable or field that is no array of numbers."""
+    """Error for a variable or field that is not a numeric array."""
     return LogError(
         path,
         f"'{name}' is not an array",
@@ -205,18 +205,18 @@ def _no_array(path: Path, name: str, found: str) -> LogError:
     )
 
 
-_LETTER = 60  # bytes of a character while a text is put together
+_LETTER = 60  # bytes per character while a text is assembled
 
 _OWN_CLASSES = (MatlabOpaque, MatlabFunction, MatlabObject)
 
 
 class _Struct(Mapping[str, Any]):
-    """Members of a v7.3 file or of one of its structs, in the shapes of the older versions."""
+    """Members of a v7.3 file or one of its structs, in the shapes of older versions."""
 
     def __init__(self, path: Path, group: h5py.Group, watch: Watch) -> None:
         self.path, self.group, self.watch = path, group, watch
         watch.check_columns(len(group))
-        # what MATLAB keeps for itself has names that no variable can have
+        # MATLAB's internal members have names that no variable can have
         self.names = [name for name in group if not name.startswith("#")]
 
     def __getitem__(self, name: str) -> Any:
@@ -235,7 +235,7 @@ class _Struct(Mapping[str, Any]):
             return np.zeros((0, 0))
         if kind == "char":
             self.watch.check_unpacked(_LETTER * (dataset.size or 0), f"'{dataset.name}'")
-        values = read_data_set(self.path, dataset, self.watch).T  # MATLAB counts columns first
+        values = read_data_set(self.path, dataset, self.watch).T  # MATLAB is column-major
         if kind == "char" and values.dtype.kind == "u":
             return np.array(["".join(chr(code) for code in row) for row in values.tolist()])
         if kind == "logical":
@@ -245,7 +245,7 @@ class _Struct(Mapping[str, Any]):
         return values
 
     def _cells(self, references: NDArray[Any]) -> NDArray[Any]:
-        """Cells that hold text; a reference is followed to characters of this file alone."""
+        """Text cells; a reference is followed only to characters in this file."""
         self.watch.check_columns(references.size)
         cells = np.empty(references.size, dtype=object)
         length = 0
@@ -255,7 +255,7 @@ class _Struct(Mapping[str, Any]):
                 raise LogError(
                     self.path, "a cell does not hold text", found=str(target), needed="text"
                 )
-            # every one may refer to the same long text
+            # every reference may point to the same long text
             length += _LETTER * (target.size or 0)
             self.watch.check_unpacked(length, f"'{target.name}'")
             cells[place] = self._values(target)
@@ -269,7 +269,7 @@ class _Struct(Mapping[str, Any]):
 
 
 def struct_fields(value: Any) -> Mapping[str, Any] | None:
-    """Fields of a scalar struct, or None where the value is none."""
+    """Fields of a scalar struct, or None for any other value."""
     if isinstance(value, _Struct):
         return value
     if (
@@ -284,7 +284,7 @@ def struct_fields(value: Any) -> Mapping[str, Any] | None:
 
 
 def struct_place(fields: Mapping[str, Any]) -> int | None:
-    """Where a struct of version 7.3 stands in its file: by it one that holds itself is known."""
+    """Address of a v7.3 struct in its file, to detect one that contains itself."""
     if not isinstance(fields, _Struct):
         return None
     place: int = h5py.h5o.get_info(fields.group.id).addr
@@ -380,7 +380,7 @@ def matlab_table(path: Path, scope: Mapping[str, Any], layout: Layout) -> Column
 
 @contextmanager
 def open_matlab(path: Path, watch: Watch | None = None) -> Iterator[Mapping[str, Any]]:
-    """Variables of a MATLAB file of any version; `LogError` where the file is none."""
+    """Variables of a MATLAB file of any version; `LogError` for any other file."""
     watch = watch or Watch(path)
     if h5py.is_hdf5(path):
         with open_hdf5(path) as file:
@@ -390,7 +390,7 @@ def open_matlab(path: Path, watch: Watch | None = None) -> Iterator[Mapping[str,
 
 
 def read_matlab(path: Path, layout: Layout, *, name: str, watch: Watch | None = None) -> RawLog:
-    """Read the declared columns of one struct, of one matrix, or of the file's variables."""
+    """Read the declared columns from a struct, a matrix, or the file's variables."""
     source = hash_source(path, name)
     with open_matlab(path, watch) as scope:
         columns, n_rows = read_columns(path, layout, matlab_table(path, scope, layout), watch=watch)

@@ -1,4 +1,4 @@
-"""Text fields to numbers, in parts of a long log."""
+"""Converts text fields to numbers, in parts for a long log."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from reduction.record.measurement import Floats, Integers
 from reduction.record.plain_text import cut
 from reduction.record.samples import BLOCK, ColumnWriter
 
-_BLOCK = 1 << 20  # bytes that the parser takes at a time, a line at least
+_BLOCK = 1 << 20  # bytes per block of the parser, at least one line
 
 
 @dataclass(frozen=True)
@@ -39,14 +39,13 @@ class Fields:
     Parameters
     ----------
     numbers : dict of str to list of ndarray
-        By channel key, in the file's unit, in pieces one after another; declared missing
-        marks are NaN.
+        Pieces by channel key, in the file's unit, in order; declared missing marks are NaN.
     clock : dict of str to list of str
-        Text of the channels that are a clock.
+        Text of the clock channels.
     n_rows : int
         Data rows.
     row : ndarray of int, shape (n_rows,), optional
-        Editor's row of each where they are not those of consecutive lines.
+        Editor's row of each data row if they are not consecutive lines.
     """
 
     numbers: dict[str, list[Floats]]
@@ -62,7 +61,7 @@ def read_fields(
     try:
         return _read(rows, wanted, n_fields)
     except LogError as error:
-        if error.row is not None:  # what is wrong further up is told first
+        if error.row is not None:  # faults further up are reported first
             read_fields(rows.above(error.row), wanted, n_fields)
         raise
 
@@ -72,7 +71,7 @@ def _read(rows: TextRows, wanted: Sequence[tuple[DeclaredColumn, int]], n_fields
     places = [place for _, place in wanted]
     clocks = [place for want, place in wanted if want.unit == CLOCK]
     has_thousands = _has_thousands(rows)
-    if n_fields == 1 or has_thousands:  # a line of blanks would be a field, or one too few
+    if n_fields == 1 or has_thousands:  # a blank line would be a field, or lack one
         rows = _blank_to_empty(rows)
     table = None
     if not has_thousands:
@@ -103,13 +102,13 @@ def _read(rows: TextRows, wanted: Sequence[tuple[DeclaredColumn, int]], n_fields
 
 
 def _numbers(column: pa.ChunkedArray) -> list[Floats] | None:
-    """Numbers of a parsed column in pieces, or None where it has to be looked at as text."""
+    """Numbers of a parsed column in pieces, or None if it has to be examined as text."""
     if pa.types.is_string(column.type):
         return None
     pieces = []
     for chunk in column.chunks:
         piece = chunk.to_numpy(zero_copy_only=False)
-        # arrow takes the words nan and inf for numbers; a log may not
+        # arrow reads the words nan and inf as numbers, which are not allowed in a log
         if np.count_nonzero(np.isfinite(piece)) != len(chunk) - chunk.null_count:
             return None
         pieces.append(piece)
@@ -128,7 +127,7 @@ def _parse(
     layout = rows.layout
     names = [str(place) for place in range(n_fields)]
     types = {str(place): pa.string() if place in as_text else pa.float64() for place in set(places)}
-    # arrow drops a byte-order mark, which is none within a file; a blank line before it is no row
+    # a byte-order mark here is data, which arrow would drop at the start; a blank line is no row
     is_marked = bytes(rows.text[: len(BOM_UTF8)]) == BOM_UTF8
     return pa_csv.read_csv(
         pa.py_buffer(b"\n" + bytes(rows.text) if is_marked else rows.text),
@@ -157,7 +156,7 @@ def _parse_as_text(rows: TextRows, n_fields: int, places: Sequence[int]) -> pa.T
 
 
 def _blank_to_empty(rows: TextRows) -> TextRows:
-    """Lines of blanks alone made empty, so that they are no rows; line numbers stay."""
+    """Lines of only blanks emptied, so that they are not rows; line numbers are kept."""
     blank = rb"(?m)^[ \t]+(?=\r?$)" if rows.layout.delimiter != "\t" else rb"(?m)^ +(?=\r?$)"
     text = re.sub(blank, b"", rows.text)
     filled = text.rstrip(b"\r\n")
@@ -166,7 +165,7 @@ def _blank_to_empty(rows: TextRows) -> TextRows:
 
 
 def _ragged(rows: TextRows, n_fields: int, message: str) -> LogError:
-    """First row with another number of fields, or in which a quote is not closed."""
+    """Error for the first row with another number of fields or an unclosed quote."""
     n_lines = count_lines(rows.text)
     for line, text in enumerate(rows.lines()):
         if error := rows.unclosed(line, text):
@@ -192,12 +191,12 @@ def _ragged(rows: TextRows, n_fields: int, message: str) -> LogError:
 def _second_look(
     rows: TextRows, row: Integers | None, want: DeclaredColumn, column: pa.ChunkedArray
 ) -> Floats:
-    """Numbers of a text column, or a `LogError` that names its first bad field."""
+    """Numbers of a text column, or a `LogError` for its first bad field."""
     layout = rows.layout
     trimmed = pc.utf8_trim_whitespace(column)
     is_missing = pc.is_in(trimmed, value_set=pa.array(layout.missing, pa.string()))
     point, mark = re.escape(layout.decimal), re.escape(layout.thousands)
-    # a group follows one to three digits of which the first is no 0: 0,244 is a decimal comma
+    # a group follows one to three digits that do not start with 0: 0,244 is a decimal comma
     whole = rf"\d+|[1-9]\d{{0,2}}(?:{mark}\d{{3}})+" if mark else r"\d+"
     number = rf"^[+-]?(?:(?:{whole})(?:{point}\d*)?|{point}\d+)(?:[eE][+-]?\d+)?$"
     is_number = pc.match_substring_regex(trimmed, number)
@@ -240,7 +239,7 @@ _BY_BLANKS = re.compile(
 
 
 def _is_unit(text: str, dimension: Dimension) -> bool:
-    """Whether a field is a unit in which its column could be."""
+    """Whether a field is a unit that its column could have."""
     try:
         scale_to_si(text.strip("()[] "), dimension)
     except SettingsError:
@@ -249,7 +248,7 @@ def _is_unit(text: str, dimension: Dimension) -> bool:
 
 
 def _what_to_set(found: str, want: DeclaredColumn, layout: Layout) -> str:
-    """What of the layout a field asks for that is no number by it."""
+    """Layout setting that would make a non-numeric field valid."""
     parted = "," if layout.decimal == "." else "."
     is_parted = not layout.thousands and _GROUPS[parted].fullmatch(found) is not None
     has_comma = layout.decimal == "." and _COMMA.fullmatch(found) is not None
@@ -292,12 +291,12 @@ def _what_to_set(found: str, want: DeclaredColumn, layout: Layout) -> str:
 
 
 def _table_ends_at(text: str) -> str:
-    """What to set where a line of words stands below the table."""
+    """Advice for a line of words below the table."""
     return f'Where the table ends above this line, set ends_at = "{cut(text, 30)}" in the layout.'
 
 
 AT_A_TIME = 2
-"""Parts whose numbers are read together. [1]."""
+"""Number of parts whose numbers are read together. [1]."""
 
 _WORKERS = 4
 
@@ -305,7 +304,7 @@ _WORKERS = 4
 def in_order(
     workers: Executor, read: Callable[[TextRows], Fields], parts: Iterator[TextRows]
 ) -> Iterator[tuple[TextRows, Fields]]:
-    """Parts with what has been read from each, a few at the same time."""
+    """Parts with the results read from each, a few at a time."""
     waiting: deque[tuple[TextRows, Future[Fields]]] = deque()
     error: ReductionError | None = None
     is_done = False
@@ -325,18 +324,18 @@ def in_order(
 
 
 class GrowingLog:
-    """Columns of a text log, in memory or, where a folder is given, in scratch files there.
+    """Columns of a text log, in memory or, if a folder is given, in its scratch files.
 
     Parameters
     ----------
     wanted : sequence of Wanted
         The columns.
     folder : pathlib.Path or None
-        Where the scratch files lie.  The text of a clock stays in memory.
+        Folder of the scratch files.  The text of a clock stays in memory.
     """
 
     def __init__(self, wanted: Sequence[DeclaredColumn], folder: Path | None) -> None:
-        """Begin with no rows."""
+        """Start with no rows."""
         self._wanted = wanted
         self._folder = folder
         self._columns = {want.key: ColumnWriter(folder) for want in wanted if want.unit != CLOCK}
@@ -346,7 +345,7 @@ class GrowingLog:
         self.first_row = 0
 
     def add(self, fields: Fields, first_row: int) -> None:
-        """Add data rows that follow; the first of them stands in an editor's row."""
+        """Append data rows; `first_row` is the editor's row of the first."""
         if not fields.n_rows:
             return
         row = fields.row
@@ -359,14 +358,14 @@ class GrowingLog:
             self._row = _counted(self._folder, self.first_row, self.n_rows)
         if self._row is not None:
             self._row.append(np.arange(first, last + 1) if row is None else row)
-        with ThreadPoolExecutor(_WORKERS) as workers:  # fresh memory is slow to touch
+        with ThreadPoolExecutor(_WORKERS) as workers:  # first access to fresh memory is slow
             list(workers.map(self._append, fields.numbers, fields.numbers.values()))
         for key, texts in fields.clock.items():
             self._clock[key] += texts
         self.n_rows += fields.n_rows
 
     def finish(self, path: Path, layout: Layout) -> dict[str, Floats]:
-        """All columns, shape (n_rows,); of a clock the elapsed seconds."""
+        """All columns, shape (n_rows,); elapsed seconds for a clock."""
         self.row: Integers | None = None if self._row is None else self._row.finish()
         self.text = {key: tuple(texts) for key, texts in self._clock.items()}
         with ThreadPoolExecutor(_WORKERS) as workers:
@@ -395,7 +394,7 @@ class GrowingLog:
 
 
 def _counted(folder: Path | None, first: int, size: int) -> ColumnWriter:
-    """Rows so far, which were consecutive."""
+    """Row numbers so far, which were consecutive."""
     writer = ColumnWriter(folder, np.int64)
     for start in range(0, size, BLOCK):
         writer.append(np.arange(first + start, first + min(start + BLOCK, size)))

@@ -1,4 +1,4 @@
-"""Parquet, read by pyarrow, the declared columns alone."""
+"""Reads the declared columns of Parquet files with pyarrow."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ _UNIT_KEYS = (b"units", b"unit")
 
 _BUFFER = 1 << 20  # bytes
 
-_MACHINERY = (b"ARROW:schema", b"pandas")  # for programs, not for a reader
+_MACHINERY = (b"ARROW:schema", b"pandas")  # for programs, not for users
 
 
 def open_parquet(path: Path) -> pyarrow.parquet.ParquetFile:
-    """Open a Parquet file; `LogError` where the file is none."""
+    """Open a Parquet file; `LogError` for any other file."""
     try:
-        # else each column of a row group is read whole
+        # otherwise each column of a row group is read whole
         return pyarrow.parquet.ParquetFile(path, buffer_size=_BUFFER, pre_buffer=False)
     except (pyarrow.ArrowException, OSError) as error:
         raise LogError(
@@ -50,9 +50,9 @@ def parquet_table(
 
     def load(place: int, n_rows: int) -> Iterator[NDArray[Any]]:
         name = schema.names[place]
-        before = schema.names[:place].count(name)  # a name that stands twice is read twice
+        before = schema.names[:place].count(name)  # a duplicate name is read twice
         try:
-            # what is no number is refused by its kind: a text may stand once for a million rows
+            # other types are refused unread: one stored text may stand for a million rows
             if not file.metadata.num_rows or not _is_number(schema.types[place]):
                 yield _values(pyarrow.array([], schema.types[place]))
             for batch in file.iter_batches(batch_size=n_rows, columns=[name]):
@@ -83,7 +83,7 @@ def _values(column: pyarrow.Array) -> NDArray[Any]:
     if column.null_count and pyarrow.types.is_integer(column.type):
         try:
             column = column.cast(pyarrow.float64())
-        except pyarrow.ArrowInvalid:  # a number that float64 cannot hold, which is told
+        except pyarrow.ArrowInvalid:  # reported: a number that float64 cannot hold
             column = column.fill_null(0)
     return np.asarray(column.to_numpy(zero_copy_only=False))
 

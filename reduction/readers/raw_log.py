@@ -1,7 +1,7 @@
-"""A log as it was read, and the bytes that it was read from.
+"""A log as read, and the bytes it was read from.
 
-A reader works on the bytes that were hashed, so that the hash of a product is the hash of
-what was parsed.
+A reader works on the bytes that were hashed, so that the hash of a product is that of the parsed
+bytes.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from reduction.record.notes import Note
 
 @dataclass(frozen=True)
 class RawLog:
-    """What a reader returns.
+    """Result of a reader.
 
     Parameters
     ----------
@@ -35,15 +35,15 @@ class RawLog:
     text : dict of str to tuple of str
         Channels that are text by nature (the clock of a stepwise test).
     first_row : int
-        Row of the first data row, as an editor counts; 0 for formats without rows.
+        Editor's row of the first data row; 0 for formats without rows.
     row : ndarray of int, shape (n_rows,), optional
-        Editor's row of each data row where the rows are not consecutive.
+        Editor's row of each data row if they are not consecutive.
     n_rows_read : int
-        Data rows seen; equal to the length of the columns.
+        Number of data rows; equal to the length of the columns.
     metadata : dict of str to str
-        Preamble and comment lines, file properties; as printed.
+        Preamble and comment lines and file properties, unchanged.
     notes : tuple of Note
-        What the reader wants a person to know.
+        Notes of the reader for the user.
     """
 
     source: Source
@@ -64,12 +64,12 @@ _BLOCK = 1 << 20
 
 
 def hash_source(path: Path, name: str) -> Source:
-    """Hash a file in pieces, so that its size does not matter.
+    """Hash a file in pieces, so that it may be of any size.
 
     Raises
     ------
     LogError
-        If the file is no regular one, cannot be opened or is empty.
+        If the file is not a regular file, cannot be opened, or is empty.
     """
     _state(path)
     digest, size = hashlib.sha256(), 0
@@ -85,29 +85,29 @@ def hash_source(path: Path, name: str) -> Source:
 
 
 class RunningHash:
-    """Hash of a file that is read in parts: a worker hashes one while the next is read."""
+    """Hash of a file read in parts: a worker hashes one while the next is read."""
 
     def __init__(self) -> None:
-        """Begin with no bytes."""
+        """Start with no bytes."""
         self._digest = hashlib.sha256()
         self._size = 0
         self._worker = ThreadPoolExecutor(1)
         self._last: Future[None] | None = None
 
     def add(self, data: memoryview) -> None:
-        """Hash the next bytes, which must stay as they are; those before them are done then."""
+        """Hash the next bytes, which must not change; earlier ones are finished on return."""
         if self._last is not None:
             self._last.result()
         self._size += len(data)
         self._last = self._worker.submit(self._digest.update, data)
 
     def source(self, name: str) -> Source:
-        """All of the file."""
+        """Source for the whole file."""
         self.close()
         return Source(name, self._digest.hexdigest(), self._size)
 
     def close(self) -> None:
-        """Let the worker go."""
+        """Stop the worker."""
         self._worker.shutdown()
 
 
@@ -122,7 +122,7 @@ def read_bytes(path: Path) -> bytes:
     Raises
     ------
     LogError
-        If the file cannot be opened, is empty, or changes meanwhile.
+        If the file cannot be opened, is empty, or changes while it is read.
     """
     with unchanged(path):
         try:
@@ -135,9 +135,9 @@ def read_bytes(path: Path) -> bytes:
 
 @contextmanager
 def unchanged(path: Path) -> Iterator[int]:
-    """Bytes of a regular file; `LogError` where it changes in the ``with`` block, or is refused.
+    """Size of a regular file; `LogError` if it changes in the ``with`` block or is refused.
 
-    A change stands before what the block itself finds wrong: rows cut off belong to such a file.
+    A change takes precedence over errors raised in the block: a changed file may be cut off.
     """
     before = _state(path)
     try:
@@ -148,14 +148,14 @@ def unchanged(path: Path) -> Iterator[int]:
         raise
     except OSError as error:
         if isinstance(error, ReductionError):
-            raise  # of another file
+            raise  # an error of another file
         raise _change(path, before) or unreadable(path, error) from error
     if (found := _change(path, before)) is not None:
         raise found
 
 
 def _change(path: Path, before: tuple[int, int]) -> LogError | None:
-    """What a file that has changed is told with."""
+    """Error for a file that has changed."""
     after = _state(path)
     if after == before:
         return None
@@ -179,7 +179,7 @@ def _state(path: Path) -> tuple[int, int]:
 
 
 def unreadable(path: Path | str, error: OSError) -> LogError:
-    """Error of a file that the system does not let be read."""
+    """Error for a file that the system does not allow to be read."""
     return LogError(
         path,
         "the file cannot be read",
@@ -189,6 +189,6 @@ def unreadable(path: Path | str, error: OSError) -> LogError:
 
 
 def check_not_empty(path: Path, size: int) -> None:
-    """`LogError` where a file has no bytes."""
+    """Raise `LogError` if a file has no bytes."""
     if size == 0:
         raise LogError(path, "the file is empty", found="0 bytes", needed="a log")

@@ -1,4 +1,4 @@
-"""Reads the files of a test: one entry for every format."""
+"""Reads the files of a test, in any format."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from reduction.record.samples import trim_heap_after
 from reduction.record.settings import Limits, QualitySettings
 
 
-# each loads a package of its own, which most campaigns do without
+# each imports its own package, which most campaigns do not need
 def _read_tdms(path: Path, layout: Layout, **given: Any) -> RawLog:
     from reduction.readers.tdms import read_tdms
 
@@ -68,21 +68,21 @@ def read_log(
     parts: LogParts | None = None,
     limits: Limits | None = None,
 ) -> RawLog:
-    """Read a log in its declared layout.
+    """Read a log with its declared layout.
 
     Parameters
     ----------
     path : pathlib.Path
         The file.
     layout : Layout
-        What it looks like.
+        Layout of the file.
     name : str
         File name relative to the campaign folder.
     parts : Parts, optional
-        How much is read at a time, and from which length on columns lie on disk.  No number
-        depends on it.
+        Size of the parts, and the length from which columns are kept on disk.  It does not affect
+        any number.
     limits : Limits, optional
-        What it may be; the defaults where left out.
+        Limits of the file; defaults if omitted.
 
     Returns
     -------
@@ -92,9 +92,9 @@ def read_log(
     Raises
     ------
     LogError
-        If the file is not what the layout says, is beyond a limit, or changes while it is read.
+        If the file does not match the layout, exceeds a limit, or changes while it is read.
     DataError
-        If the scratch files of a long log do not fit on the disk.
+        If the disk has no room for the scratch files of a long log.
     """
     watch = Watch(path, limits)
     with unchanged(path) as n_bytes:
@@ -123,31 +123,31 @@ def read_record(
     Parameters
     ----------
     files : sequence of (path, layout, name)
-        In order of time; ``name`` is relative to the campaign folder.
+        In time order; ``name`` is relative to the campaign folder.
     test_id : str
         Key of the test.
     specimens : sequence of str
         Names; ``tension.1`` belongs to the first.
     quality : QualitySettings
-        When a sample is flagged.
+        Criteria for flagging a sample.
     length_needed : bool
         As in `reduction.readers.record_in_si.to_record`.
     parts : Parts, optional
-        How much of a file is read at a time.
+        Size of the parts read at a time.
     limits : Limits, optional
-        What each file may be.
+        Limits of each file.
 
     Returns
     -------
     record : Record
-        In SI, flags set, every row kept.
+        In SI, with flags set and every row kept.
     sources : tuple of Source
-        One a file.
+        One per file.
 
     Raises
     ------
     LogError
-        If a file cannot be read as its layout says.
+        If a file does not match its layout.
     SettingsError, DataError
         As in `reduction.readers.record_in_si.to_record`.
     """
@@ -189,11 +189,11 @@ def read_step_readings(
     Parameters
     ----------
     files : sequence of (path, layout, name)
-        One file; a stepwise test is too short to come in pieces.
+        One file; a stepwise test is too short for several.
     test_id : str
         For messages.
     limits : Limits, optional
-        What the file may be.
+        Limits of the file.
 
     Returns
     -------
@@ -205,7 +205,7 @@ def read_step_readings(
     Raises
     ------
     SettingsError
-        If there is not one file, or the layout lacks a channel.
+        If there is not exactly one file, or the layout lacks a channel.
     LogError
         If the file cannot be read, or a needed reading is missing.
     """

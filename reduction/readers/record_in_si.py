@@ -1,4 +1,4 @@
-"""Logs in the file's own units to one record in SI."""
+"""Converts logs in the file's own units to one record in SI."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from reduction.record.settings import QualitySettings
 
 
 def length_at_slack(layouts: Sequence[Layout]) -> float | None:
-    """Thimble-to-thimble length at which the layouts of a log say that it is slack."""
+    """Thimble-to-thimble length at which, according to its layouts, a log is slack."""
     lengths = set()
     for layout in layouts:
         channel = layout.channels.get("crosshead_position")
@@ -42,9 +42,9 @@ def length_at_slack(layouts: Sequence[Layout]) -> float | None:
 
 
 def reference_of(layouts: Sequence[Layout]) -> tuple[float | None, float]:
-    """Length at displacement zero and the tension under which it was read, as all layouts say it.
+    """Length at displacement zero and the tension at which it was read, from all layouts.
 
-    None and zero where they do not, or not all the same.
+    None and zero if they do not state it, or do not agree.
     """
     stated = set()
     for layout in layouts:
@@ -57,9 +57,9 @@ def reference_of(layouts: Sequence[Layout]) -> tuple[float | None, float]:
 
 
 def zero_to_set(layouts: Sequence[Layout], number: int, load: float) -> str:
-    """``zero`` of the load channel of a specimen, from 1, by which a load becomes nothing.
+    """Value of ``zero`` that makes a load reading zero; specimens count from 1.
 
-    Empty where the layouts of a log differ in it.  As the log has it: before the sign.
+    It is in the log's unit, before the sign is applied. Empty if the layouts of a log disagree.
     """
     texts = set()
     for layout in layouts:
@@ -93,7 +93,7 @@ class _Axis:
 
     @property
     def step(self) -> float:
-        """Median of the steps forward. [s]."""
+        """Median of the forward steps. [s]."""
         steps = np.diff(self.time)
         steps = steps[steps > 0]
         return float(np.median(steps)) if steps.size else np.nan
@@ -212,18 +212,18 @@ class _Piece:
     notes: tuple[Note, ...]
 
     def channel(self, key: str) -> Channel:
-        """Declaration of a channel; ``tension`` alone is ``tension.1``."""
+        """Declaration of a channel; ``tension`` without a number is ``tension.1``."""
         return self.layout.channels[_declared(self.layout, key)]
 
     def place_of(self, sample: int, channel: str) -> dict[str, str | int]:
-        """File, row and channel of a sample, as the facts of an error; none without rows."""
+        """File, row and channel of a sample, for an error message; empty without rows."""
         if self.log.first_row == 0 or self.resampled:
             return {}
         row = self.log.first_row + sample if self.log.row is None else int(self.log.row[sample])
         return {"file": self.log.source.name, "row": row, "channel": channel}
 
     def row_of(self, sample: int) -> str:
-        """Where a sample stands in its file, in words."""
+        """Position of a sample in its file, in words."""
         place = self.place_of(sample, "")
         what = f"row {place['row']}" if place else f"sample {sample + 1}"
         return f"{what} of {self.log.source.name}"
@@ -261,7 +261,7 @@ _BLANK = 1 / 3  # of the rows, at least, of a channel that is read less often th
 
 _FEWEST_READ = 50
 
-_IN_STEP = 0.98  # of the readings follow each other by at most so many of the usual interval:
+_IN_STEP = 0.98  # minimum share of readings at most this many usual intervals apart:
 
 _INTERVALS = 3
 
@@ -269,10 +269,10 @@ _INTERVALS = 3
 def _stamp_rows_with_readings(
     shared: Floats | None, values: dict[str, Floats], own: dict[str, Floats]
 ) -> None:
-    """Give a channel that is blank in most rows the times of its readings, in place.
+    """Give a channel that is blank in most rows the times of its own readings, in place.
 
-    A logger of several rates writes a row whenever any channel is read.  Where all channels are
-    blank in the same rows they stay as they are.
+    A multi-rate logger writes a row whenever any channel is read. If all channels are blank in the
+    same rows, they are left unchanged.
 
     Examples
     --------
@@ -296,7 +296,7 @@ def _stamp_rows_with_readings(
 
 
 def _is_mostly_blank(series: Floats) -> bool:
-    """Whether readings and blanks take turns in its first rows."""
+    """Whether readings and blanks alternate in its first rows."""
     looked = np.isfinite(series[: 16 * _LOOKED_AT])
     place = np.flatnonzero(looked)
     if place.size < _FEWEST_READ or place.size > (1 - _BLANK) * looked.size:
@@ -310,7 +310,7 @@ def _declared(layout: Layout, key: str) -> str:
 
 
 def _scale(channel: Channel, dimension: Dimension) -> tuple[float, float]:
-    """Factor and shift to SI: the zero is taken off first, then the sign is applied."""
+    """Factor and offset to SI: the zero is subtracted first, then the sign is applied."""
     factor, offset = scale_to_si(channel.unit, dimension)
     zero = 0.0 if channel.zero is None else parse_quantity(channel.zero, dimension)
     shift = channel.sign * (offset - zero)
@@ -331,16 +331,16 @@ def _seconds(values: Floats, unit: str, ticks: float = 1.0) -> Floats:
 
 _HOUR = 3600.0  # s
 
-_HOURS_OF_CHANGE = 4  # from midnight, at which clocks are put forward somewhere
+_HOURS_OF_CHANGE = 4  # after midnight, the latest hour of a daylight-saving change
 
 
 def _on_one_time_of_day(
     time: Floats | None, log: RawLog, layout: Layout
 ) -> tuple[Floats | None, tuple[Note, ...]]:
-    """Time of a clock without the hour by which it is put forward or back for daylight saving.
+    """Clock time corrected for the one-hour changes of daylight saving.
 
-    No time goes back by an hour; that one was put forward needs the hour at which that is done:
-    a log that stops for an hour, and on the hour, is a rare one.
+    Time never goes back by an hour, so such a step is a change. A step forward is taken for one
+    only at the hour of a change: few logs stop for an hour exactly on the hour.
     """
     texts = log.text.get("time", ())
     start = next(filter(None, map(clock_reading, texts)), None)
@@ -366,9 +366,9 @@ def _on_one_time_of_day(
     return time, tuple(notes)
 
 
-_ROWS_OF_A_TICK = 1.5  # from so many on, on average, a clock is coarser than the log
+_ROWS_OF_A_TICK = 1.5  # from this average on, the clock is coarser than the log
 
-_LOOKED_AT = 4096  # rows that say whether it may be
+_LOOKED_AT = 4096  # rows examined to decide whether it can be
 
 _FEWEST_TICKS = 8
 
@@ -376,10 +376,10 @@ _FEWEST_TICKS = 8
 def _between_ticks(
     time: Floats | None, values: Mapping[str, Floats]
 ) -> tuple[Floats | None, tuple[Note, ...]]:
-    """Time of each row where the clock shows several rows one time, spread evenly.
+    """Row times spread evenly where the clock gives several rows the same time.
 
-    Rows that keep within a tick of an even rate have that rate; others are spread over their own
-    tick.  A row that is written twice is none of its own.
+    Rows within a tick of an even rate get that rate; others are spread over their own tick. A
+    duplicated row does not count.
 
     Examples
     --------
@@ -405,7 +405,7 @@ def _between_ticks(
         return time, ()
     tick = float(np.median(steps[ahead]))
     place = np.arange(time.size)
-    # the clock advances within the row before: known to a row, where its steps are long
+    # the clock advances within the row before: known to one row if its steps are long
     middle = ahead.mean()
     rate, begin = np.polyfit(ahead - middle, time[ahead + 1], 1)
     even = begin + rate * (place - middle)
@@ -437,12 +437,12 @@ def _shared_time(log: RawLog, layout: Layout) -> Floats | None:
 
 
 def _check_restart(piece: _Piece) -> None:
-    """Refuse a log in which time starts again: a slip of the clock is short or small."""
+    """Refuse a log in which time restarts; a clock slip is brief or small."""
     time, low, high = piece.time, np.inf, -np.inf
     for part in sample_blocks(time.size, time, overlap=1):
         block = time[part]
         falls = np.flatnonzero(np.diff(block) < 0)
-        if falls.size:  # of all samples so far: a clock may slip at every hundredth
+        if falls.size:  # from the latest time so far: a clock may slip at every hundredth sample
             first = np.fmin(np.fmin.accumulate(block)[falls], low)
             top = np.fmax(np.fmax.accumulate(block)[falls], high)
             is_far = top - block[falls + 1] > (top - first) / 2
@@ -452,7 +452,7 @@ def _check_restart(piece: _Piece) -> None:
 
 
 def _check_slip(piece: _Piece, last: int, top: float) -> None:
-    """Refuse a fall of time after which it goes on for some samples, below where it was."""
+    """Refuse a fall in time that then runs on for some samples below its earlier maximum."""
     time = piece.time
     after = time[last + 1 : last + 2 + _RESTART_SAMPLES]
     if after.size <= _RESTART_SAMPLES or after[-1] >= top or not np.all(np.diff(after) > 0):
@@ -473,7 +473,7 @@ def _check_slip(piece: _Piece, last: int, top: float) -> None:
     )
 
 
-# a minute, an hour, and counters of 16 bits in ms, of 32 bits in us and ms
+# a minute, an hour, and the overflow of 16-bit counters in ms and 32-bit counters in us and ms
 _WRAPS = (60.0, 65.536, 3600.0, 4294.967296, 4294967.296)
 
 _WORKERS = 4
@@ -488,9 +488,9 @@ _BEND_OF_NOISE = 0.67449 * math.sqrt(6)  # median second difference of normal no
 
 _CLEAR_OF_NOISE = 4.0
 
-_ABSURD = 1e9  # m, N or 1: no machine is as long or as strong
+_ABSURD = 1e9  # m, N or 1: beyond any machine's length or load
 
-_ABSURD_TIME = 1e12  # s: 30,000 years, and beyond it a float is no clock
+_ABSURD_TIME = 1e12  # s: 30,000 years, beyond which a float cannot serve as a clock
 
 
 def to_record(
@@ -501,7 +501,7 @@ def to_record(
     quality: QualitySettings,
     length_needed: bool = True,
 ) -> Record:
-    """Convert the log or logs of a test; several are a record in pieces, in order."""
+    """Convert the log or logs of a test; several logs make one record in pieces, in order."""
     if not logs:
         raise SettingsError(f"test '{test_id}' has no file", needed="one or more logs")
     counts = [_check_channels(layout, test_id, len(specimens)) for _, layout in logs]
@@ -521,7 +521,7 @@ def to_record(
     for kind, series in zip(_OF_SPECIMENS, (tension, strain, pressure), strict=True):
         if series is not None:
             targets += [(f"{kind}.{number}", row) for number, row in enumerate(series, 1)]
-    with ThreadPoolExecutor(_WORKERS) as workers:  # fresh memory is slow to touch
+    with ThreadPoolExecutor(_WORKERS) as workers:  # first access to fresh memory is slow
         list(workers.map(lambda target: _fill(target[1], pieces, target[0]), targets))
     counter, counter_notes = _counter(pieces, n_samples)
     for piece in pieces:
@@ -564,7 +564,7 @@ def to_record(
 
 
 def _check_channels(layout: Layout, test_id: str, n_specimens: int) -> dict[str, int]:
-    """Channels for every specimen; returns how many there are of each kind."""
+    """Check the channels of every specimen; returns the number of each kind."""
     if "crosshead_position" not in layout.channels:
         raise SettingsError(
             f"test '{test_id}': its layout has no crosshead_position channel",
@@ -615,7 +615,7 @@ def _check_datum(layouts: Sequence[Layout], test_id: str, length_needed: bool) -
 
 
 def _load_train(layouts: Sequence[Layout], test_id: str) -> LoadTrain:
-    """What the layouts say of it, all of them alike."""
+    """Load train stated by the layouts, which must agree."""
     stated = list(dict.fromkeys(layout.load_train for layout in layouts))
     if len(stated) > 1:
         raise SettingsError(
@@ -627,7 +627,7 @@ def _load_train(layouts: Sequence[Layout], test_id: str) -> LoadTrain:
 
 
 def _on_one_clock(pieces: list[_Piece]) -> list[_Piece]:
-    """Pieces by a clock count from the first reading of the first; without dates, they go on."""
+    """Clock times counted from the first reading of the first piece; undated pieces follow on."""
     starts = [
         next(filter(None, map(clock_reading, piece.log.text.get("time", ()))), None)
         for piece in pieces
@@ -639,7 +639,7 @@ def _on_one_clock(pieces: list[_Piece]) -> list[_Piece]:
         after = DAY * (start[0] - starts[0][0]) + start[1] - starts[0][1]
         if math.isnan(after):
             if not math.isnan(start[0]) or not math.isnan(starts[0][0]):
-                return pieces  # a date in some alone
+                return pieces  # only some have a date
             end = finite_extremes(placed[-1].time)[1] if placed else 0.0
             after = end + (start[1] - starts[0][1] - end) % DAY
         placed.append(replace(piece, time=piece.time + after) if after else piece)
@@ -647,7 +647,7 @@ def _on_one_clock(pieces: list[_Piece]) -> list[_Piece]:
 
 
 def _check_order(pieces: Sequence[_Piece]) -> None:
-    """Time goes on from piece to piece; strain and counter are in all pieces or in none."""
+    """Check that time increases across pieces, and that strain and counter are in all or none."""
     for before, after in pairwise(pieces):
         end, start = finite_extremes(before.time)[1], finite_extremes(after.time)[0]
         if start <= end:
@@ -668,7 +668,7 @@ def _check_order(pieces: Sequence[_Piece]) -> None:
 
 
 def _fill(target: Floats, pieces: Sequence[_Piece], key: str) -> None:
-    """Write a channel of all pieces, in SI, one after another."""
+    """Write a channel of all pieces in SI, one piece after another."""
     start = 0
     for piece in pieces:
         part = target[start : start + piece.time.size]
@@ -687,7 +687,7 @@ def _fill(target: Floats, pieces: Sequence[_Piece], key: str) -> None:
 
 
 def _check_size(part: Floats, piece: _Piece, key: str) -> None:
-    """Refuse numbers that no machine can have measured."""
+    """Refuse values that no machine can have measured."""
     absurd = np.concatenate(
         [
             block.start + np.flatnonzero(np.abs(part[block]) > _ABSURD)
@@ -718,7 +718,7 @@ def _check_clock(piece: _Piece) -> None:
 
 
 def _counter(pieces: Sequence[_Piece], n_samples: int) -> tuple[Integers | None, tuple[Note, ...]]:
-    """The machine's own count as whole numbers, -1 where it is missing."""
+    """The machine's cycle count as integers, -1 where missing."""
     key = "cycle_counter"
     if key not in pieces[0].values:
         return None, ()
@@ -745,7 +745,7 @@ def _counter(pieces: Sequence[_Piece], n_samples: int) -> tuple[Integers | None,
 
 
 def _uncertainty(pieces: Sequence[_Piece], key: str, dimension: Dimension) -> float:
-    """Largest declared standard uncertainty; NaN where a piece declares none."""
+    """Largest declared standard uncertainty; NaN if a piece declares none."""
     texts = [piece.channel(key).standard_uncertainty for piece in pieces]
     return max(
         (np.nan if text is None else parse_quantity(text, dimension) for text in texts),
@@ -773,7 +773,7 @@ def _piece_notes(pieces: Sequence[_Piece]) -> list[Note]:
 def _verified(
     pieces: Sequence[_Piece], n_specimens: int
 ) -> dict[tuple[int, int, int], tuple[float, float]]:
-    """Verified range of each load cell by specimen, first row and row after the last. [N]."""
+    """Verified range of each load cell by specimen, first row and end row (exclusive). [N]."""
     verified = {}
     start = 0
     for piece in pieces:
@@ -811,7 +811,7 @@ def _datum_notes(record: Record, piece: _Piece) -> tuple[Note, ...]:
     for name, load in zip(record.specimens, record.tension, strict=True):
         found = float(load[before] + weight * (load[after] - load[before]))
         low, high = finite_extremes(load)
-        # one reading is as noisy as those around it are bent
+        # the noise of one reading, from the second differences around it
         bends = np.abs(np.diff(load[max(before - _AROUND, 0) : after + _AROUND], n=2))
         bends = bends[np.isfinite(bends)]
         noise = float(np.median(bends)) / _BEND_OF_NOISE if bends.size else 0.0

@@ -1,7 +1,7 @@
-"""Logs at addresses: copied to this machine before they are read.
+"""Copies logs at remote addresses to this machine before they are read.
 
-How often a store is asked again after a fault is left to the package that speaks to it.  What it
-raises may hold a password or a signature, and is told in words that do not.
+Retries after a fault are left to the package that accesses the store.  Its errors may contain a
+password or a signature, so that they are reworded without it.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ PACKAGES = {
     "s3": "s3fs", "gs": "gcsfs", "gcs": "gcsfs", "abfs": "adlfs", "az": "adlfs",
     "http": "aiohttp", "https": "aiohttp", "sftp": "paramiko",
 }  # fmt: skip
-"""Beginnings of addresses that are fetched, and the package that speaks to each."""
+"""Prefixes of supported addresses, and the package for each."""
 
 Fault = Callable[..., ReductionError]
-"""An error of a place and a problem: `LogError`, or `product_fault`."""
+"""Constructor of an error from a place and a problem: `LogError`, or `product_fault`."""
 
-# what tells two states of a file apart, as far as a file system says it; the surest first
+# file-system fields that distinguish two states of a file, most reliable first
 _MARKS = (
     "ETag", "etag", "generation", "md5Hash", "content_md5", "LastModified", "last_modified",
     "Last-Modified", "mtime", "modified", "updated", "created",
@@ -34,7 +34,7 @@ _MARKS = (
 
 _FULL = (errno.ENOSPC, errno.EDQUOT)
 
-# words in the names of errors, of which each package has its own
+# words in error names, which differ between packages
 _CLOSED = ("Credential", "Forbidden", "AccessDenied", "Unauthorized", "Authentication")
 
 _CUT_OFF = ("Connect", "Timeout", "Endpoint", "gaierror", "DNS")
@@ -43,12 +43,12 @@ _LONGEST = 200
 
 
 def product_fault(place: str, problem: str, **parts: str | None) -> ArchiveError:
-    """An error of a product, its place in front."""
+    """Error of a product, prefixed with its place."""
     return ArchiveError(f"{place}: {problem}", **parts)  # type: ignore[arg-type]  # no facts
 
 
 def allowed(text: str, allow_remote: bool, *, what: str) -> bool:
-    """Whether a text is an address; one that may not be fetched is refused."""
+    """Whether a text is an address; one that must not be fetched is refused."""
     if not is_address(text):
         return False
     shown = repr(shown_address(text))
@@ -58,7 +58,7 @@ def allowed(text: str, allow_remote: bool, *, what: str) -> bool:
             needed="--allow-remote (in Python allow_remote=True), or a file on this machine",
             hint="Use it only if you trust the author of the campaign.",
         )  # fmt: skip
-    # one that is chained, or leads to this machine, is none of these
+    # not chained and not on this machine
     if text.partition("://")[0].lower() not in PACKAGES or "::" in text or not text.isprintable():
         raise SettingsError(
             f"{what} is not an address that can be used", found=shown,
@@ -69,13 +69,13 @@ def allowed(text: str, allow_remote: bool, *, what: str) -> bool:
 
 
 def base_name(address: str) -> str:
-    """Name of the file that an address ends with; empty where that is no name."""
+    """Name of the file at the end of an address; empty if that is not a name."""
     name = shown_address(address).rstrip("/").rpartition("/")[2]
     return "" if name in (".", "..") else name
 
 
 def fetch(address: str, target: Path, *, fault: Fault = LogError) -> None:
-    """Copy a file from the net."""
+    """Copy a file from a remote address."""
     system, path = _file_system(address)
     shown = shown_address(address)
     told: ReductionError | None = None
@@ -99,13 +99,13 @@ def fetch(address: str, target: Path, *, fault: Fault = LogError) -> None:
     except Exception as error:
         told = _fault_of(error, address, fault)
     if told is not None:
-        with suppress(OSError):  # a name that no disk can have
+        with suppress(OSError):  # a name that no disk accepts
             target.unlink()
-        raise told  # out here it has no cause and no context
+        raise told  # raised here, without cause and context
 
 
 def _file_system(address: str) -> tuple[Any, str]:
-    """File system and path behind an address."""
+    """File system and path of an address."""
     protocol, _, rest = address.partition("://")
     protocol = protocol.lower()
     try:
@@ -118,7 +118,7 @@ def _file_system(address: str) -> tuple[Any, str]:
             hint=f'Install it: pip install "mooring-reduction[remote]" {PACKAGES[protocol]}.',
         ) from None  # fmt: skip
     except (TypeError, ValueError) as error:
-        # settings of the user's package: what it says may hold a key
+        # user settings of the package: its message may contain a key
         raise SettingsError(
             f"addresses that begin with {protocol}:// cannot be used",
             found=f"{shown_address(address)}, {type(error).__name__}",
@@ -128,7 +128,7 @@ def _file_system(address: str) -> tuple[Any, str]:
 
 
 def _state(system: Any, path: str) -> tuple[int | None, str]:
-    """Size, where it is said, and a mark that changes with the file."""
+    """Size, if stated, and a mark that changes with the file."""
     system.invalidate_cache()
     about = system.info(path)
     if about.get("type") == "directory":
@@ -145,9 +145,9 @@ def _in_words(state: tuple[int | None, str]) -> str:
 
 
 def _fault_of(error: Exception, address: str, fault: Fault) -> ReductionError:
-    """The error of a package as one of this program, not raised yet."""
+    """A package's error converted to one of this program, not yet raised."""
     chain = list(_chain(error))
-    # a package may call every answer but the right one a file that is not there
+    # a package may report any failed request as a file that does not exist
     statuses = {_status(one): one for one in chain if _status(one) is not None}
     status, speaker = next(iter(statuses.items()), (None, error))
     said = without_secrets(" ".join(str(speaker).split()))
@@ -175,7 +175,7 @@ def _fault_of(error: Exception, address: str, fault: Fault) -> ReductionError:
 
 
 def _chain(error: BaseException) -> Iterator[BaseException]:
-    """An error and what caused it, from the one that was raised last."""
+    """An error and its causes, last raised first."""
     seen: list[BaseException] = []
     following: BaseException | None = error
     while following is not None and following not in seen:
@@ -185,7 +185,7 @@ def _chain(error: BaseException) -> Iterator[BaseException]:
 
 
 def _status(error: BaseException) -> int | None:
-    """Status of HTTP, under the names that packages give it."""
+    """HTTP status, under any of the packages' names for it."""
     for name in ("status", "status_code", "code"):
         value = getattr(error, name, None)
         if isinstance(value, int):
@@ -203,13 +203,13 @@ def _has_word(names: list[str], words: tuple[str, ...]) -> bool:
 
 @contextmanager
 def scratch_folder() -> Iterator[Path]:
-    """Make a folder for copies, as ``TMPDIR`` says; it is taken away at the end."""
+    """Make a temporary folder for copies, under ``TMPDIR``; it is removed at the end."""
     with TemporaryDirectory(prefix="reduction-", ignore_cleanup_errors=True) as name:
         yield Path(name).resolve()
 
 
 def in_words(text: str, names: Mapping[str, str]) -> str:
-    """A text with addresses instead of the paths of their copies.
+    """A text with the paths of copies replaced by their addresses.
 
     Examples
     --------
@@ -223,7 +223,7 @@ def in_words(text: str, names: Mapping[str, str]) -> str:
 
 @contextmanager
 def renamed(names: Mapping[str, str]) -> Iterator[None]:
-    """Let errors from the ``with`` block name addresses instead of the paths of their copies."""
+    """Make errors from the ``with`` block name addresses instead of the paths of their copies."""
     try:
         yield
     except ReductionError as error:

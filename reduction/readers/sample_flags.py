@@ -30,25 +30,25 @@ from reduction.record.samples import (
 )
 from reduction.record.settings import QualitySettings
 
-LONGEST = 10  # samples of an excursion
+LONGEST = 10  # maximum length of an excursion, in samples
 
-_NEIGHBOURS = 4  # steps on each side that tell the course
+_NEIGHBOURS = 4  # steps on each side used to estimate the trend
 
 _JUMP_TO_STEPS = 5.0
 
-_OFF_COURSE = 0.5  # of the jump, at least, at every sample between
+_OFF_COURSE = 0.5  # minimum offset from the trend between jumps, as a fraction of the jump
 
-_RETURN = 0.1  # of the jump: how near to its course the channel comes back
+_RETURN = 0.1  # largest mismatch with the trend after the return, as a fraction of the jump
 
-_SMALL_JUMP = 0.2  # of the largest nearby: the start of a ramp beside an excursion
+_SMALL_JUMP = 0.2  # below this fraction of the largest nearby, a jump starts a ramp
 
-_MOST_IN_A_ROW = 3  # more that follow each other closely are a signal
+_MOST_IN_A_ROW = 3  # more jumps in close succession than this are signal
 
-_SIGNAL_SHARE = 0.1  # of a series in excursions: they are its signal
+_SIGNAL_SHARE = 0.1  # excursions in more than this share of a series are its signal
 
 
 def _usual_step(values: Floats, first: Integers, last: Integers) -> Floats:
-    """Third largest of the eight steps before the first and after the last step of a place."""
+    """Third largest of the eight steps before `first` and after `last`, for each place."""
     around = np.arange(1, _NEIGHBOURS + 1)
     left = np.concatenate([first[:, np.newaxis] - around, last[:, np.newaxis] + around], axis=1)
     is_inside = (left >= 0) & (left < values.size - 1)
@@ -60,7 +60,7 @@ def _usual_step(values: Floats, first: Integers, last: Integers) -> Floats:
 
 
 def _find_excursions(values: Floats, jumps: Integers, *, limit: float) -> Integers:
-    """Samples between a jump off the course of a series and the jump back to it."""
+    """Samples between a jump off the trend of a series and the jump back to it."""
     none = np.empty(0, dtype=np.intp)
     size = take_samples(values, jumps + 1) - take_samples(values, jumps)
     is_jump = np.abs(size) > np.fmax(limit, _JUMP_TO_STEPS * _usual_step(values, jumps, jumps))
@@ -76,13 +76,13 @@ def _find_excursions(values: Floats, jumps: Integers, *, limit: float) -> Intege
 
 
 def _rows(jumps: Integers) -> tuple[Integers, Integers]:
-    """First jump and number of jumps of each row of jumps that are close to each other."""
+    """First jump and number of jumps in each group of closely spaced jumps."""
     row_start = np.flatnonzero(np.diff(jumps, prepend=-np.inf) > LONGEST)
     return row_start, np.diff(row_start, append=jumps.size)
 
 
 def _pairs(jumps: Integers) -> tuple[Integers, Integers]:
-    """Jumps out and back, in turn, of each short row of jumps that are close to each other."""
+    """Alternate jumps out and back in each small group of closely spaced jumps."""
     row_start, n_jumps = _rows(jumps)
     even = (n_jumps % 2 == 0) & (n_jumps <= 2 * _MOST_IN_A_ROW)
     place = np.arange(jumps.size) - np.repeat(row_start, n_jumps)
@@ -100,13 +100,13 @@ def _pairs(jumps: Integers) -> tuple[Integers, Integers]:
 
 
 def _between(out: Integers, back: Integers) -> Integers:
-    """Samples after each jump out up to the jump back, the last one repeated, ten a row."""
+    """Samples after each jump out up to the jump back, ten per row, the last one repeated."""
     rows = out[:, np.newaxis] + np.arange(1, LONGEST + 1)
     return np.asarray(np.minimum(rows, back[:, np.newaxis]))
 
 
 def _returns(values: Floats, out: Integers, back: Integers, limit: float) -> Bools:
-    """Whether what lies between two jumps is off the course, and the course goes on after it."""
+    """Whether the samples between two jumps are off the trend, which resumes after them."""
     n_steps = back + 1 - out
     before, after = take_samples(values, out), take_samples(values, back + 1)
     leaves = take_samples(values, out + 1) - before
@@ -140,7 +140,7 @@ _STEP = np.sqrt(12.0)  # one step of a quantised value over its standard deviati
 
 @dataclass(frozen=True)
 class _Timing:
-    """Faults of a time axis."""
+    """Faults of the time stamps."""
 
     step: float
     gap: Bools
@@ -160,7 +160,7 @@ def _find_missing(values: Floats) -> Bools:
 
 
 def _find_outside_range(values: Floats, low: float, high: float) -> Bools:
-    """Where a value lies outside the range a load cell is verified for, shape (n_samples,)."""
+    """Where a value lies outside the verified range of the load cell, shape (n_samples,)."""
     outside = zeros_like(values, dtype=bool)
     for part in sample_blocks(values.size, values, outside):
         block = values[part]
@@ -169,7 +169,7 @@ def _find_outside_range(values: Floats, low: float, high: float) -> Bools:
 
 
 def _sampled_windows(values: Floats) -> Floats:
-    """Windows spread evenly over a series, one a row; a short series is one window."""
+    """Windows spread evenly over a series, one per row; a short series is one window."""
     if values.size <= _WINDOWS * _WINDOW:
         return values[np.newaxis]
     starts = np.linspace(0, values.size - _WINDOW, _WINDOWS).astype(np.int64)
@@ -201,7 +201,7 @@ def _time_faults(time: Floats, *, gap_factor: float, rate_tolerance: float) -> _
         late = piece[1:] <= reached[1:-1]
         backward[part][1:] = late
         latest = reached[-1]
-        ahead = piece[1:] - reached[1:-1]  # of all before it: a slip back makes no gap after it
+        ahead = piece[1:] - reached[1:-1]  # past the latest time so far: no gap after a step back
         long = np.flatnonzero(ahead > gap_factor * step)
         stands_out = ahead[long] > gap_factor * _usual_time_step(time, long + part.start)
         gap[1 + part.start + long[stands_out]] = True
@@ -213,7 +213,7 @@ def _time_faults(time: Floats, *, gap_factor: float, rate_tolerance: float) -> _
 
 
 def _usual_time_step(time: Floats, place: Integers) -> Floats:
-    """Median of the steps forward around each step; 0 where there are none."""
+    """Median of the forward steps around each step; 0 where there are none."""
     around = np.concatenate([np.arange(-_NEIGHBOURS, 0), np.arange(1, _NEIGHBOURS + 1)])
     near = place[:, np.newaxis] + around
     is_inside = (near >= 0) & (near < time.size - 1)
@@ -227,13 +227,15 @@ def _usual_time_step(time: Floats, place: Integers) -> Floats:
 
 
 def _noise_of(values: Floats, order: int = 2) -> tuple[float, float]:
-    """Standard deviation of a series about its own course, and the step it is printed in.
+    """Standard deviation of a series about its trend, and its quantisation step.
 
-    By differences of an order: those of the fourth leave less of the bend of a wave that has few
-    readings a cycle.
+    The noise is that of differences of the given order: the fourth contains less of the curvature
+    of a wave with few readings a cycle than the second.
     """
     windows = _sampled_windows(values)
-    levels = np.unique(windows[np.isfinite(windows)])  # between readings lie many codes of a ramp
+    levels = np.unique(
+        windows[np.isfinite(windows)]
+    )  # successive readings of a ramp are many codes apart
     step = float(np.diff(levels).min()) if levels.size > 1 else 0.0
     bends = np.abs(np.diff(windows, n=order, axis=1))
     bends = bends[np.isfinite(bends)]
@@ -243,9 +245,9 @@ def _noise_of(values: Floats, order: int = 2) -> tuple[float, float]:
 
 
 def _usual_code(values: Floats) -> float:
-    """Size of the step in which a channel that mostly stands advances; 0 where it has none.
+    """Size of the steps of a channel that is constant in most samples; 0 if it has none.
 
-    An encoder that is printed finer than it counts steps by .19 or .20 of what it counts in.
+    An encoder logged with more digits than it resolves steps by 0.19 or 0.20 of its unit.
 
     Examples
     --------
@@ -262,13 +264,13 @@ def _usual_code(values: Floats) -> float:
     return float(moving[usual]) if alike[usual] >= _ONE_SIZE * moving.size else 0.0
 
 
-_ONE_SIZE = 0.25  # of the changes are of the size of a code, where there is one
+_ONE_SIZE = 0.25  # minimum share of changes that have the size of one step
 
 _MORE_THAN_A_CODE = 1.5
 
 
 def _find_spikes(values: Floats, *, noise: float, factor: float) -> Bools:
-    """Samples off the course of their neighbours: single ones, and excursions of up to ten."""
+    """Samples off the trend of their neighbours: single ones, and excursions of up to ten."""
     is_spike = zeros_like(values, dtype=bool)
     limit = max(factor * noise, _MORE_THAN_A_CODE * _usual_code(values))
     if limit <= 0:
@@ -277,7 +279,7 @@ def _find_spikes(values: Floats, *, noise: float, factor: float) -> Bools:
     for part in sample_blocks(values.size, values, overlap=3):
         step = np.diff(values[part])
         bend = step[1:] - step[:-1]
-        # a jump bends the course at both its ends, against each other; a spike is two jumps
+        # a jump gives two second differences of opposite sign; a spike is two jumps
         product = bend[:-1] * bend[1:]
         jumps.append(np.flatnonzero(product < -(limit**2)) + 1 + part.start)
     jump = np.unique(np.concatenate(jumps))
@@ -299,7 +301,7 @@ _STEP_TO_STEPS = 5.0
 
 _SHARE_OF_RANGE = 0.05
 
-_STAYS = 0.5  # of the step, at least, is left of it between the levels on its sides
+_STAYS = 0.5  # minimum fraction of the step that remains between the levels on its two sides
 
 _OUTER = (0.01, 0.99)
 
@@ -307,7 +309,7 @@ _OUTER = (0.01, 0.99)
 def _find_lone_steps(
     values: Floats, beside: Floats, *, noise: float, noise_beside: Floats, factor: float
 ) -> Integers:
-    """Steps of a channel that stay, at which no channel beside it steps.
+    """Lasting steps of a channel that do not occur in the channels beside it.
 
     Examples
     --------
@@ -336,10 +338,10 @@ def _find_lone_steps(
 
 
 def _candidates(step: Floats, limit: float) -> Integers:
-    """Steps that are five times the least of three beside them: few, also of coarse samples."""
+    """Steps above five times the smallest of three beside them: few, even in coarse samples."""
     is_large = step > limit
     if step.size > 3 and is_large.any():
-        # what the third largest of eight is not below; missing neighbours say nothing
+        # a lower bound of the third largest of eight; missing neighbours are ignored
         near = np.fmin(np.fmin(step[:-3], step[1:-2]), step[3:])
         is_large[2:-1] &= ~(step[2:-1] <= _STEP_TO_STEPS * near)
     return np.flatnonzero(is_large)
@@ -351,7 +353,7 @@ def _stands_out(values: Floats, step: Integers, limit: float) -> Bools:
 
 
 def _level_change(values: Floats, step: Integers) -> Floats:
-    """Median of the samples after a step less that of those before it."""
+    """Median of the samples after a step minus the median of those before it."""
     after = step[:, np.newaxis] + np.arange(1, _NEIGHBOURS + 1)
     before = after - _NEIGHBOURS
     last = values.size - 1
@@ -360,15 +362,15 @@ def _level_change(values: Floats, step: Integers) -> Floats:
     return np.asarray(levels[0] - levels[1], dtype=np.float64)
 
 
-_EDGES = 1 << 10  # of runs, looked at together: a quantised channel has one for every level
+_EDGES = 1 << 10  # run edges processed together: a quantised channel has one for every level
 
 _SATURATED_SAMPLES = 5
 
-_FEWEST_SATURATED = 3  # of a channel whose noise is more than its steps
+_FEWEST_SATURATED = 3  # for a channel whose noise exceeds its quantisation step
 
 _FEWEST_PAIRS = 3
 
-_FINE = 4.0  # steps
+_FINE = 4.0  # quantisation steps
 
 _SATURATED_STEPS = 16.0
 
@@ -382,7 +384,7 @@ _MOVING_SHARE = 1e-3
 
 _CODES_OF_RUN = 2.0
 
-# places in a run at which position is looked at; uneven, or cycles could hide in between
+# relative positions in a run at which position is sampled; uneven, so that no cycle is missed
 _LOOKS = np.sort(np.arange(16) * (np.sqrt(5) - 1) / 2 % 1)
 
 _SLACK_SHARE = 0.02
@@ -402,11 +404,11 @@ class _Runs:
     stop: Integers
 
     def where(self, keep: Bools) -> _Runs:
-        """Some of the runs."""
+        """The selected runs."""
         return _Runs(self.start[keep], self.stop[keep])
 
     def mask(self, like: Floats) -> Bools:
-        """True inside the runs, for each sample of a series like that."""
+        """True inside the runs, for each sample of a series of the same shape."""
         return interval_labels(like, self.start, self.stop, np.ones(self.start.size, dtype=bool))
 
 
@@ -434,7 +436,7 @@ def _constant_runs(values: Floats, minimum: int) -> _Runs:
 
 
 def _repeats(values: Floats, edge: Integers, reach: Integers) -> Integers:
-    """Samples next to each edge, in the order of the reach, that repeat its value."""
+    """Number of samples equal to each edge that follow it without a break along `reach`."""
     repeats = np.empty(edge.size, dtype=np.intp)
     for part in sample_blocks(edge.size, size=_EDGES):
         beyond = edge[part, np.newaxis] + reach
@@ -457,7 +459,7 @@ def _moves(position: Floats, runs: _Runs) -> Bools:
 
 
 def _range_beside(values: Floats, runs: _Runs, lengths: int) -> Floats:
-    """Range of a series over each run, moved by so many of its lengths; of a few places in it."""
+    """Range of a series over each run, shifted by a number of run lengths, from a few samples."""
     length = (runs.stop - runs.start)[:, np.newaxis]
     places = runs.start[:, np.newaxis] + ((_LOOKS + lengths) * length).astype(np.int64)
     looks = take_samples(values, np.clip(places, 0, values.size - 1))
@@ -465,12 +467,11 @@ def _range_beside(values: Floats, runs: _Runs, lengths: int) -> Floats:
 
 
 def _outlasts_one_code(tension: Floats, position: Floats, runs: _Runs) -> Bools:
-    """Whether the load should change by more than the step of its converter in each run.
+    """Whether the load should change by more than its converter step in each run.
 
-    By the travel in the run, and by what the load changes for it beside the run, where the
-    crosshead moves as far.  A code that ends a ramp, or lies at a rounded peak, lasts long; the
-    crosshead moves in it by what one code is worth, of slopes that differ by less than a factor of
-    two.
+    The expected change follows from the travel in the run and the load change over an equal travel
+    beside it. A reading at the end of a ramp or at a rounded peak lasts long; the travel during it
+    is then worth one converter step, for slopes that differ by less than a factor of two.
     """
     if not runs.start.size:
         return np.empty(0, dtype=bool)
@@ -478,7 +479,7 @@ def _outlasts_one_code(tension: Floats, position: Floats, runs: _Runs) -> Bools:
     travel = _range_beside(position, runs, 0)
     expected = np.full(travel.size, np.nan)
     for way in (-1, 1):
-        # a window that hardly moves says what a load relaxes by
+        # a window with little movement shows only relaxation
         moved = _range_beside(position, runs, way)
         moves = moved >= np.fmax(travel, np.finfo(float).tiny)
         change = _range_beside(tension, runs, way)[moves] * (travel[moves] / moved[moves])
@@ -503,33 +504,25 @@ def _find_stuck(tension: Floats, position: Floats, *, samples: int) -> Bools:
 
 
 def _find_saturated(tension: Floats, position: Floats) -> Bools:
-    """Where a load channel stands at its greatest or least value because it can go no further."""
+    """Where a load channel stays at its extreme value because it has reached its limit."""
     starts: list[Integers] = [np.empty(0, dtype=np.intp)]
     stops = list(starts)
     low, high = finite_extremes(tension)
     noise, step = _noise_of(tension)
-    # a peak that rounding flattens to three readings has no more noise, or bend, than its steps
+    # a peak that rounding flattens to three readings has noise and curvature within its steps
     is_fine = noise > _FINE * step
     for level in (low, high):
         if level == low and (low == high or abs(low) <= _SLACK_SHARE * (high - low)):
-            continue  # a slack specimen reads zero, a dead channel is stuck
-        place = np.concatenate(
-            [
-                part.start + np.flatnonzero(tension[part] == level)
-                for part in sample_blocks(tension.size, tension)
-            ]
-        )
-        if place.size < _SATURATED_SAMPLES:
+            continue  # a slack specimen reads zero; a dead channel counts as stuck
+        every = runs = _runs_at(tension, level)
+        length = runs.stop - runs.start
+        if length.sum() < _SATURATED_SAMPLES:
             continue
-        is_first = np.concatenate([[True], np.diff(place) > 1])
-        is_last = np.concatenate([is_first[1:], [True]])
-        runs = _Runs(place[is_first], place[is_last] + 1)
-        length, every = runs.stop - runs.start, runs
         fewest = _SATURATED_SAMPLES
         if noise > _NOISY * step and _is_piled_up(tension, level, runs, step):
             is_fine, fewest = True, 2
         elif is_fine:
-            # pairs, where noise parts all readings but those at the end of the channel
+            # pairs suffice if noise separates all readings except those at the channel limit
             beside = take_samples(tension, np.maximum(runs.start[length > 1] - 1, 0))
             is_noisy = beside.size > _FEWEST_PAIRS and np.nanstd(beside) > _FINE * step
             fewest = 2 if is_noisy else _FEWEST_SATURATED
@@ -541,18 +534,31 @@ def _find_saturated(tension: Floats, position: Floats) -> Bools:
         runs = runs.where(_moves(position, runs))
         runs = runs.where(_outlasts_one_code(tension, position, runs))
         if is_fine and runs.start.size:
-            runs = every  # the channel ends there, however short it stays
+            runs = every  # the channel limit is there, however short the run
         starts.append(runs.start)
         stops.append(runs.stop)
     return _Runs(np.sort(np.concatenate(starts)), np.sort(np.concatenate(stops))).mask(tension)
 
 
-def _is_piled_up(values: Floats, level: float, runs: _Runs, step: float) -> bool:
-    """Whether far more readings lie at one end of a noisy channel than in the code next to it.
+def _runs_at(values: Floats, level: float) -> _Runs:
+    """Runs of a value, of any length."""
+    places = np.concatenate(
+        [
+            part.start + np.flatnonzero(values[part] == level)
+            for part in sample_blocks(values.size, values)
+        ]
+    )
+    is_first = np.diff(places, prepend=-2) > 1
+    is_last = np.append(is_first[1:], True)[: places.size]
+    return _Runs(places[is_first], places[is_last] + 1)
 
-    Noise thins out towards the greatest reading, and a sine has at most 2.4 times as many readings
-    in its last code as in the one before it, unless it is in step with the log: then the readings
-    that lead to the end are alike.
+
+def _is_piled_up(values: Floats, level: float, runs: _Runs, step: float) -> bool:
+    """Whether a noisy channel has far more readings at its extreme value than in the next code.
+
+    The tail of the noise has fewer readings towards the extreme, and a sine has at most 2.4 times
+    as many readings in its last code as in the one before it.  A sine in step with the sampling may
+    have more, but then the readings just before the extreme are equal.
     """
     n_there = int(np.sum(runs.stop - runs.start))
     before = take_samples(values, np.maximum(runs.start - 1, 0))
@@ -565,18 +571,18 @@ def _is_piled_up(values: Floats, level: float, runs: _Runs, step: float) -> bool
     return n_there >= _FEWEST_PILED + _TIMES_PILED * int(n_beside)
 
 
-_FEWEST_ENDS = 3  # runs, of as many readings each
+_FEWEST_ENDS = 3  # runs, and readings in each
 
-_PASSED_NOISE, _PASSED_SHARE = 3.0, 0.001  # of the load, and of its range
+_PASSED_NOISE, _PASSED_SHARE = 3.0, 0.001  # least change of load: in noise, and share of its range
 
-_GOES_ON = 0.15  # of what the load changes by beside a run: a third at the crest of a sine
+_GOES_ON = 0.15  # change of load in a run over that beside it; a third at the crest of a sine
 
 
 def _find_end_of_position(position: Floats, tension: Floats) -> Bools:
-    """Where position stays at its greatest or least value while the load goes on and comes back.
+    """Where position stays at its extreme value while the load goes on rising and comes back.
 
-    A dwell is no such end: in it the load relaxes, or comes late, by little of what it changes by
-    in the same time before and after.
+    In a dwell the load changes too, by relaxation or lag, but little compared with its change in an
+    equal time before and after the dwell.
     """
     noise, _ = _noise_of(tension)
     low, high = finite_extremes(tension)
@@ -584,15 +590,7 @@ def _find_end_of_position(position: Floats, tension: Floats) -> Bools:
     starts: list[Integers] = [np.empty(0, dtype=np.intp)]
     stops = list(starts)
     for level, way in zip(finite_extremes(position), (-1, 1), strict=True):
-        places = np.concatenate(
-            [
-                part.start + np.flatnonzero(position[part] == level)
-                for part in sample_blocks(position.size, position)
-            ]
-        )
-        is_first = np.diff(places, prepend=-2) > 1
-        is_last = np.append(is_first[1:], True)
-        runs = _Runs(places[is_first], places[is_last] + 1)
+        runs = _runs_at(position, level)
         length = runs.stop - runs.start
         runs = runs.where(
             (length >= _FEWEST_ENDS)
@@ -620,7 +618,7 @@ def _find_end_of_position(position: Floats, tension: Floats) -> Bools:
 
 
 def _comes_from_afar(tension: Floats, runs: _Runs) -> Bools:
-    """Whether the load beside a run changes by far more than it does at a rounded peak."""
+    """Whether the load beside a run changes by far more than at a rounded peak."""
     length, last = runs.stop - runs.start, tension.size - 1
     level = take_samples(tension, runs.start)
 
@@ -636,7 +634,7 @@ def _comes_from_afar(tension: Floats, runs: _Runs) -> Bools:
 
 
 def _find_stuck_position(position: Floats, tension: Floats, *, samples: int) -> Bools:
-    """Where position stands still although tension rises: a hold does not make it rise."""
+    """Where position is constant although tension rises, which a hold does not cause."""
     runs = _constant_runs(position, samples)
     if not runs.start.size:
         return runs.mask(position)
@@ -659,13 +657,13 @@ _STEPS_READ = 100_001
 
 
 def _bridge_stamps(time: Floats, missing: Bools) -> Floats:
-    """Time without missing stamps: even steps between neighbours, the median step at the ends."""
+    """Fill missing time stamps: even steps between neighbours, the median step at the ends."""
     lost = np.concatenate(
         [part.start + np.flatnonzero(missing[part]) for part in sample_blocks(time.size, missing)]
     )
     if not lost.size:
         return time
-    # rows before and after each run of lost ones; -1 and n_samples at the ends of the record
+    # rows before and after each run of missing stamps; -1 and n_samples at the ends of the record
     is_first = np.diff(lost, prepend=-2) > 1
     run = np.cumsum(is_first) - 1
     before = lost[is_first] - 1
@@ -674,23 +672,23 @@ def _bridge_stamps(time: Floats, missing: Bools) -> Floats:
     left = take_samples(time, np.where(known[0], before, after))
     right = take_samples(time, np.where(known[1], after, before))
     step = np.where(known[0] & known[1], (right - left) / (after - before), _step(time))
-    # before the first stamp rows count back from it
+    # before the first stamp, rows are counted back from it
     start = np.where(known[0], left, right - (after - before) * step)
     bridged = copied(time)
     bridged[lost] = start[run] + (lost - before[run]) * step[run]
     return bridged
 
 
-_FEWEST_STAMPS = 100  # that show two steps of an even clock
+_FEWEST_STAMPS = 100  # minimum number of stamps to recognise a steady clock from two step sizes
 
-_FINE_STEP = 0.05  # of the time between readings: rounding to less moves nothing
+_FINE_STEP = 0.05  # of the sampling interval: finer rounding has no effect
 
 
 def _evenly_logged(time: Floats) -> tuple[Floats, float]:
-    """Times of an even clock that is written in coarse steps, and that step; else as they are, 0.
+    """Times of a steady clock stored with coarse resolution, and that resolution.
 
-    Such stamps advance by two neighbouring multiples of the step, and lie about one line no
-    farther than it rounds them.
+    Such stamps advance by two adjacent multiples of the resolution and deviate from one line by no
+    more than its rounding. Other times are returned unchanged, with 0.
     """
     steps = np.diff(time[:_STEPS_READ])
     if steps.size < _FEWEST_STAMPS:
@@ -721,7 +719,7 @@ def _evenly_logged(time: Floats) -> tuple[Floats, float]:
 
 
 def _step(time: Floats) -> float:
-    """Median step of time, 0 where no two stamps follow each other."""
+    """Median time step; 0 where no two consecutive samples have a stamp."""
     first = np.arange(0, time.size - 1, max(1, time.size // _STEPS_READ))
     steps = take_samples(time, first + 1) - take_samples(time, first)
     steps = steps[np.isfinite(steps)]
@@ -729,11 +727,11 @@ def _step(time: Floats) -> float:
 
 
 def _updates(values: Floats) -> Integers | None:
-    """Samples at which a channel has a new reading, where each is stored several times in a row.
+    """Samples with a new reading in a channel that stores each reading several times.
 
-    A converter that is slower than the log repeats its readings by the same number of rows; one
-    that is coarse repeats them for as long as the signal takes for a step, of which several in one
-    row are none.  None where readings are not repeated so.
+    A converter slower than the log repeats each reading over the same number of rows. A coarse
+    converter repeats one until the signal has moved by a step, so that few of its steps exceed one
+    code. None if readings are not repeated regularly.
 
     Examples
     --------
@@ -747,7 +745,7 @@ def _updates(values: Floats) -> Integers | None:
         return None
     step = np.nan_to_num(np.abs(looked[place] - looked[place - 1]))
     least = np.quantile(step[step > 0], 0.01) if step.any() else np.inf
-    # some signals stand still in parts: repeats there say nothing
+    # some signals are constant in places: repeats there do not count
     gaps = np.diff(place)[step[1:] > _SEVERAL_CODES * least]
     if gaps.size < _FEWEST_UPDATES:
         return None
@@ -763,7 +761,7 @@ def _updates(values: Floats) -> Integers | None:
 
 
 def _new_readings(values: Floats) -> Integers:
-    """Samples that are not equal to the one before; a missing one is none."""
+    """Samples that differ from the one before; a missing sample is not a new reading."""
     found: Integers = np.flatnonzero((values[1:] != values[:-1]) & np.isfinite(values[1:])) + 1
     return found
 
@@ -778,9 +776,9 @@ _REGULAR = 0.98
 
 
 def _at_updates(record: Record) -> tuple[Record, Integers | None]:
-    """The record at the rows in which its slow channel has new readings; these rows, or None.
+    """The record at the rows with new readings of its slow channel, and these rows or None.
 
-    Between them the channel is late, unless all channels have new readings in the same rows.
+    Between them the channel lags, unless all channels have new readings in the same rows.
     """
     names = ["crosshead_position", *(f"tension.{i + 1}" for i in range(len(record.specimens)))]
     series = [record.crosshead_position, *record.tension]
@@ -799,7 +797,7 @@ def _at_updates(record: Record) -> tuple[Record, Integers | None]:
         own = found.get(name)
         if own is None or _alike(own, rows):
             kept.append(take_samples(one, rows))
-        else:  # late in these rows, too
+        else:  # this channel lags in these rows too
             kept.append(np.interp(rows, own, take_samples(one, own), left=np.nan, right=np.nan))
     at_rows = _at_rows(record, rows)
     said = note(
@@ -815,7 +813,7 @@ def _at_updates(record: Record) -> tuple[Record, Integers | None]:
 
 
 def _at_rows(record: Record, rows: Integers) -> dict[str, Any]:
-    """The series of a record at some of its rows, but for position and tension."""
+    """The series of a record at some of its rows, except position and tension."""
     return {
         name: take_samples(one, rows)
         for name in (
@@ -827,10 +825,10 @@ def _at_rows(record: Record, rows: Integers) -> dict[str, Any]:
 
 
 def _in_order(record: Record) -> tuple[Record, Integers | None]:
-    """The record with its rows in order of time and none twice; these rows, or None.
+    """The record sorted by time without duplicate rows, and the rows kept or None.
 
-    A logger that writes its buffer twice, or two of them in the wrong order, leaves rows that are
-    as even as the others once they are sorted; those of a clock that slips back are not.
+    A logger that writes a buffer twice, or two buffers in the wrong order, leaves rows that are
+    evenly spaced once sorted. Rows from a clock that slips back are not.
     """
     time = record.time
     parts = sample_blocks(time.size, time, overlap=1)
@@ -854,13 +852,13 @@ def _in_order(record: Record) -> tuple[Record, Integers | None]:
     return replace(record, notes=(*record.notes, said), **at_rows), rows
 
 
-_MOST_SORTED = 10_000_000  # rows, in memory
+_MOST_SORTED = 10_000_000  # rows, held in memory
 
-_EVEN = 0.5  # of the usual step of time, between rows that are in order
+_EVEN = 0.5  # minimum interval between sorted rows, as a fraction of the usual step
 
 
 def _without_breaks(rows: Integers, n_samples: int) -> Integers:
-    """Rows of the readings, those included that are equal to the one before.
+    """Rows of all readings, including those equal to the one before.
 
     Examples
     --------
@@ -876,22 +874,22 @@ def _without_breaks(rows: Integers, n_samples: int) -> Integers:
     return np.unique(np.concatenate([found, np.arange(rows[-1], n_samples, every)]))
 
 
-_NO_BEND = 0.02  # of the larger bends of a channel: a straight line
+_NO_BEND = 0.02  # second differences below this fraction of the larger ones are a straight line
 
-_STRAIGHT = 0.1  # of the rows that move, at least, on straight lines
+_STRAIGHT = 0.1  # minimum share of the moving rows that lie on straight lines
 
-_LEVELS = 0.5  # of fifty levels of bends: a coarse converter has fewer
+_LEVELS = 0.5  # minimum share of fifty levels of second difference; a coarse converter has fewer
 
 _FEWEST_BENDS = 500
 
-_BLOCK, _OF_BLOCK = 64, 4  # rows; of those that all move, so many on lines and so many not
+_BLOCK, _OF_BLOCK = 64, 4  # block length; rows required both on and off lines
 
 
 def _is_interpolated(values: Floats) -> bool:
-    """Whether a channel was interpolated linearly before it was logged.
+    """Whether a channel was linearly interpolated before it was logged.
 
-    Between two of its readings the rows lie on a line, to the last digit; at the readings it bends
-    by their noise.  Of white noise few second differences are as small, or many are little greater.
+    Between two readings the rows lie exactly on a line; at the readings the second difference shows
+    their noise. White noise has few second differences this small, or many that are little larger.
 
     Examples
     --------
@@ -926,7 +924,7 @@ def _is_interpolated(values: Floats) -> bool:
 
 
 def _interpolation_notes(record: Record, resampled: Sequence[str]) -> list[Note]:
-    """Say which channels somebody has interpolated before they were logged."""
+    """Notes on the channels that were interpolated before they were logged."""
     series = {"crosshead_position": record.crosshead_position}
     series |= {f"tension.{index + 1}": one for index, one in enumerate(record.tension)}
     return [
@@ -937,7 +935,7 @@ def _interpolation_notes(record: Record, resampled: Sequence[str]) -> list[Note]
 
 
 def _alike(one: Integers, other: Integers) -> bool:
-    """Whether nearly all rows are those of both."""
+    """Whether the two sets of rows are nearly the same."""
     return np.intersect1d(one, other).size > _REGULAR * max(one.size, other.size)
 
 
@@ -950,7 +948,7 @@ _TOLD_OTHERWISE = np.uint16(
     | Quality.REPEATED_OR_BACKWARD_TIME
 )  # fmt: skip
 
-_IMPOSSIBLE_SHARE = 0.01  # of a record in lengths of zero or less: the datum is wrong
+_IMPOSSIBLE_SHARE = 0.01  # a larger share of lengths at or below zero means that the datum is wrong
 
 
 def flag_record(
@@ -961,11 +959,11 @@ def flag_record(
     verified: Mapping[tuple[int, int, int], tuple[float, float]] | None = None,
     notes: Sequence[Note] = (),
 ) -> Record:
-    """Return the record with its flags set and what they mean in its notes."""
+    """Return the record with its flags set and explained in its notes."""
     for arrange in (_in_order, _at_updates):
         record, rows = arrange(record)
         if rows is not None and verified:
-            rows = np.sort(rows)  # a piece with limits of its own is one after the other
+            rows = np.sort(rows)  # a piece with its own limits is contiguous
             verified = {
                 (index, int(np.searchsorted(rows, start)), int(np.searchsorted(rows, stop))): limits
                 for (index, start, stop), limits in verified.items()
@@ -1065,7 +1063,7 @@ _POINTS = 4000
 
 
 def _never_falls(position: Floats, load: Floats) -> bool:
-    """Whether tension stays at the greatest it had while position falls by half of its range."""
+    """Whether tension stays near its maximum so far while position falls by half its range."""
     some = slice(None, None, max(1, position.size // _POINTS))
     x, y = position[some], load[some]
     known = np.isfinite(x) & np.isfinite(y)
@@ -1077,7 +1075,7 @@ def _never_falls(position: Floats, load: Floats) -> bool:
 
 
 def _set(flags: _Flags, where: Bools, mask: Quality, *, instead_of: int = 0) -> None:
-    """Set a mask on some samples, and take another off them."""
+    """Set a mask on some samples, and clear another mask there."""
     for part in sample_blocks(flags.size, flags, where):
         chosen = where[part]
         if chosen.any():
@@ -1100,9 +1098,9 @@ def _missing(name: str, values: Floats) -> Bools:
 
 
 def _spikes(values: Floats, settings: QualitySettings, time: Floats) -> Bools:
-    """Spikes, but for steps of a signal where a log goes on at another rate."""
+    """Spikes, except steps of the signal where the logging rate changes."""
     low, high = finite_extremes(values)
-    # what is less of the range changes no number, however little noise the channel has
+    # smaller deviations change no result, however little noise the channel has
     least = _SPIKE_OF_RANGE * (high - low) / settings.spike_factor
     noise = max(_noise_of(values)[0], least)
     found = _find_spikes(values, noise=noise, factor=settings.spike_factor)
@@ -1110,7 +1108,7 @@ def _spikes(values: Floats, settings: QualitySettings, time: Floats) -> Bools:
         rows = np.flatnonzero(found)
         beside = rows[:, np.newaxis] + np.arange(-2 * _NEIGHBOURS, 2 * _NEIGHBOURS + 1)
         stamps = take_samples(time, np.clip(beside, 0, time.size - 1))
-        # two of each: one long step alone is a gap
+        # two of each, since a single long step is a gap
         steps = np.sort(np.diff(stamps, axis=1), axis=1)
         found[rows[steps[:, -2] > _OTHER_RATE * steps[:, 1]]] = False
     return found
@@ -1122,7 +1120,7 @@ _OTHER_RATE = 2.0
 
 
 def _lone_steps(record: Record, settings: QualitySettings) -> list[Note]:
-    """A note for each channel that steps, and stays, where what it is measured with does not."""
+    """A note for each channel with a lasting step that the opposite channel does not show."""
     position, tension = record.crosshead_position[np.newaxis], record.tension
     of_time = record.crosshead_position_quality_flag
     channels = [("crosshead_position", "m", position[0], tension, of_time)]
@@ -1137,7 +1135,7 @@ def _lone_steps(record: Record, settings: QualitySettings) -> list[Note]:
             values, beside, noise=noise[index], factor=settings.spike_factor,
             noise_beside=np.array(noise[1:] if index == 0 else noise[:1]),
         )  # fmt: skip
-        # what is known against a sample beside it has been told
+        # steps beside a flagged sample are already reported
         told = take_samples(flags, step) | take_samples(flags, step + 1)
         told |= take_samples(of_time, step + 1)
         step = step[(told & _TOLD_OTHERWISE) == 0]
@@ -1155,7 +1153,7 @@ def _lone_steps(record: Record, settings: QualitySettings) -> list[Note]:
 
 
 def _no_length(position: Floats, flags: _Flags) -> Bools:
-    """Where a pin-to-pin length is zero or less although nothing else is known against it."""
+    """Where a pin-to-pin length is zero or less in a sample without other flags."""
     not_positive: Bools = zeros_like(position, dtype=bool)
     for part in sample_blocks(position.size, position, flags, not_positive):
         not_positive[part] = (position[part] <= 0) & (flags[part] == 0)
@@ -1173,12 +1171,12 @@ def _no_length(position: Floats, flags: _Flags) -> Bools:
 
 
 def _any_reading(flags: _Flags) -> bool:
-    """Whether any sample of a channel holds a number that can be used."""
+    """Whether a channel has any usable reading."""
     return any_sample(lambda part: (flags[part] & _NO_READING) == 0, flags.size, flags)
 
 
 def _check_usable(record: Record) -> None:
-    """Refuse a channel that says nothing, whose flags would leave no sample."""
+    """Refuse a channel without information, whose flags would leave no sample."""
     position = record.crosshead_position
     if not _any_reading(record.crosshead_position_quality_flag):
         known = position[np.isfinite(position)]

@@ -1,7 +1,7 @@
 """Looks at an unknown log and proposes a layout.
 
-The proposal is text, never a `Layout`: what is not known is ``?`` in it, and a layout
-with a ``?`` does not load.
+The proposal is text, never a `Layout`: unknown values are ``?``, and a layout with a ``?`` does not
+load.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ from reduction.record.settings import Limits
 
 @dataclass(frozen=True)
 class _SeenTable:
-    """A table that may be the log: its columns, the layout settings that read it, remarks."""
+    """A possible log table: its columns, the layout settings that read it, and remarks."""
 
     format: Format
     columns: list[SeenColumn]
@@ -62,7 +62,7 @@ class _SeenTable:
 
 _ROWS = 4000
 
-_RUN = 3  # rows in a row that make a table
+_RUN = 3  # minimum number of consecutive rows in a table
 
 _NUMBER = {
     mark: re.compile(rf"[+-]?(\d+({re.escape(mark)}\d*)?|{re.escape(mark)}\d+)([eE][+-]?\d+)?")
@@ -72,7 +72,7 @@ _NUMBER = {
 
 @dataclass(frozen=True)
 class _TableShape:
-    """Where a table stands in rows of fields; rows count from 0."""
+    """Position of a table in rows of fields; rows count from 0."""
 
     start: int
     """First data row."""
@@ -100,7 +100,7 @@ def _is_time(text: str) -> bool:
 
 
 def _look_at_table(rows: Sequence[Sequence[str]], decimal: str) -> _TableShape | None:
-    """Header and data of rows of fields; None where no table of numbers is among them."""
+    """Header and data in rows of fields; None if they contain no table of numbers."""
     counts = [sum(_is_number(text, decimal) or _is_time(text) for text in row) for row in rows]
     data = [
         len(row) > 1 and 2 * count >= sum(map(bool, row)) > 0
@@ -112,7 +112,7 @@ def _look_at_table(rows: Sequence[Sequence[str]], decimal: str) -> _TableShape |
     n_fields = sizes.most_common(1)[0][0]
     data = [is_data and len(row) == n_fields for row, is_data in zip(rows, data, strict=True)]
     usual = np.median([count for count, is_data in zip(counts, data, strict=True) if is_data])
-    # a line of the preamble with a number in it has fewer numbers than a row of the table
+    # a preamble line with a number in it has fewer numbers than a row of the table
     good = [is_data and 2 * count > usual for count, is_data in zip(counts, data, strict=True)]
     run = max(2, min(_RUN, sum(good)))
     start = next((i for i in range(len(rows)) if sum(good[i : i + run]) == run), None)
@@ -147,7 +147,7 @@ def _look_at_table(rows: Sequence[Sequence[str]], decimal: str) -> _TableShape |
 
 
 def _labelled_units(above: Sequence[Sequence[str]]) -> Sequence[str]:
-    """Units in a line of the preamble that says it holds them: ``Y_Unit_Label  mm  N``."""
+    """Units in a preamble line that is labelled as units: ``Y_Unit_Label  mm  N``."""
     for label, *units in filter(None, above):
         if re.search(r"unit|einheit", label.lower()) and _is_unit_row(units):
             return ["", *units]
@@ -155,7 +155,7 @@ def _labelled_units(above: Sequence[Sequence[str]]) -> Sequence[str]:
 
 
 def _is_header(fields: Sequence[str], n_fields: int) -> bool:
-    """Whether fields can be names or units of the columns: as many but for trailing blanks."""
+    """Whether the fields can be names or units: one per column, apart from trailing blanks."""
     beyond = without_comment_name(fields)[n_fields:]
     return 1 < len(fields) and not any(beyond) and sum(map(bool, fields)) * 2 > n_fields
 
@@ -186,7 +186,7 @@ def _seen_columns(table: _TableShape, decimal: str, thousands: str = "") -> list
 
 _HEAD = 1 << 18
 
-_LINES = 20_000  # that are looked at
+_LINES = 20_000  # lines examined
 
 _DELIMITERS = ("\t", ";", ",", "|", " ")
 
@@ -194,7 +194,7 @@ _COMMENTS = ("#", "%", "//", "!", "*")
 
 _MTS = "MTS793|"
 
-_LEAST_SHARE = (0.5, 0.8)  # of the fields are numbers; more where blanks part them
+_LEAST_SHARE = (0.5, 0.8)  # minimum share of numeric fields; higher if blanks separate them
 
 _THOUSANDS = {
     decimal: re.compile(
@@ -212,14 +212,14 @@ _MARKED = (
 
 
 def _decode(path: Path, head: bytes) -> tuple[str, str, str]:
-    """Text, encoding, and how sure that is."""
+    """Text, encoding, and the confidence in that encoding."""
     for mark, encoding in _MARKED:
         if head.startswith(mark):
             text = head.decode(encoding, errors="ignore").removeprefix("\ufeff")
             return text, encoding, f"sure: encoding {encoding}, by the byte-order mark"
     if b"\0" in head:
         for place, encoding in ((1, "utf-16-le"), (0, "utf-16-be")):
-            # digits and separators, of which a table is made, have a zero beside them
+            # digits and separators, which make up a table, have a zero byte beside them
             if 2 * head[place::2].count(0) > len(head) / 2 and not head[1 - place :: 2].count(0):
                 text = head.decode(encoding, errors="ignore")
                 return text, encoding, f"guess: encoding {encoding}, by its zero bytes"
@@ -243,7 +243,7 @@ _ENCODINGS = ("latin-1", "cp1252", "gb18030", "cp932", "euc_kr", "big5", "cp1251
 
 
 def _decoded(head: bytes, encoding: str) -> str | None:
-    """Text of the first bytes of a file; None where they are none in this encoding."""
+    """Text of the first bytes of a file; None if they are invalid in this encoding."""
     try:
         return codecs.getincrementaldecoder(encoding)().decode(head)
     except UnicodeDecodeError:
@@ -251,12 +251,12 @@ def _decoded(head: bytes, encoding: str) -> str | None:
 
 
 def _n_foreign(text: str) -> int:
-    """Letters beyond ASCII that stand in words of logs."""
+    """Number of non-ASCII letters that occur in the words of logs."""
     found = FOREIGN_WORDS.findall("\n".join(text.split("\n", _HEADER)[:_HEADER]))
     return sum(not letter.isascii() for word in found for letter in word)
 
 
-_HEADER = 200  # lines in which the words of a header stand
+_HEADER = 200  # lines searched for the words of a header
 
 
 def _split(lines: Sequence[str], delimiter: str) -> list[list[str]]:
@@ -270,7 +270,7 @@ def _split(lines: Sequence[str], delimiter: str) -> list[list[str]]:
 
 
 def _comment(lines: Sequence[str]) -> str:
-    """Mark at the start of the first filled line, where it is a usual one."""
+    """Comment mark at the start of the first non-empty line, if it is a usual one."""
     first = next((line for line in lines if line.strip()), "")
     return next((mark for mark in _COMMENTS if first.startswith(mark)), "")
 
@@ -280,8 +280,8 @@ def _without_comments(lines: Sequence[str], comment: str) -> list[str]:
 
 
 def _best_table(lines: Sequence[str]) -> tuple[str, str, _TableShape] | None:
-    """Delimiter, decimal mark and table that make the most of the fields numbers."""
-    # all delimiters are tried on the beginning of a long table alone
+    """Delimiter, decimal mark and table that turn the most fields into numbers."""
+    # all delimiters are tried on the beginning of a long table only
     found = _best_of(lines[:_FEW_LINES], _DELIMITERS)
     if found is not None and 2 * len(found[2].rows) > _FEW_LINES:
         return _best_of(lines, found[:1])
@@ -294,7 +294,7 @@ _FEW_LINES = 1000
 def _best_of(
     lines: Sequence[str], delimiters: Sequence[str]
 ) -> tuple[str, str, _TableShape] | None:
-    """The best table by some delimiters."""
+    """The best table for the given delimiters."""
     best, best_score = None, (0.0, 0)
     for delimiter in delimiters:
         rows = _split(lines, delimiter)
@@ -317,7 +317,7 @@ _NAMED_MARK = {"\u00a0": "a no-break space", "\u202f": "a narrow no-break space"
 def _number_settings(
     table: _TableShape, delimiter: str, decimal: str
 ) -> tuple[dict[str, object], list[str]]:
-    """Thousands mark and missing marks, and how sure the decimal mark is."""
+    """Thousands mark and missing marks, and the confidence in the decimal mark."""
     fields = [text for row in table.rows for text in row if text]
     remarks = []
     marked = [text for text in fields if decimal in text and _is_number(text, decimal)]
@@ -353,7 +353,7 @@ def _number_settings(
 
 
 def _look_at_text(path: Path) -> _SeenTable:
-    """Shape of the table in a text file, from its first 256 kB."""
+    """Find the table in a text file from its first 256 kB."""
     with path.open("rb") as stream:
         head = stream.read(_HEAD)
         is_whole = not stream.read(1)
@@ -410,7 +410,7 @@ def _look_at_text(path: Path) -> _SeenTable:
 
 
 def _tidy(line: str) -> str:
-    """A line of a preamble as one reads it, without quotes and tabs."""
+    """A preamble line without quotes and tabs, for display."""
     return " ".join(re.sub(r'["\t;]+', " ", line).strip(" ,").split())[:_LONGEST_LINE]
 
 
@@ -420,7 +420,7 @@ _LONGEST_LINE = 100
 def _named_by_comment(
     above: Sequence[str], comment: str, delimiter: str, columns: list[SeenColumn]
 ) -> tuple[list[SeenColumn], list[str]]:
-    """Names from the last comment line, where it has as many as there are columns."""
+    """Names from the last comment line, if it has one per column."""
     last = next((line for line in reversed(above) if line.startswith(comment)), "")
     names = _split([last.removeprefix(comment)], delimiter)[0]
     if len(names) != len(columns) or not all(names):
@@ -434,14 +434,14 @@ def _named_by_comment(
 
 _LONGEST_NAME = 1000
 
-_PART = 1 << 20  # rows that are loaded at a time
+_PART = 1 << 20  # rows loaded at a time
 
 Candidate = tuple[dict[str, object], ColumnTable]
-"""Layout settings and the table that they read."""
+"""Layout settings and the table they read."""
 
 
 def _table_sheets(path: Path, watch: Watch) -> list[tuple[str, _TableShape]]:
-    """Sheets of a workbook that hold a table of two or more rows of numbers."""
+    """Sheets of a workbook that contain a table of at least two rows of numbers."""
     workbook = open_workbook(path, watch)
     found = []
     for place, name in enumerate(workbook.sheet_names):
@@ -452,7 +452,7 @@ def _table_sheets(path: Path, watch: Watch) -> list[tuple[str, _TableShape]]:
 
 
 def _look_at_sheet(path: Path, sheet: str | None, watch: Watch) -> _SeenTable:
-    """One sheet of a workbook, or the one that holds the longest table."""
+    """One sheet of a workbook, or the sheet with the longest table."""
     found = _table_sheets(path, watch)
     chosen = [entry for entry in found if sheet in (None, entry[0])]
     if not chosen:
@@ -477,7 +477,7 @@ def _look_at_sheet(path: Path, sheet: str | None, watch: Watch) -> _SeenTable:
 
 
 def _seen(table: ColumnTable) -> list[SeenColumn]:
-    """Columns of numbers that share the most common length."""
+    """Numeric columns of the most common length."""
     columns, sizes = [], []
     for place, (name, unit) in enumerate(zip(table.names, table.units, strict=True)):
         if len(name) > _LONGEST_NAME:  # no layout would write it
@@ -486,7 +486,7 @@ def _seen(table: ColumnTable) -> list[SeenColumn]:
             parts = table.load(place, _ROWS if table.sizes else _PART)
             values = next(parts)
             size = values.size
-            # where the file states how many there are, the rest is not read
+            # where the file states the length, the rest is not read
             size = table.sizes[place] if table.sizes else size + sum(part.size for part in parts)
         except LogError:  # not a series: no column
             continue
@@ -503,7 +503,7 @@ def _seen(table: ColumnTable) -> list[SeenColumn]:
 def _named_matrix(
     path: Path, key: str, matrix: Any, texts: Mapping[str, Sequence[str]], group: str = ""
 ) -> tuple[dict[str, object], ColumnTable]:
-    """A matrix with the lists of texts beside it that may be its names and units."""
+    """A matrix and the text lists beside it that may be its names and units."""
     settings: dict[str, object] = {"group": group} if group else {}
     settings["matrix"] = key
     given: dict[str, tuple[str, ...]] = {}
@@ -526,7 +526,7 @@ def _is_matrix(values: Any) -> bool:
 
 
 def _hdf5_candidates(path: Path, file: h5py.File, watch: Watch) -> Iterator[Candidate]:
-    """Groups and matrices of a file; a group that is reached in two ways is looked at once."""
+    """Groups and matrices of a file; a group with two paths is examined once."""
     waiting: deque[h5py.Group] = deque([file])
     seen = set()
     while waiting:
@@ -630,7 +630,7 @@ def _look_at_binary(path: Path, kind: Format, watch: Watch) -> _SeenTable:
 def _waveform(
     file: Any, settings: Mapping[str, object], columns: list[SeenColumn]
 ) -> list[SeenColumn]:
-    """Time by the waveform properties, as one more column where the channels have them."""
+    """Time from the waveform properties, as an extra column if the channels have them."""
     group = file[settings["group"]] if "group" in settings else file.groups()[0]
     if all(channel.properties.get(WAVEFORM_COLUMN, 0) for channel in group.channels()):
         return [SeenColumn(len(columns) + 1, WAVEFORM_COLUMN, "s", np.arange(2.0))]
@@ -638,7 +638,7 @@ def _waveform(
 
 
 def _look_at_json(path: Path, watch: Watch) -> _SeenTable:
-    """The largest table of a JSON file, wherever it stands."""
+    """The largest table of a JSON file, at any level."""
     _, content = json_content(path, watch)
     best: tuple[int, str, Any] | None = None
     waiting: deque[tuple[tuple[str, ...], Any]] = deque([((), content)])
@@ -693,11 +693,11 @@ def _look_at_json(path: Path, watch: Watch) -> _SeenTable:
     return _SeenTable("json", columns, settings, tuple(remarks))
 
 
-_DEEPEST = 8  # keys down to a table
+_DEEPEST = 8  # maximum depth of keys above a table
 
 
 def _n_values(value: Any) -> int:
-    """How many numbers a table of JSON holds: a matrix, records or columns; 0 of anything else."""
+    """Number of values in a JSON table (matrix, records or columns); 0 for anything else."""
     if isinstance(value, dict):
         lists = [entry for entry in value.values() if _is_list_of(entry, (int, float))]
         n_rows, n_columns = Counter(map(len, lists)).most_common(1)[0] if lists else (0, 0)
@@ -719,7 +719,7 @@ def _value(entry: Any) -> float:
 
 
 def _columns_of(columns: Mapping[str, Any]) -> list[SeenColumn]:
-    """Lists of numbers of the most common length."""
+    """Lists of numbers that have the most common length."""
     lists = {key: entry for key, entry in columns.items() if isinstance(entry, list)}
     length = Counter(map(len, lists.values())).most_common(1)[0][0]
     seen: list[SeenColumn] = []
@@ -743,16 +743,16 @@ _MAGIC: tuple[tuple[bytes, Format], ...] = (
 
 @dataclass(frozen=True)
 class SniffedLayout:
-    """A proposal.
+    """Proposed layout of a log.
 
     Parameters
     ----------
     toml : str
-        ``[layouts.NAME]`` as for campaign.toml.
+        ``[layouts.NAME]`` for campaign.toml.
     remarks : tuple of str
-        What stands behind it; each begins with ``sure:``, ``guess:`` or ``unknown:``.
+        Reasons; each begins with ``sure:``, ``guess:`` or ``unknown:``.
     keys : tuple of str
-        Channels that were found.
+        Channels found.
     preamble : tuple of str
         Lines above the table.
     """
@@ -764,16 +764,16 @@ class SniffedLayout:
 
     @property
     def settings(self) -> str:
-        """What the layout says of the form of a log: equal for logs that look alike.
+        """Layout settings of the log format: equal for logs of the same form.
 
-        Without comments, and without what each log says by how it begins.
+        Comments and values that depend on the start of each log are left out.
         """
         lines = [line.split("  # ")[0] for line in self.toml.split("\n") if line[:1] != "#"]
         return re.sub(r", (sign|datum|reference_length|zero) = .*?(?=,| \})", "", "\n".join(lines))
 
 
 def format_of(path: Path) -> Format:
-    """Format of a file by its first bytes; text that is not JSON is ``delimited``."""
+    """Format of a file from its first bytes; text that is not JSON is ``delimited``."""
     try:
         with path.open("rb") as stream:
             head = stream.read(16)
@@ -784,7 +784,7 @@ def format_of(path: Path) -> Format:
             return name
     if zipfile.is_zipfile(path):
         return "spreadsheet"
-    # a bracket opens JSON, or a section of a preamble: [Header]
+    # a bracket opens JSON or a preamble section such as [Header]
     text = head.removeprefix(b"\xef\xbb\xbf").lstrip()
     return "json" if re.match(rb"\{|\[\s*[\[{\"\d-]", text) else "delimited"
 
@@ -802,7 +802,7 @@ def _look(path: Path, sheet: str | None, watch: Watch) -> _SeenTable:
 
 
 def sheets_with_tables(path: Path) -> list[str]:
-    """Names of the sheets of a workbook that hold a table of numbers."""
+    """Names of the sheets of a workbook that contain a table of numbers."""
     return [name for name, _ in bounded(_table_sheets, path, watch=Watch(path, _LIMITS))]
 
 
@@ -811,7 +811,7 @@ _RATES = re.compile(
     r"采样|サンプリング|샘플",
     re.IGNORECASE,
 )
-"""Words of a preamble that state the time between rows."""
+"""Preamble words that state the time between rows."""
 
 _OWN_NUMBER = re.compile(r"(?<![A-Za-z_])\d")  # and not a channel: AI0
 
@@ -841,7 +841,7 @@ def sniff_layout(path: Path, *, name: str = "log", sheet: str | None = None) -> 
 
 
 def unknown_layout() -> SniffedLayout:
-    """Propose a layout for a file in which no table was found: every line of it is a question."""
+    """Propose a layout for a file without a recognised table: every line is a question."""
     proposal = propose_channels([])
     lines = ["[layouts.log]", f'format = "{UNKNOWN}"', "[layouts.log.channels]", *proposal.lines]
     remark = "unknown: no table of numbers was found; docs/layouts.md lists the formats"

@@ -1,6 +1,6 @@
 """Spreadsheet logs: .xlsx, .xlsm, .xlsb, .xls and .ods.
 
-Sheets are given by name or by number from 1; rows count as the sheet shows them.
+Sheets are given by name or by number from 1; rows count as in the sheet.
 """
 
 from __future__ import annotations
@@ -51,26 +51,26 @@ def _is_markup(name: str) -> bool:
 
 
 class _SoundMarkup:
-    """Parses a part as it is unpacked; keeps nothing, and fetches nothing from elsewhere."""
+    """Parses a part as it is unpacked; stores nothing and fetches nothing external."""
 
     def __init__(self, path: Path, name: str) -> None:
-        """Begin before the first byte."""
+        """Start before the first byte."""
         self._path, self._name = path, name
         self._parser = expat.ParserCreate()
         self._parser.StartDoctypeDeclHandler = self._refuse
 
     def add(self, data: bytes) -> None:
-        """The bytes that follow."""
+        """Parse the next bytes."""
         self._parse(data, False)
 
     def finish(self) -> None:
-        """After the last byte."""
+        """Finish after the last byte."""
         self._parse(b"", True)
 
     def _parse(self, data: bytes, is_last: bool) -> None:
         try:
             self._parser.Parse(data, is_last)
-        except (expat.ExpatError, LookupError) as error:  # an encoding that there is not
+        except (expat.ExpatError, LookupError) as error:  # unknown encoding
             raise LogError(
                 self._path, "the workbook is damaged", found=f"{self._name}: {error}",
                 needed="well-formed XML", hint="Save it again with the program that wrote it.",
@@ -98,19 +98,19 @@ _ERROR_MARKS = {
 
 
 class _parsed:  # noqa: N801 - read as a word of the ``with`` statement
-    """Make a `LogError` of whatever the parser of workbooks ends with."""
+    """Convert any error of the workbook parser to a `LogError`."""
 
     def __init__(self, path: Path, problem: str, *, needed: str | None = None) -> None:
-        """Remember what is said then."""
+        """Store the text of the error."""
         self._path, self._problem, self._needed = path, problem, needed
 
     def __enter__(self) -> None:
-        """Begin to parse."""
+        """Enter the block."""
 
     def __exit__(
         self, _: type[BaseException] | None, error: BaseException | None, __: object
     ) -> None:
-        """Tell how it ended."""
+        """Convert the error, if there is one."""
         faults = (python_calamine.CalamineError, fastexcel.FastExcelError, OSError)
         if error is not None and (
             isinstance(error, faults) or type(error).__name__ == "PanicException"
@@ -125,13 +125,13 @@ def _first_line(error: BaseException) -> str:
 
 @dataclass
 class _SheetCells:
-    """Declared columns of a sheet, where they are blank, and the text of a clock."""
+    """Declared columns of a sheet, their blank cells, and the text of a clock."""
 
     values: list[Floats] = field(default_factory=list)
     blanks: list[Bools] = field(default_factory=list)
     text: dict[str, tuple[str, ...]] = field(default_factory=dict)
     below: list[list[Any]] = field(default_factory=list)
-    """Rows below the end of the table, where one is stated."""
+    """Rows below the end of the table, if one is stated."""
 
 
 def _fast_columns(
@@ -142,7 +142,7 @@ def _fast_columns(
     wanted: Sequence[DeclaredColumn],
     layout: Layout,
 ) -> _SheetCells | None:
-    """Columns that hold numbers and blanks (NaN) alone; None where one holds more."""
+    """Columns that contain only numbers and blanks (NaN); None if any contains more."""
     if layout.ends_at or any(want.unit == CLOCK for want in wanted):
         return None
     order = sorted(set(places))
@@ -155,7 +155,7 @@ def _fast_columns(
             schema_sample_rows=None,
             dtype_coercion="strict",
         ).to_arrow_with_errors()
-    except fastexcel.FastExcelError:  # the exact look finds out what is wrong
+    except fastexcel.FastExcelError:  # the exact path finds the cause
         return None
     if errors is not None or not {str(kind) for kind in batch.schema.types} <= {"double", "int64"}:
         return None
@@ -172,7 +172,7 @@ def _fast_columns(
 def _error_cells(
     workbook: fastexcel.ExcelReader, sheet: int, first: int
 ) -> dict[tuple[int, int], str]:
-    """Spreadsheet errors by row and column from 0; the exact path sees them as blanks."""
+    """Spreadsheet errors by row and column from 0; they are blanks in the exact path."""
     _, errors = workbook.load_sheet(
         sheet, header_row=None, skip_rows=first, dtypes="float"
     ).to_arrow_with_errors()
@@ -186,7 +186,7 @@ def _error_cells(
 
 
 def _end_of_table(rows: Sequence[Sequence[Any]], layout: Layout) -> int:
-    """Place of the row at which the table ends, behind the last where none is stated or there."""
+    """Row index at which the table ends; past the last row if no end is stated or found."""
     firsts = (next((cell for cell in row if cell != ""), None) for row in rows)
     ends = (
         place
@@ -212,7 +212,7 @@ def _exact_columns(
     wanted: Sequence[DeclaredColumn],
     layout: Layout,
 ) -> _SheetCells:
-    """Columns cell by cell; `LogError` at the first that is neither number nor missing mark."""
+    """Columns cell by cell; `LogError` at the first cell not a number or missing mark."""
     with _parsed(path, f"sheet {sheet + 1} cannot be read"):
         rows = (
             python_calamine.CalamineWorkbook.from_path(path)
@@ -257,8 +257,8 @@ def _exact_columns(
 
 
 def _number(path: Path, cell: object, want: DeclaredColumn, layout: Layout, *, row: int) -> float:
-    """A cell that is no float: a whole number, or NaN for a blank or a missing mark."""
-    if type(cell) is int:  # a bool is no number
+    """A non-float cell: an integer, or NaN for a blank or a missing mark."""
+    if type(cell) is int:  # a bool is not a number
         return float(cell)
     if isinstance(cell, str) and (not cell.strip() or cell.strip() in layout.missing):
         return math.nan
@@ -283,7 +283,7 @@ def _read_cells(
     wanted: Sequence[DeclaredColumn],
     layout: Layout,
 ) -> _SheetCells:
-    """Declared columns of a sheet below its first rows; blanks and missing marks are NaN."""
+    """Declared columns of a sheet below its header; blanks and missing marks are NaN."""
     cells = _fast_columns(workbook, sheet, first, places, wanted, layout)
     if cells is None:
         cells = _exact_columns(path, workbook, sheet, first, places, wanted, layout)
@@ -299,7 +299,7 @@ _NOT_ZIP = (
 
 
 def open_workbook(path: Path, watch: Watch | None = None) -> fastexcel.ExcelReader:
-    """Open a workbook that is sound."""
+    """Open a workbook after checking it for damage."""
     if zipfile.is_zipfile(path):
         _check_sound(path, watch or Watch(path))
     with _parsed(
@@ -311,7 +311,7 @@ def open_workbook(path: Path, watch: Watch | None = None) -> fastexcel.ExcelRead
 
 
 def _check_sound(path: Path, watch: Watch) -> None:
-    """Unpack every part once: the parser asks neither for checksums nor for sound markup."""
+    """Unpack every part once, because the parser checks neither checksums nor markup."""
     try:
         with zipfile.ZipFile(path) as archive:
             parts = archive.infolist()
@@ -335,7 +335,7 @@ def _check_sound(path: Path, watch: Watch) -> None:
 
 
 def _find_sheet(path: Path, sheet_names: Sequence[str], sheet: str | int) -> int:
-    """Place from 0 of a sheet given by name or by number from 1."""
+    """Index (from 0) of a sheet given by name or by number from 1."""
     if isinstance(sheet, int) and 1 <= sheet <= len(sheet_names):
         return sheet - 1
     if sheet in sheet_names:
@@ -351,7 +351,7 @@ def _find_sheet(path: Path, sheet_names: Sequence[str], sheet: str | int) -> int
 def read_rows(
     path: Path, workbook: fastexcel.ExcelReader, sheet: int, n_rows: int
 ) -> list[list[str]]:
-    """First rows of a sheet as text, from row 1 and column A on; blank cells are ''."""
+    """First rows of a sheet as text, from row 1 and column A; blank cells are ''."""
     with _parsed(path, f"sheet {sheet + 1} cannot be read"):
         top = workbook.load_sheet(
             sheet, header_row=None, skip_rows=0, n_rows=n_rows, dtypes="string"
@@ -383,7 +383,7 @@ def _head(
 
 
 def _metadata(sheet_name: str, rows: Iterable[tuple[int, Sequence[Any]]]) -> dict[str, str]:
-    """Numbered rows beside the table by their first cell where there are two, else by number."""
+    """Rows outside the table, keyed by the first of two cells, otherwise by row number."""
     metadata = {"sheet": sheet_name}
     for row, cells in rows:
         texts = [text for cell in cells if (text := str(cell).strip())]

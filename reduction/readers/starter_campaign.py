@@ -1,7 +1,7 @@
-"""A draft of campaign.toml for a folder of logs.
+"""Drafts campaign.toml for a folder of logs.
 
-Every ``?`` has to be replaced before the campaign loads.  Which specimen hung at which load
-no log says, so that none is assumed: two logs may be of one specimen, or of two.
+Every ``?`` has to be replaced before the campaign loads.  No log states which specimen was on which
+load cell, so none is assumed: two logs may be of one specimen, or of two.
 """
 
 from __future__ import annotations
@@ -65,12 +65,12 @@ _SIZES = re.compile(
     r"宽度|厚度|直径|标距|幅|厚さ|長さ|断面積",
     re.IGNORECASE,
 )
-"""Words of a preamble that state a size of the specimen."""
+"""Preamble words that state a dimension of the specimen."""
 
 
 @dataclass(frozen=True)
 class _Log:
-    """A file, or a sheet of one, that may be a log."""
+    """A file, or one of its sheets, that may be a log."""
 
     file: str
     sheet: str | None
@@ -78,7 +78,7 @@ class _Log:
 
     @property
     def is_named(self) -> bool:
-        """Whether a column of it is a position or a load."""
+        """Whether one of its columns is a position or a load."""
         return bool({"crosshead_position", "tension.1"} & set(self.sniffed.keys))
 
     @property
@@ -87,7 +87,7 @@ class _Log:
 
 
 def _slug(text: str) -> str:
-    """A name that may stand as an id: letters, digits, underscore and hyphen."""
+    """A name usable as an id: letters, digits, underscore and hyphen."""
     return re.sub(r"[^A-Za-z0-9_-]+", "-", text).strip("-_")[:80] or "log"
 
 
@@ -101,7 +101,7 @@ def _unique(name: str, taken: set[str]) -> str:
 
 
 def _is_marks(path: Path) -> bool:
-    """Whether a file is a table of tape readings, by its header."""
+    """Whether the header of a file is that of a table of tape readings."""
     if path.suffix.lower() != ".csv":
         return False
     try:
@@ -146,11 +146,11 @@ def starter_campaign(folder: Path) -> dict[str, str]:
         named = [log for log in found if log.is_named]
         unnamed += [] if named else found
         logs += named
-    if not logs:  # tables whose columns nobody knows, for a reader to name them
+    if not logs:  # tables without recognised columns, for the user to name them
         logs, unnamed = unnamed, []
     names = dict.fromkeys(log.file for log in unnamed)
     refused += [f"{name}: no column looks like a position or a load" for name in names]
-    if not logs:  # nothing that can be read: a draft in which a person says what the files are
+    if not logs:  # nothing readable: a draft in which the user states what the files are
         logs = [_Log(path.name, None, unknown_layout()) for path in blind]
     if not logs:
         raise LogError(
@@ -164,7 +164,7 @@ _NO_LOGS = (".md", ".pdf", ".png", ".jpg", ".jpeg", ".docx", ".doc", ".toml", ".
 
 
 def _specimen_lines(names: list[str], logs: list[_Log], *, has_gauge: bool) -> list[str]:
-    """Sections of the specimens, with what the preambles of the logs say of their sizes."""
+    """Sections of the specimens, with the sizes stated in the preambles of the logs."""
     said = dict.fromkeys(
         line for log in logs for line in log.sniffed.preamble if _SIZES.search(line)
     )
@@ -181,7 +181,7 @@ _MOST_SAID = 12
 
 
 def _one_layout(alike: list[_Log]) -> tuple[str, list[str]]:
-    """Layout of logs that look alike; a zero or a datum in which they differ is a question."""
+    """Common layout of similar logs; a zero or datum that differs becomes a question."""
     toml, remarks = alike[0].sniffed.toml, list(alike[0].sniffed.remarks)
     texts = [log.sniffed.toml.split("\n") for log in alike]
     merged = []
@@ -200,7 +200,7 @@ def _one_layout(alike: list[_Log]) -> tuple[str, list[str]]:
 
 
 def _natural(name: str) -> list[tuple[int, str]]:
-    """Sort key under which T-10 comes after T-9."""
+    """Sort key that places T-10 after T-9."""
     parts = re.split(r"(\d+)", name.lower())
     return [(int(part), "") if part.isdigit() else (-1, part) for part in parts if part]
 
@@ -216,7 +216,7 @@ def _texts(folder: Path, logs: list[_Log], marks: list[str], refused: list[str])
         layouts[log.sniffed.settings][1].append(log)
         name = f"{Path(log.file).stem}-{log.sheet}" if log.sheet else Path(log.file).stem
         rows.append((_slug(name), log))
-    # of one log nobody asks whether its specimens hung in another one
+    # with one log, its specimens cannot have been in another one
     alone = [f"specimen-{i + 1}" for i in range(logs[0].n_specimens)] if len(logs) == 1 else []
     has_strain = any(key.startswith("strain.") for log in logs for key in log.sniffed.keys)
     lines = [

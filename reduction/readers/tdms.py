@@ -1,9 +1,8 @@
 """TDMS logs.
 
-A channel's ``unit_string`` is checked against the declared unit.  A log without a time
-channel says its times by the waveform properties of its channels: the layout then
-declares the column ``wf_increment``, and time is ``wf_start_offset`` plus
-``wf_increment`` times the sample number.
+A channel's ``unit_string`` is checked against the declared unit.  A log without a time channel
+states its times in the waveform properties of its channels: the layout then declares the column
+``wf_increment``, and time is ``wf_start_offset`` plus ``wf_increment`` times the sample number.
 """
 
 from __future__ import annotations
@@ -50,13 +49,13 @@ _NOT_TDMS = (
     NotImplementedError, OverflowError, RecursionError, MemoryError, ZeroDivisionError,
 )  # fmt: skip
 
-# npTDMS prints what this module turns into notes and errors
+# npTDMS prints messages that this module turns into notes and errors
 log_manager.set_level(logging.CRITICAL)
 
 
 @contextmanager
 def open_tdms(path: Path) -> Iterator[nptdms.TdmsFile]:
-    """Open a TDMS file; `LogError` where the file is none."""
+    """Open a TDMS file; `LogError` for any other file."""
     with path.open("rb") as stream:
         try:
             file = nptdms.TdmsFile.open(stream)
@@ -69,7 +68,7 @@ def open_tdms(path: Path) -> Iterator[nptdms.TdmsFile]:
 
 
 def _tdms_group(path: Path, file: nptdms.TdmsFile, group: str) -> nptdms.TdmsGroup:
-    """The named group, or the only one where no name is given."""
+    """The named group, or the only one if no name is given."""
     names = [entry.name for entry in file.groups()]
     if not group and len(names) == 1:
         return file[names[0]]
@@ -89,7 +88,7 @@ def tdms_table(
     """Channels of a group as columns."""
     channels = group.channels()
     (watch or Watch(path)).check_columns(len(channels))
-    most = 8 * path.stat().st_size  # a value takes a bit at least
+    most = 8 * path.stat().st_size  # a value takes at least one bit
     for channel in channels:
         if len(channel) > most:
             raise LogError(
@@ -120,7 +119,7 @@ def tdms_table(
 
 
 def _check_scales(path: Path, *holders: Any) -> None:
-    """The library makes as many scales as a property says there are."""
+    """Limit the number of scales, since the library creates as many as a property states."""
     for holder in holders:
         stated = holder.properties.get(_SCALES, 0)
         numbers = [int(match[1]) for key in holder.properties if (match := _SCALE.match(key))]
@@ -200,7 +199,7 @@ def _waveform_times(
 
 
 def _regular(offset: float, increment: float, size: int, n_rows: int) -> Iterator[Floats]:
-    """Times of a waveform, in parts of so many."""
+    """Times of a waveform, in parts of `n_rows`."""
     for part in row_parts(size, n_rows):
         yield offset + increment * np.arange(part.start, part.stop, dtype=np.float64)
 

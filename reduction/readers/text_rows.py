@@ -1,7 +1,7 @@
-"""Text files in parts of whole lines, and their rows.
+"""Splits text files into parts of whole lines, and provides their rows.
 
-What is wrong with the text is told when the lines above it have been handed on: the first
-error of a file is the same in parts of any length.
+A fault in the text is reported after the lines above it have been handed on, so that the first
+error of a file does not depend on the length of the parts.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ _ASCII = bytes(range(128))
 
 _CHARACTER_MARK = "\ufeff"
 
-# of host names, of escapes in source code, and of nothing: no machine writes a log in them
+# for host names, source-code escapes or nothing at all: no machine writes logs in them
 _NO_TEXT = {"idna", "punycode", "unicode-escape", "raw-unicode-escape", "undefined"}
 
 _SAMPLE = "0,1\n"
@@ -48,7 +48,7 @@ _SAMPLE = "0,1\n"
 
 @dataclass(frozen=True)
 class _TextEncoding:
-    """How the bytes of a file are text."""
+    """Text encoding of a file."""
 
     path: Path
     declared: str
@@ -57,21 +57,21 @@ class _TextEncoding:
 
     @property
     def keeps_ascii(self) -> bool:
-        """Whether ASCII bytes are ASCII characters, so that lines end in bytes as in text."""
+        """Whether ASCII bytes are ASCII characters, so that line ends can be found in bytes."""
         try:
             return _ASCII.decode(self.codec) == _ASCII.decode("ascii")
         except UnicodeDecodeError:
             return False
 
     def to_utf8(self, data: bytes | bytearray | memoryview, *, is_first: bool) -> memoryview:
-        """Whole lines below the mark as UTF-8; `UnicodeDecodeError` where they are none."""
+        """Whole lines after the byte-order mark as UTF-8; `UnicodeDecodeError` if invalid."""
         text = str(data, self.codec)
         if self.codec in _UTF8_FAMILY:
             return memoryview(data)
         return memoryview((text.removeprefix(_CHARACTER_MARK) if is_first else text).encode())
 
     def binary(self, row: int) -> LogError:
-        """Error of a file with a NUL byte in it."""
+        """Error for a file with a NUL byte in it."""
         return LogError(
             self.path,
             "the file is binary, not text",
@@ -82,7 +82,7 @@ class _TextEncoding:
         )
 
     def other(self, error: UnicodeDecodeError, row: int | None) -> LogError:
-        """Error of bytes that are no text in the declared encoding."""
+        """Error for bytes that are invalid in the declared encoding."""
         return LogError(
             self.path,
             "the file is not in the declared encoding",
@@ -98,7 +98,7 @@ def _find_encoding(path: Path, head: bytes, declared: str) -> _TextEncoding:
     try:
         codec = codecs.lookup(declared).name
         is_text = codec not in _NO_TEXT and _SAMPLE.encode(declared).decode(declared) == _SAMPLE
-    except (LookupError, ValueError):  # not known, or of no text; a NUL byte in the name
+    except (LookupError, ValueError):  # unknown or not a text encoding; a NUL byte in the name
         is_text = False
     if not is_text:
         raise SettingsError(
@@ -119,7 +119,7 @@ def _find_encoding(path: Path, head: bytes, declared: str) -> _TextEncoding:
     if marked == "utf-8":
         return _TextEncoding(path, declared, marked, mark)
     if not marked and codec in ("utf-16", "utf-32"):
-        codec += "-le"  # as most machines write
+        codec += "-le"  # as on most machines
     return _TextEncoding(path, declared, codec, b"")
 
 
@@ -139,16 +139,16 @@ def decode(path: Path, data: bytes, encoding: str) -> bytes:
 
 
 def _row_of(data: bytes | bytearray, place: int) -> int:
-    """Row from 1 of a byte: lines end in a line feed, a carriage return, or both."""
+    """Row (from 1) of a byte; lines end in a line feed, a carriage return, or both."""
     returns = data.count(b"\r", 0, place) - data.count(b"\r\n", 0, place)
     return data.count(b"\n", 0, place) + returns + 1
 
 
-_PIECE = 1 << 17  # stays in the cache
+_PIECE = 1 << 17  # fits in the cache
 
 _NEWLINE, _RETURN = b"\n\r"
 
-_SHOWN = 60  # characters of a line in a message
+_SHOWN = 60  # characters of a line shown in a message
 
 
 @dataclass(frozen=True)
@@ -162,17 +162,17 @@ class TextRows:
     layout : Layout
         Separators and quotes.
     text : memoryview
-        The bytes, without line ends after the last row.
+        Bytes without line ends after the last row.
     first_row : int
         Editor's row of the first line.
     line_row : ndarray of int, shape (n_lines,), optional
-        Editor's row of each line where they are not consecutive.
+        Editor's row of each line if they are not consecutive.
     is_open : bool
         Whether the file ends with the last line, without a line end.
     n_lines : int, optional
-        Lines where they have been counted.
+        Number of lines, if they have been counted.
     longest_line : int
-        Bytes that no line has more of. [1]
+        Upper limit for the bytes of a line. [1]
     """
 
     path: Path
@@ -199,7 +199,7 @@ class TextRows:
         return replace(self, text=memoryview(text), is_open=False, n_lines=None)
 
     def rows(self, n_rows: int) -> Integers | None:
-        """Editor's row of each of so many data rows, or None where they are those of the lines."""
+        """Editor's row of each of `n_rows` data rows; None if they are those of the lines."""
         n_lines = count_lines(self.text) if self.n_lines is None else self.n_lines
         row = None if self.line_row is None else self.line_row[:n_lines]
         if n_lines != n_rows:
@@ -217,21 +217,21 @@ class TextRows:
         return row
 
     def lines(self) -> Iterator[str]:
-        """The lines one by one, for the way to an error."""
+        """The lines one by one, to locate an error."""
         return (line.decode("utf-8") for line in bytes(self.text).split(b"\n"))
 
     def not_told_apart(self, found: str) -> LogError:
-        """Error of rows of which the parser makes something else."""
+        """Error for rows that the parser misreads."""
         return LogError(self.path, "the rows cannot be told apart", found=found)
 
     def unclosed(self, line: int, text: str) -> LogError | None:
-        """Error of a line, counted from 0, whose last quoted field is not closed in it."""
+        """Error for a line, counted from 0, whose last quoted field is not closed."""
         if not self.layout.quote or self.layout.quote not in text:
             return None
         reader = csv.reader([text + "\n", text], **_dialect(self.layout))
         try:
             is_closed = len(list(reader)) > 1
-        except csv.Error:  # a field longer than the csv module takes
+        except csv.Error:  # the field is longer than the csv module accepts
             is_closed = True
         if is_closed:
             return None
@@ -246,22 +246,22 @@ class TextRows:
 
 
 def count_lines(text: memoryview) -> int:
-    """Number of lines; the last one needs no line end."""
+    """Number of lines; the last one may lack a line end."""
     codes = np.frombuffer(text, np.uint8)
     pieces = (codes[start : start + _PIECE] for start in range(0, codes.size, _PIECE))
     return int(sum(np.count_nonzero(piece == _NEWLINE) for piece in pieces)) + 1
 
 
 def line_starts(text: memoryview) -> Integers:
-    """Place of the first byte of each line, shape (n_lines,)."""
+    """Index of the first byte of each line, shape (n_lines,)."""
     return np.concatenate([[0], np.flatnonzero(np.frombuffer(text, np.uint8) == _NEWLINE) + 1])
 
 
 def split_line(line: str, layout: Layout) -> list[str]:
-    """Fields of one line, without quotes and the blanks around them."""
+    """Fields of one line, without quotes and surrounding blanks."""
     try:
         fields = next(csv.reader([line], **_dialect(layout)), [])
-    except csv.Error:  # a field longer than the csv module takes
+    except csv.Error:  # the field is longer than the csv module accepts
         fields = line.split(layout.delimiter)
     return [field.strip() for field in fields]
 
@@ -274,13 +274,13 @@ def _dialect(layout: Layout) -> dict[str, Any]:
     }
 
 
-_LOOK = 1 << 16  # bytes in which a binary file shows itself
+_LOOK = 1 << 16  # bytes examined to recognise a binary file
 
-_MARK = 4  # bytes of the longest byte-order mark
+_MARK = 4  # length of the longest byte-order mark in bytes
 
-_FILE_END = b"\n\r\x1a"  # the last one is what DOS ends a file with
+_FILE_END = b"\n\r\x1a"  # DOS ends a file with the last one
 
-_Fault = tuple[int, Callable[[int], LogError]]  # lines above it, and the error of its row
+_Fault = tuple[int, Callable[[int], LogError]]  # lines above it, and the error for its row
 
 
 @dataclass(frozen=True)
@@ -294,12 +294,12 @@ class _TextPart:
 
 
 class TextFile:
-    """A text file that is read once, from its beginning to its end; see `open_text`."""
+    """A text file read once from beginning to end; see `open_text`."""
 
     def __init__(
         self, path: Path, stream: BufferedReader, encoding: str, parts: LogParts, watch: Watch
     ) -> None:
-        """Look at the beginning of the file."""
+        """Examine the beginning of the file."""
         size = os.fstat(stream.fileno()).st_size
         check_not_empty(path, size)
         try:
@@ -323,7 +323,7 @@ class TextFile:
         self._hash.add(memoryview(self._encoding.mark))
 
     def __iter__(self) -> Iterator[_TextPart]:
-        """Parts in order; the next one is read while the caller works on this one."""
+        """Parts in order; the next one is read while the caller processes this one."""
         parts = self._parts()
         coming = self._worker.submit(next, parts, None)
         while (part := coming.result()) is not None:
@@ -332,17 +332,17 @@ class TextFile:
             yield part
 
     def source(self, name: str) -> Source:
-        """Name, hash and size of the file, once all of it has been read."""
+        """Name, hash and size of the file, after all of it has been read."""
         return self._hash.source(name)
 
     def close(self) -> None:
-        """End the reading and the hashing."""
-        # here, not where a forgotten iterator ends: that may be any thread at any time
+        """Stop reading and hashing."""
+        # not at the end of a forgotten iterator, which can come in any thread at any time
         self._worker.shutdown()
         self._hash.close()
 
     def _parts(self) -> Iterator[_TextPart]:
-        """Lines in parts; what is not whole yet goes over to the next one."""
+        """Parts of whole lines; an incomplete line is carried over to the next part."""
         rest, row, is_last = b"", 1, False
         while not is_last:
             data, fault = self._read(rest)
@@ -362,7 +362,7 @@ class TextFile:
             row += n_lines
 
     def _read(self, rest: bytes) -> tuple[bytearray, _Fault | None]:
-        """What went over and the next bytes; as UTF-8 where lines cannot be told in bytes."""
+        """Carried-over and new bytes; UTF-8 if line ends cannot be found in bytes."""
         n_next = min(self._n_bytes, self._left)
         kept = rest if self._keeps_ascii else b""
         data = bytearray(len(kept) + n_next)
@@ -392,7 +392,7 @@ class TextFile:
         return data, None if wrong is None else (_row_of(data, len(data)) - 1, wrong)
 
     def _checked(self, data: bytearray, stop: int) -> tuple[memoryview, _Fault | None]:
-        """Lines as UTF-8, with one kind of line end: all, or those above the first fault."""
+        """Lines as UTF-8 with uniform line ends: all, or those above the first fault."""
         text, fault = memoryview(data)[:stop], None
         if self._keeps_ascii and stop:
             if (nul := data.find(b"\0", 0, stop)) >= 0:
@@ -417,7 +417,7 @@ class TextFile:
 def open_text(
     path: Path, encoding: str, parts: LogParts, watch: Watch | None = None
 ) -> Iterator[TextFile]:
-    """Open a text file to be read in parts."""
+    """Open a text file for reading in parts."""
     try:
         stream = path.open("rb")
     except OSError as error:
@@ -427,14 +427,14 @@ def open_text(
 
 
 def _end(data: bytearray, stop: int) -> int:
-    """Place after the last byte that is more than the end of a line or of a file."""
+    """Index after the last byte that is not part of a line end or end-of-file mark."""
     while stop and data[stop - 1] in _FILE_END:
         stop -= 1
     return stop
 
 
 def _cut(data: bytearray) -> tuple[int, int]:
-    """Where the last whole line that is not blank ends, and where the next one begins."""
+    """End of the last complete non-blank line, and start of the next line."""
     stop = _last_line_end(data, len(data))
     while stop >= 0:
         end = _end(data, stop)
@@ -445,34 +445,34 @@ def _cut(data: bytearray) -> tuple[int, int]:
 
 
 def _last_line_end(data: bytearray, stop: int) -> int:
-    """Place of the last line end before a byte, -1 where there is none."""
+    """Index of the last line end before a byte; -1 if there is none."""
     feed = data.rfind(b"\n", 0, stop)
     return max(feed, data.rfind(b"\r", feed + 1, min(stop, len(data) - 1)))
 
 
 def _unfinished(data: bytearray) -> int:
-    """Bytes after the last line end."""
+    """Number of bytes after the last line end."""
     feed = data.rfind(b"\n")
     return len(data) - 1 - max(feed, data.rfind(b"\r", feed + 1))
 
 
 def _above(text: memoryview, place: int) -> memoryview:
-    """Lines above the one of a byte, without line ends after the last."""
+    """Lines above the one with a byte, without line ends after the last."""
     lines = bytes(text[:place])
     return memoryview(lines[: max(lines.rfind(b"\n"), lines.rfind(b"\r"), 0)].rstrip(b"\r\n"))
 
 
 def _has_lone_return(text: memoryview) -> bool:
-    """Whether a carriage return stands without a line feed after it; none is at the end."""
+    """Whether a carriage return has no line feed after it; the text does not end in one."""
     codes = np.frombuffer(text, np.uint8)
     pieces = (codes[start : start + _PIECE + 1] for start in range(0, codes.size, _PIECE))
     return any(np.any((piece[:-1] == _RETURN) & (piece[1:] != _NEWLINE)) for piece in pieces)
 
 
 def _long_line(text: memoryview, longest: int) -> int | None:
-    """Place of the first line that is too long, None where there is none."""
+    """Index of the first line that is too long; None if there is none."""
     codes = np.frombuffer(text, np.uint8)
-    window = longest // 2  # a line that is too long covers one of them
+    window = longest // 2  # a line that is too long covers a whole window
     starts = range(0, codes.size - window, window)
     if all(np.any(codes[start : start + min(_PIECE, window)] == _NEWLINE) for start in starts):
         return None

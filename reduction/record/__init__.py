@@ -1,1 +1,1 @@
-"""Samples in SI with their flags, and what every stage says of them: errors, notes, settings."""
+"""Samples in SI with their flags, and the errors, notes and settings common to all stages."""

@@ -1,4 +1,4 @@
-"""Checks of arrays that physics functions share, and blocks of work side by side."""
+"""Array checks shared by physics functions, and parallel execution of blocks."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ def _refuse(name: str, values: Floats, bad: Bools, what: str, needed: str) -> No
 
 
 def as_finite(name: str, values: ArrayLike) -> Floats:
-    """Return the values as float64, or raise `DataError` where one is not finite."""
+    """Return the values as float64, or raise `DataError` if any is not finite."""
     array = np.asarray(values, dtype=np.float64)
-    # of a long series a mask of all samples is made where one is wrong
+    # in a long series, a mask of all samples is made only if one is bad
     if (
         array.ndim == 1
         and array.size > BLOCK
@@ -41,7 +41,7 @@ def as_finite(name: str, values: ArrayLike) -> Floats:
 
 
 def as_positive(name: str, values: ArrayLike) -> Floats:
-    """Return the values as float64, or raise `DataError` where one is not above zero."""
+    """Return the values as float64, or raise `DataError` if any is not positive."""
     array = as_finite(name, values)
     bad = ~(array > 0)
     if bad.any():
@@ -50,7 +50,7 @@ def as_positive(name: str, values: ArrayLike) -> Floats:
 
 
 def as_increasing(name: str, values: ArrayLike) -> Floats:
-    """Return a one-dimensional series, or raise `DataError` where it does not increase."""
+    """Return a one-dimensional series, or raise `DataError` if it does not increase."""
     array = as_finite(name, values)
     if array.ndim != 1:
         raise DataError(f"{name} is not a series", found=f"shape {array.shape}", needed="1-D")
@@ -61,7 +61,7 @@ def as_increasing(name: str, values: ArrayLike) -> Floats:
 
 
 def as_same_shape(**named: ArrayLike) -> tuple[Floats, ...]:
-    """Return the arrays as float64, or raise `DataError` where their shapes differ."""
+    """Return the arrays as float64, or raise `DataError` if their shapes differ."""
     arrays = {name: np.asarray(values, dtype=np.float64) for name, values in named.items()}
     shapes = {array.shape for array in arrays.values()}
     if len(shapes) > 1:
@@ -71,7 +71,7 @@ def as_same_shape(**named: ArrayLike) -> tuple[Floats, ...]:
 
 
 def as_spread(name: str, value: float) -> float:
-    """Return a standard uncertainty, or raise `SettingsError` where it is negative or unknown."""
+    """Return a standard uncertainty, or raise `SettingsError` if it is negative or unknown."""
     if not (np.isfinite(value) and value >= 0):
         raise SettingsError(
             f"the standard uncertainty of {name} cannot be used",
@@ -81,7 +81,7 @@ def as_spread(name: str, value: float) -> float:
     return float(value)
 
 
-_TOGETHER = 1 << 20  # samples of blocks that run at a time, if one is long
+_TOGETHER = 1 << 20  # total samples of simultaneous blocks, if any is long
 
 Item = TypeVar("Item")
 
@@ -95,33 +95,33 @@ def run_blocks(
     samples: Sequence[NDArray[Any]] = (),
     longest: int = 1,
 ) -> list[Result]:
-    """Results of a function for each item, in the order of the items.
+    """Results of a function for each item, in order.
 
-    The blocks run in as many threads as the process may use processors.  What a block
-    holds must not depend on that number, and sums over blocks must be taken from the list,
-    so that a product has the same bytes on every machine.
+    The number of threads equals the available processors.  The contents of a block must not depend
+    on that number, and sums over blocks must be taken from the list, so that a product has the same
+    bytes on every machine.
 
     Parameters
     ----------
     function : callable
-        Of one item; changes nothing that another block reads or writes.
+        Function of one item; it must not change anything that another block reads or writes.
     items : iterable
         The blocks.
     samples : sequence of ndarray
-        Series that the blocks read or write; those on disk are let go behind each block.
+        Series that the blocks read or write; pages on disk are released after each block.
     longest : int
-        Samples of the longest block: of long ones fewer run at a time, lest their memory grows
-        with the processors. [1]
+        Samples of the longest block; fewer long blocks run at a time, so that memory does not grow
+        with the number of processors. [1]
 
     Returns
     -------
     results : list
-        One an item.
+        One per item.
 
     Raises
     ------
     Exception
-        What the function raises for the first item for which it does.
+        The error of the first item for which the function raises one.
 
     Examples
     --------
@@ -135,7 +135,7 @@ def run_blocks(
         release_pages(*samples)
         return result
 
-    # to start threads takes longer than to go over a short series
+    # starting threads takes longer than processing a short series
     is_short = samples and max(one.shape[-1] for one in samples) <= BLOCK
     n_workers = 1 if is_short else min(len(todo), max(1, _TOGETHER // longest))
     if n_workers > 1:
@@ -150,9 +150,9 @@ def run_blocks(
 
 
 def _n_processors() -> int:
-    """Processors this process may use: of those of the machine, as many as it is given.
+    """Number of processors available to this process.
 
-    OMP_NUM_THREADS says so too, as to numerical libraries, where several processes share them.
+    OMP_NUM_THREADS also limits it, as in numerical libraries, if several processes share them.
     """
     available = os.cpu_count() or 1
     if hasattr(os, "sched_getaffinity"):

@@ -1,4 +1,4 @@
-"""Errors of a measurement, and what each one adds to a number.
+"""Measurement errors, and the contribution of each to a result.
 
 References
 ----------
@@ -28,63 +28,62 @@ from reduction.record.measurement import Floats, Integers, read_only_arrays
 class InstrumentErrors:
     """Standard uncertainties of the instruments of one specimen; zero where not stated.
 
-    All but those of a reading are of what all samples share.
+    All except those of a single reading are shared by all samples.
 
     Parameters
     ----------
     specimen : str
-        Whose tension channel it is.
+        Specimen of the tension channel.
     tension_gain : float
-        Relative, of the load cell and its amplifier. [1]
+        Relative, for the load cell and its amplifier. [1]
     tension_offset : float
-        Of the zero of the load cell. [N]
+        Zero of the load cell. [N]
     position_gain : float
-        Relative, of the crosshead's scale. [1]
+        Relative, for the scale of the crosshead. [1]
     position_offset : float
-        Of the crosshead's zero. [m]
+        Zero of the crosshead. [m]
     position_of_scale_zero : float
-        Where the scale of the crosshead reads zero: the length there of a displacement, 0 of a
-        length from pin to pin.  No uncertainty. [m]
+        Reading at which the crosshead scale is zero: the length there for a displacement, 0 for a
+        pin-to-pin length.  It has no uncertainty. [m]
     lag : float
-        Of the time by which tension is logged late (or early) against position. [s]
+        Time by which tension is logged late (or early) relative to position. [s]
     smoothed_over : float
-        The longest time constant of a filter of tension, where its record shows that it is late.
-        [s]
+        Longest time constant of a tension filter, if the record shows that tension lags. [s]
     diameter : float
-        Of the mean diameter. [m]
+        Mean diameter. [m]
     diameter_readings : int
-        Readings whose scatter the error of the diameter is; 0 where it is stated. [1]
+        Number of readings that give the error of the diameter; 0 if it is stated. [1]
     area : float
-        Relative, of an area that was stated instead of a diameter. [1]
+        Relative, for an area stated instead of a diameter. [1]
     strain_gain : float
-        Relative, of strain: error of the strain method itself. [1]
+        Relative, for strain: error of the strain method itself. [1]
     rated_break_strength : float
         Relative. [1]
     stiffness : float
-        Relative, of the material for the temperature of the test, which is its own. [1]
+        Relative, for the effect of test temperature on the material; separate for each test. [1]
     attached_mass : float
-        Of the mass between the specimen and a load cell at its moving end. [kg]
+        Mass between the specimen and a load cell at its moving end. [kg]
     linear_density : float
         [kg m-1]
     machine_compliance : float
-        Of the length that the machine gives by, over the tension of this specimen. [m N-1]
+        Machine deflection per tension of this specimen. [m N-1]
     splice_friction : float
-        By how much longer the splices are on the way down than on the way up at one tension, over
-        their extension. [1]
+        Excess length of the splices when unloading over that when loading at the same tension, as a
+        fraction of their extension. [1]
     is_splice_friction_known : bool
-        It is stated, or found from a mark on the way down.
+        Whether it is stated, or found from a mark on the way down.
     splice_slip : float
-        Of what the splices of the test slipped by after their marks were read. [m]
+        Slip of the splices after their marks were read. [m]
     splices_let_out : float
-        Of what they have let out by the end of the test, as steps of the tension say. [m]
+        Slip of the splices by the end of the test, from steps in tension. [m]
     test : str
-        Which test.
+        Name of the test.
     tension_reading, position_reading : float
-        Of a single reading, which no other sample shares. [N], [m]
+        A single reading, independent of all other samples. [N], [m]
     tension_instrument, position_instrument : str
-        Channels with one name share their gain and offset.
+        Channels with the same name share their gain and offset.
     strain_model : str
-        Strain models with one name share the errors of their coefficients.
+        Strain models with the same name share the errors of their coefficients.
     """
 
     specimen: str
@@ -116,7 +115,7 @@ class InstrumentErrors:
     strain_model: str = ""
 
     def __post_init__(self) -> None:
-        """Refuse what is no standard uncertainty."""
+        """Refuse values that are not a standard uncertainty."""
         for item in fields(self):
             value = getattr(self, item.name)
             if isinstance(value, float) and not (np.isfinite(value) and value >= 0):
@@ -129,19 +128,19 @@ class InstrumentErrors:
 
 @dataclass(frozen=True, order=True)
 class Component:
-    """One error that is drawn once.
+    """One independent error.
 
     Parameters
     ----------
     source : str
-        What it is called in a budget: ``tension_gain``, ``strain_calibration``, ...
+        Name in a budget: ``tension_gain``, ``strain_calibration``, ...
     of : str
-        Of which instrument, specimen or model; with `source` it names the error.
+        Instrument, specimen or model; with `source` it identifies the error.
     number : int
-        Where one source is several independent errors (the coefficients of a fit). [1]
+        Index if one source has several independent errors (the coefficients of a fit). [1]
     degrees_of_freedom : float
-        Of its standard uncertainty: infinite where that is stated, few where it is the scatter of
-        a few readings. It does not tell two errors apart. [1]
+        Degrees of freedom of its standard uncertainty: infinite if stated, few if it is the scatter
+        of a few readings. They do not distinguish two errors. [1]
     """
 
     source: str
@@ -153,15 +152,15 @@ class Component:
 @dataclass(frozen=True)
 @read_only_arrays
 class Contributions:
-    """What each component adds to some quantities.
+    """Contributions of each component to some quantities.
 
     Parameters
     ----------
     component : tuple of Component, length n_components
-        Each once.
+        Components without repeats.
     values : dict of str to ndarray
-        By name of the quantity: shape (n_components, ...) before the axes of the quantity;
-        the error that one standard deviation of the component makes, with its sign. [as quantity]
+        By name of the quantity: shape (n_components, ...) before the axes of the quantity; signed
+        error from one standard deviation of the component. [as quantity]
     """
 
     component: tuple[Component, ...]
@@ -182,7 +181,7 @@ class Contributions:
 
     @property
     def degrees_of_freedom(self) -> Floats:
-        """Of the standard uncertainty of each component, shape (n_components,). [1]."""
+        """Degrees of freedom of each component, shape (n_components,). [1]."""
         return np.array([one.degrees_of_freedom for one in self.component])
 
     def shared_standard_uncertainty(self, name: str) -> Floats:
@@ -193,16 +192,16 @@ class Contributions:
 @dataclass(frozen=True)
 @read_only_arrays
 class LineSpread:
-    """Uncertainty and 95 % interval of K_1, tau and N of a test, and how they were found.
+    """Uncertainty and 95 % interval of K_1, tau and N of a test, and the method used.
 
     Parameters
     ----------
     method : ndarray of int, shape (n_specimens,)
-        Of `LINE_METHODS`: linear where Monte Carlo agrees within 5 %, else Monte Carlo. [1]
+        One of `LINE_METHODS`: linear if Monte Carlo agrees within 5 %, else Monte Carlo. [1]
     without_solution_share : ndarray, shape (n_specimens,)
-        Of the draws. [1]
+        Share of the draws. [1]
     standard_uncertainty, low, high : dict of str to ndarray, each of shape (n_specimens,)
-        By name of the parameter; NaN where not given. [N], [s], [N s]
+        By parameter name; NaN if not given. [N], [s], [N s]
     """
 
     method: Integers
@@ -215,28 +214,28 @@ class LineSpread:
 CONFIDENCE = 0.95
 
 _FEWEST, _MANY = 1.0, 1e9
-"""Degrees of freedom below which none are counted, and above which Student's is the normal."""
+"""Degrees of freedom below which none are counted, and above which Student's t is normal."""
 
 
 def combined_standard_uncertainty(contribution: ArrayLike, random: ArrayLike) -> Floats:
-    """Root of the sum of the squares of all contributions and of the random part.
+    """Root sum of squares of all contributions and the random part.
 
     Parameters
     ----------
     contribution : array_like, shape (n_components, ...)
-        Signed. [any]
+        Signed contributions. [any]
     random : array_like, shape (...)
-        Type A of the number itself. [as contribution]
+        Type A uncertainty of the number itself. [as contribution]
 
     Returns
     -------
     standard_uncertainty : ndarray, shape (...)
-        NaN where the random part is NaN. [as contribution]
+        NaN if the random part is NaN. [as contribution]
 
     Raises
     ------
     ValueError
-        If the shapes do not fit.
+        If the shapes do not match.
 
     Examples
     --------
@@ -254,7 +253,7 @@ def effective_degrees_of_freedom(
     contribution: ArrayLike | None = None,
     of_contribution: ArrayLike = np.inf,
 ) -> Floats:
-    r"""Degrees of freedom of a combined uncertainty, by those of its parts.
+    r"""Effective degrees of freedom of a combined uncertainty.
 
     .. math:: \nu_{eff} = \frac{u^4}{u_r^4 / \nu_r + \sum_k c_k^4 / \nu_k}
 
@@ -263,22 +262,22 @@ def effective_degrees_of_freedom(
     random : array_like, shape (...)
         Random part. [any]
     degrees_of_freedom : array_like, shape (...)
-        Of the random part: those of the cycles, samples or readings that it is from. [1]
+        Random part: those of the cycles, samples or readings it is based on. [1]
     contribution : array_like, shape (n_components, ...), optional
-        Of shared errors; what is not a number counts as none. [as random]
+        Shared errors; NaN counts as zero. [as random]
     of_contribution : array_like, shape (n_components,) or of the contributions, optional
-        Degrees of freedom of each of them; infinite where it is stated. [1]
+        Degrees of freedom of each contribution; infinite if stated. [1]
 
     Returns
     -------
     effective : ndarray, shape (...)
-        Infinite where nothing that is known from few readings adds to it; NaN where the random part
-        is NaN. [1]
+        Infinite if no part is based on a finite number of readings; NaN if the random part is NaN.
+        [1]
 
     Raises
     ------
     ValueError
-        If the shapes do not fit.
+        If the shapes do not match.
 
     Notes
     -----
@@ -286,8 +285,8 @@ def effective_degrees_of_freedom(
 
     Examples
     --------
-    Scatter of ten cycles alone, and beside a stated error of twice its size; the same beside a
-    diameter of three readings:
+    Scatter of ten cycles alone, then with a stated error of twice its size, then with the same
+    error from three diameter readings:
 
     >>> print(effective_degrees_of_freedom(1.0, 9.0))
     9.0
@@ -304,7 +303,7 @@ def effective_degrees_of_freedom(
         freedom = freedom.reshape(-1, *(1,) * (rows.ndim - 1))
     total = part**2 + np.sum(rows**2, axis=0)
     with np.errstate(divide="ignore", invalid="ignore"):
-        # shares of the variance: fourth powers of small numbers are no numbers
+        # as shares of the variance: fourth powers of small numbers underflow
         own, shared = part**2 / total, rows**2 / total
         few = own**2 / np.asarray(degrees_of_freedom) + np.sum(shared**2 / freedom, axis=0)
         effective = np.where(total > 0, 1 / few, np.inf)
@@ -312,19 +311,19 @@ def effective_degrees_of_freedom(
 
 
 def coverage_factor(degrees_of_freedom: ArrayLike, *, confidence: float = CONFIDENCE) -> Floats:
-    """Factor of the expanded uncertainty.
+    """Coverage factor of the expanded uncertainty.
 
     Parameters
     ----------
     degrees_of_freedom : array_like, shape (...)
-        Effective ones; below 1 counts as 1. [1]
+        Effective degrees of freedom; below 1 counts as 1. [1]
     confidence : float
-        Of the interval. [1]
+        Confidence level of the interval. [1]
 
     Returns
     -------
     factor : ndarray, shape (...)
-        k; 1.96 where what is taken as known is most of it. [1]
+        Factor k; 1.96 if stated errors dominate. [1]
 
     Raises
     ------
@@ -333,11 +332,11 @@ def coverage_factor(degrees_of_freedom: ArrayLike, *, confidence: float = CONFID
 
     Notes
     -----
-    Student's, [1]_, 5.2, G.4, G.3.
+    Student's t, [1]_, 5.2, G.4, G.3.
 
     Examples
     --------
-    Ten cycles, three readings, and what is stated:
+    Ten cycles, three readings, and a stated value:
 
     >>> print(coverage_factor([9.0, 2.0, np.inf]).round(2))
     [2.26 4.3  1.96]
@@ -348,26 +347,26 @@ def coverage_factor(degrees_of_freedom: ArrayLike, *, confidence: float = CONFID
 
 
 def merged(parts: Sequence[Contributions]) -> Contributions:
-    """Contributions to different quantities, on the components of all of them.
+    """Merge contributions to different quantities over all their components.
 
     Parameters
     ----------
     parts : sequence of Contributions
-        Each quantity in one of them; of one that stands in several, the last. [as quantity]
+        Each quantity in one part; for one present in several, the last is used. [as quantity]
 
     Returns
     -------
     contributions : Contributions
-        A component that a part does not know adds nothing to its quantities. [as quantity]
+        A component absent from a part contributes zero to its quantities. [as quantity]
 
     Raises
     ------
     SettingsError
-        If a component stands twice in a part.
+        If a component occurs twice in a part.
 
     Notes
     -----
-    Components that are equal are one error ([1]_, F.1.2.3).
+    Equal components are the same error ([1]_, F.1.2.3).
 
     Examples
     --------
@@ -390,26 +389,26 @@ def merged(parts: Sequence[Contributions]) -> Contributions:
 
 
 def added(parts: Sequence[Contributions]) -> Contributions:
-    """Contributions to a sum, of which each part adds some.
+    """Contributions to a sum of several parts.
 
     Parameters
     ----------
     parts : sequence of Contributions
-        To the same quantities, in the same shapes. [as quantity]
+        Same quantities and shapes in all parts. [as quantity]
 
     Returns
     -------
     contributions : Contributions
-        What the parts say of one component, added with their signs. [as quantity]
+        Contributions of each component, added with their signs. [as quantity]
 
     Raises
     ------
     SettingsError
-        If a component stands twice in a part.
+        If a component occurs twice in a part.
 
     Notes
     -----
-    Components that are equal are one error ([1]_, F.1.2.3).
+    Equal components are the same error ([1]_, F.1.2.3).
 
     Examples
     --------
@@ -430,12 +429,12 @@ def added(parts: Sequence[Contributions]) -> Contributions:
 
 
 def stacked(entries: Sequence[Contributions]) -> Contributions:
-    """Contributions to the same quantities of several specimens, holds, ... along one axis.
+    """Stack contributions to the same quantities of several specimens, holds, ... along one axis.
 
     Parameters
     ----------
     entries : sequence of Contributions, length n_entries
-        One a specimen; a quantity that one of them lacks is zero there. [as quantity]
+        One per specimen; a quantity absent from one of them is zero there. [as quantity]
 
     Returns
     -------
@@ -449,7 +448,7 @@ def stacked(entries: Sequence[Contributions]) -> Contributions:
 
     Notes
     -----
-    Components that are equal are one error ([1]_, F.1.2.3).
+    Equal components are the same error ([1]_, F.1.2.3).
 
     Examples
     --------
@@ -474,14 +473,14 @@ def stacked(entries: Sequence[Contributions]) -> Contributions:
 
 
 def renamed(found: Contributions, names: dict[str, str]) -> Contributions:
-    """Contributions under other names; a quantity without one is left out.
+    """Contributions under new names; quantities without a new name are left out.
 
     Parameters
     ----------
     found : Contributions
-        As computed. [as quantity]
+        Contributions under their old names. [as quantity]
     names : dict of str to str
-        Name to new name.
+        Old name to new name.
 
     Returns
     -------
@@ -491,7 +490,7 @@ def renamed(found: Contributions, names: dict[str, str]) -> Contributions:
     Raises
     ------
     KeyError
-        If a name is not there.
+        If a name is absent.
 
     Notes
     -----
@@ -510,7 +509,7 @@ def renamed(found: Contributions, names: dict[str, str]) -> Contributions:
 def _together(
     parts: Sequence[Contributions],
 ) -> tuple[tuple[Component, ...], dict[Component, int]]:
-    """Components of all parts, each once, and the row of each."""
+    """Components of all parts without repeats, and the row of each."""
     component = tuple(sorted({one for part in parts for one in part.component}))
     return component, {one: row for row, one in enumerate(component)}
 
@@ -525,28 +524,28 @@ _SHAPE: dict[Shape, float] = {
 
 
 def of_half_width(half_width: float, shape: Shape = "rectangular") -> float:
-    """Standard uncertainty of limits.
+    """Standard uncertainty from the half-width of an interval.
 
     Parameters
     ----------
     half_width : float
         The error lies within plus or minus this. [any]
     shape : {"rectangular", "triangular", "arcsine"}
-        How it is spread between the limits; rectangular where nothing is known.
+        Distribution between the limits; rectangular if nothing is known.
 
     Returns
     -------
     standard_uncertainty : float
-        [as half_width]
+        Standard uncertainty. [as half_width]
 
     Raises
     ------
     SettingsError
-        If the shape is not known.
+        If the shape is unknown.
 
     Notes
     -----
-    [1]_, 4.3.3, 4.3.7 and 4.3.9; arcsine is that of something that swings.
+    [1]_, 4.3.3, 4.3.7 and 4.3.9; arcsine applies to a sinusoidal variation.
 
     Examples
     --------
@@ -561,19 +560,19 @@ def of_half_width(half_width: float, shape: Shape = "rectangular") -> float:
 
 
 def of_expanded(expanded: float, coverage_factor: float) -> float:
-    """Standard uncertainty of an expanded one.
+    """Standard uncertainty from an expanded one.
 
     Parameters
     ----------
     expanded : float
-        As a certificate prints it. [any]
+        Expanded uncertainty printed on a certificate. [any]
     coverage_factor : float
-        Its k. [1]
+        Its factor k. [1]
 
     Returns
     -------
     standard_uncertainty : float
-        [as expanded]
+        Standard uncertainty. [as expanded]
 
     Raises
     ------
@@ -594,7 +593,7 @@ def of_expanded(expanded: float, coverage_factor: float) -> float:
 
 
 def of_resolution(resolution: float) -> float:
-    """Standard uncertainty of a last digit.
+    """Standard uncertainty from the resolution of an indication.
 
     Parameters
     ----------
@@ -604,7 +603,7 @@ def of_resolution(resolution: float) -> float:
     Returns
     -------
     standard_uncertainty : float
-        [as resolution]
+        Standard uncertainty. [as resolution]
 
     Raises
     ------
@@ -613,7 +612,7 @@ def of_resolution(resolution: float) -> float:
 
     Notes
     -----
-    [1]_, 4.3.3, F.2.2.1: half a step to either side, all equally likely.
+    [1]_, 4.3.3, F.2.2.1: half a step to either side, rectangular.
 
     Examples
     --------
@@ -624,39 +623,39 @@ def of_resolution(resolution: float) -> float:
 
 
 USUAL_SPLICE_FRICTION = 0.02
-"""Where neither the campaign nor a mark on the way down says more: a judgement, no measurement."""
+"""Default without a statement or a mark on the way down: a judgement, not a measurement."""
 
 
 @dataclass(frozen=True)
 class StatedErrors:
-    """Standard uncertainties that a campaign states; zero where it says nothing.
+    """Standard uncertainties stated by a campaign; zero if not stated.
 
     Parameters
     ----------
     tension_gain, position_gain : float
         Relative. [1]
     tension_offset, tension_reading : float
-        Of the zero, and of a single reading (noise and resolution). [N]
+        Zero, and a single reading (noise and resolution). [N]
     position_offset, position_reading : float
-        The same of the crosshead. [m]
+        The same for the crosshead. [m]
     lag : float
         [s]
     diameter : float
-        Of the mean diameter of a specimen. [m]
+        Mean diameter of a specimen. [m]
     area : float
-        Relative, of the area of a specimen that has no diameter. [1]
+        Relative, for the area of a specimen that has no diameter. [1]
     strain_gain, rated_break_strength, stiffness : float
-        Relative: of the strain method, of the break strength, and of the stiffness for the
-        temperature of the test. [1]
+        Relative: strain method, break strength, and effect of test temperature on the stiffness.
+        [1]
     attached_mass, linear_density, machine_compliance : float
-        Of the load train and of the specimen's own mass. [kg], [kg m-1], [m N-1]
+        Load train and the specimen's own mass. [kg], [kg m-1], [m N-1]
     splice_friction : float
-        Of splices on the way down against those on the way up, over their extension; where nothing
-        is stated it is not zero. [1]
+        Difference between splices when unloading and loading, relative to their extension; not zero
+        if unstated. [1]
     is_splice_friction_known : bool
-        It is stated, or found from a mark on the way down.
+        Whether it is stated, or found from a mark on the way down.
     has_one_load_cell : bool
-        All tension channels share the errors of one load cell.
+        Whether all tension channels share the errors of one load cell.
     """
 
     tension_gain: float = 0.0
@@ -680,7 +679,7 @@ class StatedErrors:
 
     @property
     def has_any(self) -> bool:
-        """True where an error is stated at all."""
+        """Whether any error is stated."""
         return any(
             getattr(self, item.name) != item.default
             for item in fields(self)
@@ -697,7 +696,7 @@ class StatedErrors:
         machine: str = "",
         strain_model: str = "",
     ) -> InstrumentErrors:
-        """What they are for one specimen of one test; channels count from 1."""
+        """Errors for one specimen of one test; channels count from 1."""
         return InstrumentErrors(
             specimen=specimen,
             test=test,
@@ -724,6 +723,6 @@ class StatedErrors:
         )
 
     def load_cell_name(self, load_cell: str, *, channel: int) -> str:
-        """By which tests share the errors of a load cell; channels count from 1."""
+        """Name under which tests share the errors of a load cell; channels count from 1."""
         cell = load_cell or "load cell"
         return cell if self.has_one_load_cell else f"{cell}, channel {channel}"

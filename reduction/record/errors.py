@@ -1,4 +1,4 @@
-"""Every exception this package raises, and the exit status each one gives the command line.
+"""Exceptions raised by this package, and the command-line exit status of each.
 
 A message answers four questions, in this order: where (file, row, channel),
 what was found, what is needed, and what to do.  The same facts are kept as
@@ -19,13 +19,13 @@ class ReductionError(Exception):
     Parameters
     ----------
     problem : str
-        One sentence: what is wrong.
+        One sentence that states the problem.
     found : str, optional
-        The offending value, as it was read.
+        The offending value, as read.
     needed : str, optional
         What would have been accepted.
     hint : str, optional
-        What the user can do next.
+        The user's next step.
     **facts
         Numbers that explain the failure (points, degrees of freedom, ...).
     """
@@ -49,17 +49,17 @@ class ReductionError(Exception):
         self.facts = facts
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Every part of the error goes with it to another process."""
+        """Pickle every part of the error for another process."""
         return _made_again, (type(self), self.args, self.__dict__)
 
     def where(self) -> str:
-        """Place of the fault, or an empty string where there is none."""
+        """Location of the fault, or an empty string if there is none."""
         return ""
 
     def __str__(self) -> str:
-        """Compose the message from its parts; no address in it keeps a password or a query.
+        """Compose the message from its parts, without passwords or queries in addresses.
 
-        What came from a file is shown as far as a person reads it, and never steers a terminal.
+        Text from a file is cut to readable length, without terminal control characters.
         """
         where, problem = _in_one_line(self.where()), visible(cut(self.problem))
         parts = [f"{where}: {problem}" if where else problem]
@@ -83,9 +83,9 @@ class LogError(ReductionError, ValueError):
     Parameters
     ----------
     path : pathlib.Path or str
-        The raw file, or what may be shown of its address on the net.
+        The raw file, or the safe form of its address.
     row : int, optional
-        Row as a text editor counts it: the first line of the file is row 1.
+        Row as in a text editor: the first line of the file is row 1.
     channel : str, optional
         Column, by the name in the file's own header.
     """
@@ -118,14 +118,14 @@ class LogError(ReductionError, ValueError):
 class DataError(ReductionError, ValueError):
     """The file was read, but the values cannot support this step.
 
-    Where one row is at fault, the facts ``file`` (as the campaign names it), ``row`` and
-    ``channel`` say which.
+    If one row is at fault, the facts ``file`` (as named in the campaign), ``row`` and ``channel``
+    identify it.
     """
 
     exit_status = 4
 
     def where(self) -> str:
-        """``FILE:ROW [CHANNEL]`` where a row is at fault."""
+        """``FILE:ROW [CHANNEL]`` if a single row is at fault."""
         if "row" not in self.facts:
             return ""
         return f"{self.facts['file']}:{self.facts['row']} [{self.facts['channel']}]"
@@ -144,17 +144,17 @@ class ArchiveError(ReductionError, OSError):
 
 
 def refused_by_system(error: OSError) -> ArchiveError:
-    """Tell in words what the system refuses, where no stage has told it in its own.
+    """Convert an operating-system error that no stage has reported in its own words.
 
     Parameters
     ----------
     error : OSError
-        With a number of the system.
+        Error with an operating-system number.
 
     Returns
     -------
     told : ArchiveError
-        That names the file, as far as the system does.
+        Error with the file name, if the system states it.
 
     Examples
     --------
@@ -166,7 +166,7 @@ def refused_by_system(error: OSError) -> ArchiveError:
 
 
 class WorkerError(ReductionError, RuntimeError):
-    """A worker process, or the scheduler of several, was lost: no fault of log or settings."""
+    """A worker process or the scheduler was lost; log and settings are not at fault."""
 
 
 def _in_one_line(where: str) -> str:

@@ -1,7 +1,7 @@
 """Specimens, splice marks, records with quality flags, and where they came from.
 
-No clock and no file access here: hashes are taken in `reduction.readers`, times
-come in from the command line.
+This module uses no clock and no files: `reduction.readers` computes the hashes, and the command
+line supplies times.
 """
 
 from __future__ import annotations
@@ -28,9 +28,9 @@ Bools = NDArray[np.bool_]
 
 
 class Quality(IntFlag):
-    """Masks of `quality_flag`: what is known against a sample.  Nothing is deleted.
+    """Masks of `quality_flag`: defects of a sample.  Nothing is deleted.
 
-    The order is the contract's; the values are powers of two and never change.
+    The order is that of the contract; the values are powers of two and never change.
     """
 
     MISSING = 1
@@ -45,13 +45,13 @@ class Quality(IntFlag):
     EXTRAPOLATED = 512
 
 
-# of the width of a flag, lest a sum with it is wider
+# same width as the flags, so that expressions with them are not widened
 UNUSABLE = np.uint16(Quality.MISSING | Quality.SATURATED | Quality.STUCK | Quality.SPIKE)
-"""Flags of samples that no number may rest on."""
+"""Flags of samples that no result may use."""
 
 
 def read_only_arrays(cls: type[_T]) -> type[_T]:
-    """Make every array of an instance non-writeable when it is made, before its own checks."""
+    """Make every array of an instance read-only on creation, before its own checks."""
     check: Callable[[Any], None] | None = cls.__dict__.get("__post_init__")
 
     def freeze_and_check(self: Any) -> None:
@@ -66,7 +66,7 @@ def read_only_arrays(cls: type[_T]) -> type[_T]:
 
 
 def require_shapes(product: object, shapes: Mapping[str, tuple[int, ...]], *, of: str) -> None:
-    """Raise `DataError` where an array of a product has another shape than it has to have."""
+    """Raise `DataError` if an array of a product does not have the required shape."""
     for name, shape in shapes.items():
         found = getattr(product, name).shape
         if found != shape:
@@ -75,7 +75,7 @@ def require_shapes(product: object, shapes: Mapping[str, tuple[int, ...]], *, of
 
 @dataclass(frozen=True)
 class Specimen:
-    """One tether, hose or rope as it was before the test.
+    """One tether, hose or rope in its state before the test.
 
     Parameters
     ----------
@@ -84,28 +84,28 @@ class Specimen:
     kind : str
         ``rubber tether``, ``stretch hose``, ``rope``, ``wire``, ``elastomer`` or ``other``.
     diameter : tuple of float
-        Readings before stretch; the nominal area uses their mean. Empty where
-        no diameter is known. [m]
+        Readings before stretch; the nominal area uses their mean. Empty if no diameter is known.
+        [m]
     cross_section : tuple of float
-        Readings of the area before stretch, of what has no diameter. [m2]
+        Readings of the area before stretch, for specimens without a diameter. [m2]
     stretched_diameters : tuple of (float, float)
         Pairs (strain, diameter) read on the stretched specimen, for the
         constant-volume check. [1], [m]
     rated_break_strength : float or None
-        Stated once for a specimen. [N]
+        Stated strength of the specimen. [N]
     linear_density, wet_linear_density : float or None
-        Mass a length in air, and less the water it displaces, where stated; the wet one of what
-        floats is negative. [kg m-1]
+        Mass per length in air, and minus the displaced water, if stated; the wet one is negative
+        for a floating specimen. [kg m-1]
     gauge_length : float or None
-        Distance between gauge marks at zero strain, where marked. [m]
+        Distance between gauge marks at zero strain, if marked. [m]
     gauge_length_standard_uncertainty : float or None
-        Its standard uncertainty, where stated. [m]
+        Standard uncertainty of the gauge length, if stated. [m]
     reference_tension : float or None
-        Under which the gauge length was read, where that was not slack. [N]
+        Tension at which the gauge length was read, if not slack. [N]
     earlier_cycles, earlier_flex_cycles : int or None
-        Cycles of tension, and of flexing, before the first test of the campaign. [1]
+        Tension cycles and flexing cycles before the first test of the campaign. [1]
     material, condition, construction : str
-        In the laboratory's words; empty where not given.
+        Wording of the laboratory; empty if not given.
     """
 
     name: str
@@ -146,36 +146,36 @@ class Specimen:
 
     @property
     def diameter_scatter(self) -> float:
-        """Standard uncertainty of the mean diameter by its readings; NaN of one alone. [m]."""
+        """Standard uncertainty of the mean diameter from its readings; NaN for one reading. [m]."""
         return _scatter_of_mean(self.diameter)
 
     @property
     def area(self) -> float:
-        """Cross-sectional area at zero tension (WHOI-2005-10, eq. 2, of a diameter). [m2]."""
+        """Cross-sectional area at zero tension (from a diameter by WHOI-2005-10, eq. 2). [m2]."""
         if self.cross_section:
             return float(np.mean(self.cross_section))
         return pi * self.mean_diameter**2 / 4
 
     @property
     def area_scatter(self) -> float:
-        """Standard uncertainty of the area by its readings; NaN of one alone. [m2]."""
+        """Standard uncertainty of the area from its readings; NaN for a single one. [m2]."""
         if self.cross_section:
             return _scatter_of_mean(self.cross_section)
         return 2 * self.area * self.diameter_scatter / self.mean_diameter
 
     @property
     def is_rubber(self) -> bool:
-        """Whether laws of rubber apply: not where cords, fibres or wires carry."""
+        """Whether rubber laws apply: not if cords, fibres or wires carry the load."""
         return self.kind in ("rubber tether", "elastomer")
 
     @property
     def can_push(self) -> bool:
-        """Whether it may be under compression, which no line is: then it is never slack."""
+        """Whether it may be in compression, which no line can be; it is then never slack."""
         return self.kind == "other"
 
     @property
     def is_rope(self) -> bool:
-        """Whether a rope laboratory's programme applies."""
+        """Whether a rope test programme applies."""
         return self.kind in ("rope", "wire")
 
 
@@ -186,17 +186,17 @@ def _scatter_of_mean(readings: tuple[float, ...]) -> float:
 
 
 def areas_of(specimens: tuple[Specimen, ...]) -> Floats:
-    """Cross-sectional area of each specimen; NaN where none is known, but of rubber. [m2].
+    """Cross-sectional area of each specimen, NaN if unknown; an error for rubber. [m2].
 
-    A rope or a hose is known by its spring constants, which need no area; rubber without one
-    is refused.
+    A rope or a hose is described by spring constants, which need no area; rubber without an area is
+    refused.
     """
     return np.array([one.area if one.has_area or one.is_rubber else np.nan for one in specimens])
 
 
 @dataclass(frozen=True)
 class MarkPlace:
-    """Where the far thimble of a mark stands: file, row from 1, and column by its header."""
+    """Source of the far-thimble reading of a mark: file, row from 1, and column by its header."""
 
     file: str
     row: int
@@ -206,27 +206,27 @@ class MarkPlace:
 @dataclass(frozen=True)
 @read_only_arrays
 class SpliceMarks:
-    """Tape readings at the splice toes of one specimen, one row a reading.
+    """Tape readings at the splice toes of one specimen, one row per reading.
 
     ``near_toe``, ``far_toe`` and ``far_thimble`` are read from the near thimble.
 
     Parameters
     ----------
     specimen : str
-        Which specimen was read.
+        Name of the specimen.
     test : tuple of str, length n_marks
         Test in which each row was read.
     hold : tuple of str, length n_marks
-        ``slack``, ``min``, ``centre``, ``max`` or a strain as text; with `` down`` behind it, of a
-        hold that was approached from above.
+        ``slack``, ``min``, ``centre``, ``max`` or a strain as text, followed by `` down`` if the
+        hold was approached from above.
     near_toe, far_toe, far_thimble : ndarray, shape (n_marks,)
         Positions of the toes and of the far thimble. [m]
     reading_uncertainty : float
         Standard uncertainty of one tape reading. [m]
     is_reading_stated : bool
-        Whether the campaign states it; else it is that of the last digit.
+        Whether the campaign states it; otherwise it is that of the last digit.
     place : tuple of MarkPlace, length n_marks or 0
-        Where each row was read from; empty where it is from no file.
+        Source of each row; empty if the rows come from no file.
     """
 
     specimen: str
@@ -240,7 +240,7 @@ class SpliceMarks:
     place: tuple[MarkPlace, ...] = ()
 
     def __post_init__(self) -> None:
-        """Check that a row is 0 < near toe < far toe < far thimble."""
+        """Check that each row has 0 < near toe < far toe < far thimble."""
         ordered = (
             (self.near_toe > 0) & (self.near_toe < self.far_toe) & (self.far_toe < self.far_thimble)
         )
@@ -257,12 +257,12 @@ class SpliceMarks:
 
     @property
     def free_length(self) -> Floats:
-        """Splice toe to splice toe, shape (n_marks,). [m]."""
+        """Length between the splice toes, shape (n_marks,). [m]."""
         return self.far_toe - self.near_toe
 
     @property
     def splice_length(self) -> Floats:
-        """Both splices together, shape (n_marks,). [m]."""
+        """Total length of both splices, shape (n_marks,). [m]."""
         return self.far_thimble - self.free_length
 
     @property
@@ -278,22 +278,22 @@ class SpliceMarks:
 
 @dataclass(frozen=True)
 class LoadTrain:
-    """What stands between a specimen, the load cell and the crosshead's scale; None: not stated.
+    """Parts between a specimen, the load cell and the crosshead's scale; None if not stated.
 
     Parameters
     ----------
     load_cell_at : {"fixed", "moving"} or None
-        At which end of the specimen the load cell is.
+        End of the specimen with the load cell.
     attached_mass : float or None
-        Between the specimen and a load cell at its moving end. [kg]
+        Mass between the specimen and a load cell at its moving end. [kg]
     machine_compliance : float or None
-        Of frame, load cell and grips, which the crosshead's scale does not see. [m N-1]
+        Compliance of frame, load cell and grips, not seen by the crosshead's scale. [m N-1]
     end_mass : tuple of float, length n_specimens
-        Mass whose inertia has been taken off the tension; empty where none has been. [kg]
+        Mass whose inertia has been removed from the tension; empty if none has been. [kg]
     end_mass_by_density : tuple of float, length n_specimens
-        Length that the linear density counts with in it. [m]
+        Length by which the linear density contributes to that mass. [m]
     force_left_at_turns : tuple of float, length n_specimens
-        Inertia at the turns that the window of the acceleration smooths away. [N]
+        Inertia at the turns lost by the smoothing window of the acceleration. [N]
     """
 
     load_cell_at: Literal["fixed", "moving"] | None = None
@@ -307,12 +307,11 @@ class LoadTrain:
 @dataclass(frozen=True)
 @read_only_arrays
 class Record:
-    """One test in SI, every row of the log kept.
+    """One test in SI, with every row of the log kept.
 
-    A sample that is missing is NaN and carries a flag.  Position and tension are as they
-    were logged: a sample that is flagged (a spike, a stuck or saturated channel) keeps its
-    number here, and `reduction.pipeline.located_test` hands on a copy without those that no
-    number may rest on.
+    A missing sample is NaN and carries a flag.  Position and tension are as logged: a flagged
+    sample (a spike, a stuck or saturated channel) keeps its value here, and
+    `reduction.pipeline.located_test` passes on a copy without the unusable samples.
 
     Parameters
     ----------
@@ -323,34 +322,34 @@ class Record:
     time : ndarray, shape (n_samples,)
         Elapsed time as logged. [s]
     crosshead_position : ndarray, shape (n_samples,)
-        Thimble-to-thimble length, or a displacement where
-        ``position_is_length`` is false; as logged, flagged samples too. [m]
+        Thimble-to-thimble length, or a displacement if ``position_is_length`` is false; as logged,
+        including flagged samples. [m]
     tension : ndarray, shape (n_specimens, n_samples)
-        As logged, flagged samples too; sign and zero applied. [N]
+        Values as logged, including flagged samples, with sign and zero applied. [N]
     quality_flag : ndarray of uint16, shape (n_specimens, n_samples)
         Masks of `Quality` for tension.
     crosshead_position_quality_flag : ndarray of uint16, shape (n_samples,)
         Masks of `Quality` for time and position.
     measured_strain : ndarray, shape (n_specimens, n_samples), optional
-        From an extensometer, where there is one. [1]
+        Strain from an extensometer, if there is one. [1]
     fill_pressure : ndarray, shape (n_specimens, n_samples), optional
-        In the bore of a hose, above the pressure outside, where it was logged. [Pa]
+        Pressure in the bore of a hose above the pressure outside, if logged. [Pa]
     cycle_counter : ndarray of int, shape (n_samples,), optional
-        The machine's own count.
+        Cycle count of the machine.
     n_rows_read : int
         Data rows in the file or files.
     tension_standard_uncertainty : tuple of float, length n_specimens
-        As declared in the layout; NaN where not declared. [N]
+        Value declared in the layout; NaN if not declared. [N]
     position_standard_uncertainty : float
-        As declared in the layout; NaN where not declared. [m]
+        Value declared in the layout; NaN if not declared. [m]
     fill_pressure_standard_uncertainty : tuple of float, length n_specimens or 0
-        As declared in the layout; NaN where not declared. [Pa]
+        Value declared in the layout; NaN if not declared. [Pa]
     metadata : dict of str to str
-        Preamble rows of the file, as printed there.
+        Preamble rows of the file, unchanged.
     notes : tuple of Note
-        What a reader of the product has to know.
+        Notes for the user of the product.
     load_train : LoadTrain
-        As the layout states it.
+        Load train stated by the layout.
     """
 
     test_id: str
@@ -373,7 +372,7 @@ class Record:
     load_train: LoadTrain = LoadTrain()
 
     def __post_init__(self) -> None:
-        """Check shapes once and make the arrays read-only."""
+        """Check shapes and make the arrays read-only."""
         n_samples = self.time.shape[0]
         shapes = {
             "crosshead_position": (n_samples,),
@@ -392,10 +391,10 @@ class Record:
 @dataclass(frozen=True)
 @read_only_arrays
 class StepReadings:
-    """Readings of a stepwise test in SI, one row a weight; arrays have shape (n_steps,).
+    """Readings of a stepwise test in SI, one row per weight; arrays have shape (n_steps,).
 
-    ``clock`` is the text of the log; ``printed_strain`` the elongation as recorded,
-    ``eye_to_eye_length`` and it NaN where the log lacks them.
+    ``clock`` is the text of the log and ``printed_strain`` the recorded elongation; the latter and
+    ``eye_to_eye_length`` are NaN if the log lacks them.
     """
 
     clock: tuple[str, ...]
@@ -431,44 +430,44 @@ class Source:
 
 @dataclass(frozen=True)
 class Step:
-    """One stage that has returned, with what it used.
+    """One completed stage, with the inputs that it used.
 
     Parameters
     ----------
     name : str
-        The stage, as the folder is called.
+        Name of the stage.
     text : str
-        What it did, with the numbers it found or was given.
+        Description of the stage, with the numbers found or given.
     """
 
     name: str
     text: str
 
     def line(self, version: str) -> str:
-        """One line of the netCDF ``history`` attribute; no clock in it."""
+        """One line of the netCDF ``history`` attribute, without a time."""
         return f"reduction {version} {self.name}: {self.text}"
 
 
 @dataclass(frozen=True)
 class Origin:
-    """Where an archive that several tests or files go into came from, and how it was made.
+    """Origin of an archive made from several tests or files.
 
     Parameters
     ----------
     campaign_id : str
-        Of the campaign.
+        Name of the campaign.
     attributes : mapping of str to str
-        What the laboratory said of the campaign.
+        Statements of the laboratory on the campaign.
     sources : sequence of Source
-        The files that it was made from.
+        Files it was made from.
     steps : sequence of Step
         History lines.
     settings_json : str
-        Every setting that was in force, and every number that was given.
+        All settings in force, and all numbers given.
     version : str
         Version of this software.
     command : str
-        What the user asked for, without paths, jobs and scheduler.
+        Command of the user, without paths, jobs and scheduler.
     """
 
     campaign_id: str

@@ -1,7 +1,7 @@
-"""What each note says: its severity and the sentence for a reader, by code.
+"""Severity of each note and the sentence shown to the user, by code.
 
-A sentence is a format of the numbers of the note; where it needs more than a format, a function of
-them.  A code never gets another meaning.
+A sentence is a format string filled with the numbers of the note, or a function of them where a
+format string is not enough.  The meaning of a code never changes.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ def _rests(number: int) -> str:
 
 
 def _against(change: float, more: str, less: str) -> str:
-    """A change in percent without its sign, and which way it goes."""
+    """An absolute change in percent, with its direction."""
     return f"{100 * abs(change):.1f} % {more if change > 0 else less}"
 
 
@@ -42,22 +42,22 @@ def _one(of: str) -> str:
 
 
 def _would_fit(readings: str) -> str:
-    """Readings by which a number would lie in its band, as a sentence of its own."""
+    """Readings that would bring a number into its band, as a separate sentence."""
     return f" It would fit with: {readings}" if readings else ""
 
 
 def _is_like(like: str) -> str:
-    """What a ratio is like, in brackets."""
+    """Possible explanation of a ratio, in brackets."""
     return f" (as {like})" if like else ""
 
 
 def _left_out(n_cycles: int) -> str:
-    """How many cycles lie between levels, as a part of a sentence."""
+    """Number of cycles between levels, as part of a sentence."""
     return f" ({n_cycles} cycle{_plural(n_cycles)} between them in none)" if n_cycles else ""
 
 
 def _unknown_mass(mass: float, usual: float, effect: float, cell: str) -> str:
-    """Effect of an attached mass that nobody stated."""
+    """Effect of an unstated attached mass."""
     lacks = (
         "the mass between specimen and moving load cell is not stated"
         if cell
@@ -71,7 +71,7 @@ def _unknown_mass(mass: float, usual: float, effect: float, cell: str) -> str:
 
 
 def _length_let_out(length: float) -> str:
-    """About a length that is known to some 10 mm, in a survey and in a test alike."""
+    """Remark on a length known to about 10 mm, for a survey and a test alike."""
     if length != length:
         return "an unknown length"
     whole = 1000 * length
@@ -92,7 +92,7 @@ def _unknown_friction(size: float, of_energy: float, of_constant: float) -> str:
 
 
 def _unknown_compliance(compliance: float, usual: float, effect: float) -> str:
-    """Effect of a machine compliance that nobody stated."""
+    """Effect of an unstated machine compliance."""
     return (
         f"the compliance of frame, load cell and grips is not stated: {compliance:.3g} m/N would"
         f" change EA by one standard uncertainty, {usual:.2g} m/N (a frame for 100 kN, without"
@@ -1939,7 +1939,7 @@ SENTENCES: Mapping[str, tuple[Severity, str | Callable[..., str]]] = {
     **_OF_READING, **_OF_STRAIN, **_OF_CYCLES, **_OF_MODULI, **_OF_HOLDS, **_OF_LINE,
     **_OF_EXPERIMENTS, **_OF_HOSES, **_OF_PLAUSIBILITY,
 }  # fmt: skip
-"""By code: how serious a note is, and its sentence."""
+"""Severity and sentence of each note, by code."""
 
 CAUSES = (
     "log-used-twice", "channels-alike", "column-of-another", "diameter-readings-apart",
@@ -1962,7 +1962,7 @@ CAUSES = (
     "wave-not-periodic", "tension-late", "tension-filtered", "tension-behind-position",
     "loops-give-work", "loops-not-of-a-sine", "hold-load-late",
 )  # fmt: skip
-"""What is wrong with an input as it was stated, first what explains those behind it."""
+"""Errors in stated inputs, causes before their consequences."""
 
 UNSTATED = ("attached-mass-matters", "compliance-matters")
-"""What a machine may do that no log shows: said behind what this one shows."""
+"""Possible machine effects that no log shows, listed after those that this log shows."""

@@ -1,8 +1,7 @@
-"""Notes: what a reader has to know before a number is used, as data.
+"""Notes, stored as data, for the user of a number.
 
-The stage that knows raises a note by its code.  What a code means, how serious it is and the
-sentence for a reader stand in one table, `reduction.record.note_sentences`; the sentence is
-composed where it is shown.
+A stage raises a note by its code.  The severity and the sentence of each code are in one table,
+`reduction.record.note_sentences`; the sentence is composed when it is shown.
 """
 
 from __future__ import annotations
@@ -20,25 +19,23 @@ SEVERITIES: tuple[Severity, ...] = ("warning", "refusal", "note")
 
 @dataclass(frozen=True)
 class Note:
-    """One thing that a reader has to know.
+    """One note to the user.
 
     Parameters
     ----------
     code : str
-        What it is, such as ``marks-outlier``; the same in every version.
+        Identifier, such as ``marks-outlier``; the same in every version.
     severity : {"warning", "refusal", "note"}
-        What could move an answer; a number that is not given, and why; what else there is to
-        know.
+        A possible error in an answer; a number not given, with the reason; other information.
     stage : str
-        Stage that gave it, such as ``hold 2 new``; its last word is the specimen.
+        Stage that raised it, such as ``hold 2 new``; its last word is the specimen.
     subject : str
-        What it is of and the sentence begins with, a specimen, a reading, a file; empty where the
-        stage says it.
+        Start of the sentence: a specimen, a reading, a file; empty if the stage states it.
     numbers : mapping
-        Numbers [SI] and short texts of the sentence, by name; ``effect`` is how far the answer
-        moves, as a share of it. [1]
+        Numbers [SI] and short texts of the sentence, by name; ``effect`` is the relative change of
+        the answer. [1]
     text : str
-        The sentence, of a note that was read from an archive.
+        The sentence, for a note read from an archive.
     """
 
     code: str
@@ -66,19 +63,19 @@ def note(code: str, subject: str = "", /, **numbers: Any) -> Note:
     code : str
         A key of `reduction.record.note_sentences.SENTENCES`.
     subject : str, optional
-        What it is of and the sentence begins with.
+        Start of the sentence.
     **numbers
-        What its sentence uses. [SI]
+        Values used in the sentence. [SI]
 
     Returns
     -------
     note : Note
-        Without a stage as yet.
+        Note without a stage.
 
     Raises
     ------
     KeyError
-        If nothing is known of the code.
+        If the code is unknown.
 
     Examples
     --------
@@ -90,9 +87,9 @@ def note(code: str, subject: str = "", /, **numbers: Any) -> Note:
 
 
 def urgency(one: Note) -> tuple[int, float]:
-    """Rank of a note among those as serious: causes first, then by how far they move an answer.
+    """Rank within one severity: causes first, then by their effect on an answer.
 
-    What is only not stated of a machine comes last.
+    Unstated properties of the machine come last.
     """
     place = CAUSES.index(one.code) if one.code in CAUSES else len(CAUSES)
     place += one.code in UNSTATED
@@ -102,27 +99,27 @@ def urgency(one: Note) -> tuple[int, float]:
 
 
 def by_severity(notes: Iterable[Note]) -> tuple[Note, ...]:
-    """Notes, most serious first, causes before what follows, then by how far they move an answer.
+    """Notes, most severe first; within one severity, causes first, then by effect on an answer.
 
-    Those alike keep their order.
+    Equal ones keep their order.
     """
     return tuple(sorted(notes, key=lambda one: (SEVERITIES.index(one.severity), urgency(one))))
 
 
 def full_note(stage: str, text: str) -> str:
-    """Return a note with its subject: a stage of a specimen stands before it where it is not said.
+    """Return a note with the stage and specimen in front if its sentence lacks them.
 
     Parameters
     ----------
     stage : str
-        Stage that gave it, such as ``hold 2 new``; its last word is the specimen.
+        Stage that raised it, such as ``hold 2 new``; its last word is the specimen.
     text : str
         The sentence.
 
     Returns
     -------
     sentence : str
-        What can stand alone, beside the name of the test.
+        Sentence that can stand alone beside the name of the test.
 
     Examples
     --------

@@ -1,7 +1,7 @@
-"""Texts from files of strangers, as they may be shown.
+"""Makes texts from untrusted files safe to show.
 
-An address may hold a password before its host, or a signature behind its path.  Neither is
-ever said, written or kept.
+An address may contain a password before its host, or a signature after its path.  Neither is shown,
+written or kept.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import json
 import re
 import unicodedata
 
-_LONGEST = 2000  # characters of a part of a message
+_LONGEST = 2000  # characters in one part of a message
 
 _KEPT = "\n\t"
 
@@ -18,13 +18,13 @@ _FORMULA = re.compile(r"'*[=+\-@\t\r]")
 
 _NUMBER = re.compile(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]+)?|[+-]?(inf|nan)|-")
 
-# controls; format characters, which turn or hide text; line and paragraph separators; halves of
-# pairs, which no file can hold
+# control characters; format characters, which reverse or hide text; line and paragraph separators;
+# lone surrogates, which no file can contain
 _CATEGORIES = ("Cc", "Cf", "Zl", "Zp", "Cs")
 
 
 class _VisibleText(dict[int, str]):
-    """What each character is shown as, found when it is first met."""
+    """Display form of each character, found on first use."""
 
     def __missing__(self, code: int) -> str:
         sign = chr(code)
@@ -38,17 +38,17 @@ _SHOWN = _VisibleText()
 
 
 def visible(text: str) -> str:
-    r"""A text with its control characters spelt out.
+    r"""A text with its control characters escaped.
 
     Parameters
     ----------
     text : str
-        Any; line ends and tabs stay.
+        Any text; line ends and tabs are kept.
 
     Returns
     -------
     shown : str
-        The same where it has none.
+        The text itself if it has none.
 
     Examples
     --------
@@ -59,7 +59,7 @@ def visible(text: str) -> str:
 
 
 def toml_text(value: object) -> str:
-    r"""Texts, lists of them and plain values as TOML, with nothing in them that is not seen.
+    r"""Texts, lists of texts and plain values as TOML, with invisible characters escaped.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def toml_text(value: object) -> str:
     Returns
     -------
     toml : str
-        What stands behind the sign of equality.
+        Value for the right-hand side of an assignment.
 
     Examples
     --------
@@ -87,23 +87,23 @@ def _escaped(code: int) -> str:
 
 
 def toml_comment(text: str) -> str:
-    """A text on one line, to stand behind ``#``."""
+    """A text on one line, for use after ``#``."""
     return " ".join(visible(text.replace("\n", "\\n")).split())
 
 
 def safe_cell(text: str) -> str:
-    """A text as a cell of a CSV file that no spreadsheet program takes for a formula.
+    """A text as a CSV cell that no spreadsheet program reads as a formula.
 
     Parameters
     ----------
     text : str
-        As it is.
+        Original text.
 
     Returns
     -------
     cell : str
-        With an apostrophe in front where it begins with ``=``, ``+``, ``-``, ``@``, a tab or a
-        carriage return and is no number, or where apostrophes alone stand before such a sign.
+        The text with an apostrophe in front if it begins with ``=``, ``+``, ``-``, ``@``, a tab or
+        a carriage return and is not a number, or if only apostrophes precede such a sign.
 
     Examples
     --------
@@ -115,7 +115,7 @@ def safe_cell(text: str) -> str:
 
 
 def bare_cell(cell: str) -> str:
-    """What `safe_cell` was given.
+    """Inverse of `safe_cell`.
 
     Examples
     --------
@@ -126,7 +126,7 @@ def bare_cell(cell: str) -> str:
 
 
 def cut(text: str, longest: int = _LONGEST) -> str:
-    """A text of at most so many characters, with how many more there were.
+    """A text cut to a maximum length, with the number of characters removed.
 
     Examples
     --------
@@ -146,21 +146,21 @@ _STOPS = ".,:;)"
 
 _PORT = re.compile(r":\d*")
 
-_SHORTEST = 4  # characters of a secret: a shorter one stands in every other word
+_SHORTEST = 4  # characters of a secret: shorter ones occur in ordinary words
 
 
 def is_address(text: str) -> bool:
-    """Whether a text names something on the net, rather than a file of this machine.
+    """Whether a text is a remote address rather than a file on this machine.
 
     Parameters
     ----------
     text : str
-        As a person wrote it.
+        Text as the user wrote it.
 
     Returns
     -------
     is_address : bool
-        True of ``scheme://..``, also where one scheme is chained to another.
+        True for ``scheme://..``, even if schemes are chained.
 
     Examples
     --------
@@ -181,7 +181,7 @@ def shown_address(address: str) -> str:
     Returns
     -------
     shown : str
-        What may stand in a product and in a message.
+        Form that is safe for products and messages.
 
     Examples
     --------
@@ -193,20 +193,20 @@ def shown_address(address: str) -> str:
     if "@" in host:
         host = host.rpartition("@")[2]
     elif _has_password(host):
-        # a key with a slash in it, unquoted: what comes before the last @ is no path
+        # a key may contain an unquoted slash: text before the last @ is not a path
         _, at, behind = path.rpartition("@")
         host, slash, path = behind.partition("/") if at else ("...", slash, path)
     return f"{scheme}://{host}{slash}{path}"
 
 
 def _has_password(host: str) -> bool:
-    """A colon, and neither a port nor the digits of IPv6 behind it."""
+    """Whether a colon is followed by neither a port nor IPv6 digits."""
     name, colon, _ = host.partition(":")
     return bool(colon) and not host.startswith("[") and not _PORT.fullmatch(host[len(name) :])
 
 
 def without_secrets(text: str) -> str:
-    """A text in which every address is as `shown_address` gives it.
+    """A text with each address replaced by its `shown_address`.
 
     Parameters
     ----------
@@ -216,7 +216,7 @@ def without_secrets(text: str) -> str:
     Returns
     -------
     text : str
-        The same where it holds no address.
+        The text itself if it contains no address.
 
     Examples
     --------
@@ -229,13 +229,13 @@ def without_secrets(text: str) -> str:
 
 
 def _shown(found: re.Match[str]) -> str:
-    """What may be shown of an address; a stop behind it is of the sentence."""
+    """Safe form of an address; a full stop after it belongs to the sentence."""
     address = found[0].rstrip(_STOPS)
     return shown_address(address) + found[0][len(address) :]
 
 
 def secrets_of(address: str) -> tuple[str, ...]:
-    """What of an address is not to be shown, piece by piece.
+    """Parts of an address that must not be shown.
 
     Parameters
     ----------
@@ -245,7 +245,7 @@ def secrets_of(address: str) -> tuple[str, ...]:
     Returns
     -------
     secrets : tuple of str
-        User and password, and the values of the query; the longest first.
+        User and password, and the values of the query, longest first.
 
     Examples
     --------

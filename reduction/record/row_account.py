@@ -1,4 +1,4 @@
-"""Rows of a record accounted for by their flags."""
+"""Accounts for the rows of a record by their flags."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from reduction.record.notes import Note, note
 from reduction.record.samples import sample_blocks
 
 _HARMLESS = {"missing", "gap", "repeated_or_backward_time", "not_constant_rate", "resampled"}
-"""Flags of what is not there or is told by a note of its own: what is kept is right."""
+"""Flags for absent samples, or covered by a separate note: the kept samples are correct."""
 
 _OUT_OF_ORDER = 0.02
-"""Share of rows whose time goes back, from which the clock may have been set meanwhile. [1]"""
+"""Share of rows with backward time above which the clock may have been reset. [1]"""
 
 
 @dataclass(frozen=True)
 class _RowAccount:
-    """Every row of a record accounted for."""
+    """Account of every row of a record."""
 
     n_read: int
     n_kept: int
@@ -28,7 +28,7 @@ class _RowAccount:
 
 
 def account_rows(record: Record) -> _RowAccount:
-    """Rows read, kept, and flagged by mask and channel."""
+    """Number of rows read, kept, and flagged by mask and channel."""
     channels = {"crosshead_position": record.crosshead_position_quality_flag}
     for name, flags in zip(record.specimens, record.quality_flag, strict=True):
         channels[f"tension of {name}"] = flags
@@ -49,11 +49,11 @@ def account_rows(record: Record) -> _RowAccount:
 
 
 ROWS_FLAGGED = ("rows-resampled", "rows-set-aside", "rows-flagged")
-"""Codes of the note on rows."""
+"""Codes of the notes on rows."""
 
 
 def notes_on_rows(record: Record) -> list[Note]:
-    """Count flagged rows by mask and channel; none where no row is flagged."""
+    """Count flagged rows by mask and channel; empty if no row is flagged."""
     account = account_rows(record)
     masks = set().union(*account.n_flagged.values())
     if not masks:

@@ -1,4 +1,4 @@
-"""Series of samples in memory or on disk, block by block."""
+"""Series of samples in memory or on disk, processed block by block."""
 
 from __future__ import annotations
 
@@ -16,51 +16,51 @@ from numpy.typing import DTypeLike, NDArray
 
 from reduction.record.errors import DataError
 
-# of the GNU C library; other systems give back by themselves
+# GNU C library only; other systems return freed memory by themselves
 _MALLOC_TRIM = getattr(ctypes.CDLL(None), "malloc_trim", None) if os.name == "posix" else None
 
 _ON_DISK_FROM = 1 << 20  # bytes; less is not worth a file
 
-_LONG = 1 << 22  # bytes of a series from which what its stages have freed is worth giving back
+_LONG = 1 << 22  # bytes of a series above which memory freed by earlier stages is worth returning
 
-_name: str | None = None  # how the names of scratch files begin, where they have one
+_name: str | None = None  # prefix of named scratch files, None for files without a name
 
 
 class _ScratchMap(mmap.mmap):
-    """A mapped scratch file; one without a name is gone with the last array on it."""
+    """A mapped scratch file; one without a name disappears with the last array on it."""
 
     folder: Path
     name: str | None
 
 
 def scratch_folder() -> Path:
-    """Return where scratch files lie: TMPDIR, else /var/tmp, which is on disk where /tmp is not."""
+    """Return the scratch folder: TMPDIR, else /var/tmp, on disk where /tmp may not be."""
     if stated := os.environ.get("TMPDIR"):
-        return Path(stated)  # tempfile would pass over one that is full or not there, for /tmp
+        return Path(stated)  # tempfile would fall back to /tmp if the folder is full or absent
     usual = Path("/var/tmp")  # noqa: S108 - files there have no name
     return usual if os.access(usual, os.W_OK) else Path(tempfile.gettempdir())
 
 
 def check_room(folder: Path, n_bytes: int) -> None:
-    """Refuse what a file states before the disk is full of it.
+    """Refuse a file whose stated size exceeds the free disk space.
 
     Parameters
     ----------
     folder : pathlib.Path
-        Where scratch files are to lie.
+        Folder for the scratch files.
     n_bytes : int
-        How many bytes they will have at least. [1]
+        Their minimum size in bytes. [1]
 
     Raises
     ------
     DataError
-        If the disk has less room.
+        If the disk has less free space.
     """
-    if not hasattr(os, "statvfs"):  # only POSIX systems say it in this way
+    if not hasattr(os, "statvfs"):  # available only on POSIX systems
         return
     try:
         disk = os.statvfs(folder)
-    except OSError:  # a folder that is not there is told when a file is made in it
+    except OSError:  # a missing folder is reported when a file is created in it
         return
     free = disk.f_bavail * disk.f_frsize
     if n_bytes > free:
@@ -68,19 +68,19 @@ def check_room(folder: Path, n_bytes: int) -> None:
 
 
 def name_scratch_files(beginning: str) -> None:
-    """Give scratch files names from now on, so that another process can take them over.
+    """Give new scratch files names, so that another process can take them over.
 
     Parameters
     ----------
     beginning : str
-        Of each name; the other process removes them.
+        Prefix of each name; the other process removes the files.
     """
     global _name
     _name = beginning
 
 
 def name_of_scratch_file(array: NDArray[Any]) -> tuple[str, Path] | None:
-    """Name and folder of the file that holds an array and no more; None where there is none."""
+    """Name and folder of the file that holds exactly this array; None if there is none."""
     found = _map_of(array)
     if found is None or found.name is None or array.nbytes != len(found) or array.ndim != 1:
         return None
@@ -88,12 +88,12 @@ def name_of_scratch_file(array: NDArray[Any]) -> tuple[str, Path] | None:
 
 
 def _is_on_disk(array: NDArray[Any]) -> bool:
-    """Whether an array lies in a scratch file."""
+    """Whether an array is stored in a scratch file."""
     return _map_of(array) is not None
 
 
 def release_pages(*arrays: NDArray[Any]) -> None:
-    """Take the pages of arrays on disk off the memory of the process; their numbers stay."""
+    """Release the memory pages of arrays on disk; their values are kept."""
     for array in arrays:
         found = _map_of(array)
         if found is not None and hasattr(mmap, "MADV_DONTNEED"):
@@ -101,17 +101,17 @@ def release_pages(*arrays: NDArray[Any]) -> None:
 
 
 def trim_heap() -> None:
-    """Give what earlier work has freed back to the system.
+    """Return memory freed by earlier work to the system.
 
-    The C library keeps what is freed, in pieces between what is not: half of the memory of a
-    long log after a few stages, and 50 MB after the tables of a batch.
+    The C library keeps freed memory in fragments: half of the memory for a long log after a few
+    stages, and 50 MB after the tables of a batch.
     """
     if _MALLOC_TRIM is not None:
         _MALLOC_TRIM(0)
 
 
 def trim_heap_after(*arrays: NDArray[Any]) -> None:
-    """Give back what earlier work has freed, if any of the arrays is long or on disk."""
+    """Return freed memory to the system if any of the arrays is long or on disk."""
     if any(array.nbytes >= _LONG or _is_on_disk(array) for array in arrays):
         trim_heap()
 
@@ -122,21 +122,21 @@ def empty_like(
     shape: int | tuple[int, ...] | None = None,
     dtype: DTypeLike | None = None,
 ) -> NDArray[Any]:
-    """Return an array that holds anything, on disk where the reference is.
+    """Return an uninitialised array, on disk if the reference is.
 
     Parameters
     ----------
     reference : ndarray
-        Beside which it shall lie. [any]
+        Array whose storage is followed. [any]
     shape : int or tuple of int, optional
-        That of the reference where left out. [1]
+        Shape; that of the reference if omitted. [1]
     dtype : dtype, optional
-        Likewise.
+        Type; that of the reference if omitted.
 
     Returns
     -------
     array : ndarray
-        Of the shape. [any]
+        Array of that shape. [any]
 
     Raises
     ------
@@ -160,7 +160,7 @@ def empty_like(
 
 
 def like_storage(reference: NDArray[Any], made: NDArray[Any]) -> NDArray[Any]:
-    """Return an array moved to disk where the reference is, else as it is; both are let go."""
+    """Return an array moved to disk if the reference is there, else the array itself."""
     if not _is_on_disk(reference):
         return made
     moved = empty_like(reference, shape=made.shape, dtype=made.dtype)
@@ -177,23 +177,23 @@ def zeros_like(
 ) -> NDArray[Any]:
     """Return an array of zeros; parameters as in `empty_like`."""
     made = empty_like(reference, shape=shape, dtype=dtype)
-    # a new scratch file holds zeros, and so does memory that the system gives when it is touched
+    # a new scratch file contains zeros, and so does memory that the system allocates on first use
     return made if _is_on_disk(made) else np.zeros(made.shape, dtype=made.dtype)
 
 
 class ColumnWriter:
-    """A column that grows by parts: in memory, or in a scratch file where a folder is given.
+    """A column built from parts, in memory or in a scratch file if a folder is given.
 
     Parameters
     ----------
     folder : pathlib.Path or None
-        Where the scratch file lies; None keeps the column in memory.
+        Folder of the scratch file; None keeps the column in memory.
     dtype : dtype
-        Of the column.
+        Type of the column.
     """
 
     def __init__(self, folder: Path | None, dtype: DTypeLike = np.float64) -> None:
-        """Begin an empty column."""
+        """Start an empty column."""
         self._folder = folder
         self._dtype = np.dtype(dtype)
         self._parts: list[NDArray[Any]] = []
@@ -202,7 +202,7 @@ class ColumnWriter:
         self.size = 0
 
     def append(self, values: NDArray[Any]) -> None:
-        """Add samples at the end.
+        """Append samples.
 
         Raises
         ------
@@ -216,14 +216,14 @@ class ColumnWriter:
             return
         left = part.data.cast("B") if part.size else memoryview(b"")
         try:
-            while left:  # a disk that fills takes what it can
+            while left:  # a nearly full disk writes only what fits
                 left = left[self._file.write(left) :]
         except OSError as error:
             n_bytes = self.size * self._dtype.itemsize
             raise _no_space(self._folder, n_bytes, error.strerror) from error
 
     def finish(self) -> NDArray[Any]:
-        """Return the column, shape (size,); nothing may be added any more.
+        """Return the column, shape (size,); nothing can be appended afterwards.
 
         Raises
         ------
@@ -238,7 +238,7 @@ class ColumnWriter:
         return np.concatenate([np.empty(0, dtype=self._dtype), *self._parts])
 
     def __del__(self) -> None:
-        """Close the file of a column that was given up."""
+        """Close the file of an abandoned column."""
         if self._file is not None:
             self._file.close()
 
@@ -265,7 +265,7 @@ def _scratch_file(folder: Path) -> IO[bytes]:
 
 
 def _reserve(file: IO[bytes], n_bytes: int, folder: Path) -> None:
-    """Take the room at once: a map of a file that the disk cannot hold ends the process."""
+    """Reserve the space at once: mapping a file that does not fit on the disk ends the process."""
     try:
         if hasattr(os, "posix_fallocate"):
             os.posix_fallocate(file.fileno(), 0, n_bytes)
@@ -276,7 +276,7 @@ def _reserve(file: IO[bytes], n_bytes: int, folder: Path) -> None:
 
 
 def mapped(file: IO[bytes], n_bytes: int, folder: Path, dtype: np.dtype[Any]) -> NDArray[Any]:
-    """A scratch file as an array; `DataError` where a limit on address space is reached."""
+    """A scratch file as an array; `DataError` if the address-space limit is reached."""
     if not n_bytes:
         return np.empty(0, dtype=dtype)
     try:
@@ -290,7 +290,7 @@ def mapped(file: IO[bytes], n_bytes: int, folder: Path, dtype: np.dtype[Any]) ->
             "counts them: see ulimit -v and ulimit -n.",
         ) from error
     found.folder = folder
-    found.name = file.name if isinstance(file.name, str) else None  # a number where it has none
+    found.name = file.name if isinstance(file.name, str) else None  # an integer for an unnamed file
     return np.ndarray(n_bytes // dtype.itemsize, dtype=dtype, buffer=found)
 
 
@@ -304,31 +304,31 @@ def _no_space(folder: Path, n_bytes: int, why: str | None) -> DataError:
 
 
 BLOCK = 1 << 16
-"""Samples of a block, which stay in the cache. [1]."""
+"""Samples in a block, which fits in the cache. [1]."""
 
-_SPAN = 1 << 20  # samples of a stretch; each one touched may bring 2 MB of its file into memory
+_SPAN = 1 << 20  # samples between releases; each sample touched may load 2 MB of its file
 
 
 def sample_blocks(
     n_samples: int, *arrays: NDArray[Any], overlap: int = 0, size: int = BLOCK
 ) -> Iterator[slice]:
-    """Slices that cover a series, in order; arrays on disk are let go behind every few.
+    """Consecutive slices that cover a series; pages of arrays on disk are released regularly.
 
     Parameters
     ----------
     n_samples : int
         Length of the series. [1]
     *arrays : ndarray
-        What is read or written in the blocks. [any]
+        Arrays read or written in the blocks. [any]
     overlap : int
-        Samples of the next block that each slice has too. [1]
+        Samples shared with the next block. [1]
     size : int
-        Samples of a block. [1]
+        Samples in a block. [1]
 
     Yields
     ------
     part : slice
-        Of the samples. [1]
+        Slice of samples. [1]
 
     Raises
     ------
@@ -344,30 +344,30 @@ def sample_blocks(
     for start in range(0, n_samples, size):
         yield slice(start, min(start + size + overlap, n_samples))
         kept += size
-        if kept >= _SPAN // 2 or start + size >= n_samples:  # less is not worth the call
+        if kept >= _SPAN // 2 or start + size >= n_samples:  # not worth the call for less
             release_pages(*arrays)
             kept = 0
 
 
 def take_samples(series: NDArray[Any], index: NDArray[np.integer[Any]]) -> NDArray[Any]:
-    """Return single samples of series, as ``series[..., index]`` does, in bounded memory.
+    """Return selected samples of a series, like ``series[..., index]``, in bounded memory.
 
     Parameters
     ----------
     series : ndarray, shape (..., n_samples)
         In memory or on disk. [any]
     index : ndarray of int, any shape
-        Which samples. [1]
+        Indices of the samples. [1]
 
     Returns
     -------
     values : ndarray, shape (..., *index.shape)
-        In memory. [as series]
+        Selected samples, in memory. [as series]
 
     Raises
     ------
     IndexError
-        If a sample is not in the series.
+        If an index is outside the series.
 
     Examples
     --------
@@ -380,7 +380,7 @@ def take_samples(series: NDArray[Any], index: NDArray[np.integer[Any]]) -> NDArr
     taken = np.empty((*series.shape[:-1], flat.size), dtype=series.dtype)
     edges = np.flatnonzero(np.diff(flat // _SPAN)) + 1
     is_to_and_fro = edges.size > series.shape[-1] // _SPAN and bool((np.diff(flat) < 0).any())
-    if is_to_and_fro:  # once over all instead
+    if is_to_and_fro:  # one pass over all samples instead
         order = np.argsort(flat, kind="stable")
         taken[..., order] = take_samples(series, flat[order])
     else:
@@ -391,12 +391,12 @@ def take_samples(series: NDArray[Any], index: NDArray[np.integer[Any]]) -> NDArr
 
 
 def count_samples(where: NDArray[Any]) -> int:
-    """Samples of a series that are true, or not zero."""
+    """Number of samples that are true or nonzero."""
     return sum(int(np.count_nonzero(where[part])) for part in sample_blocks(where.size, where))
 
 
 def finite_extremes(series: NDArray[np.float64]) -> tuple[float, float]:
-    """Least and greatest finite sample; infinity and its negative where there is none.
+    """Smallest and largest finite sample; infinity and minus infinity if there is none.
 
     Examples
     --------
@@ -415,7 +415,7 @@ def finite_extremes(series: NDArray[np.float64]) -> tuple[float, float]:
 
 
 def mean_of_rows(rows: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Mean of several series sample by sample, shape (n_samples,); on disk where they are.
+    """Sample-by-sample mean of several series, shape (n_samples,); on disk if they are.
 
     Examples
     --------
@@ -429,7 +429,7 @@ def mean_of_rows(rows: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def copied(series: NDArray[Any]) -> NDArray[Any]:
-    """Return a copy that may be written to, on disk where the series is."""
+    """Return a writeable copy, on disk if the series is."""
     copy = empty_like(series)
     for part in sample_blocks(series.shape[-1], series, copy):
         copy[..., part] = series[..., part]
@@ -439,7 +439,7 @@ def copied(series: NDArray[Any]) -> NDArray[Any]:
 def full_like(
     reference: NDArray[Any], value: float, *, shape: int | tuple[int, ...] | None = None
 ) -> NDArray[Any]:
-    """Return an array of one number; parameters as in `empty_like`."""
+    """Return an array filled with one number; parameters as in `empty_like`."""
     made = empty_like(reference, shape=shape)
     flat = made.reshape(-1)
     for part in sample_blocks(flat.size, flat):
@@ -448,7 +448,7 @@ def full_like(
 
 
 def join_columns(parts: Sequence[NDArray[Any]]) -> NDArray[Any]:
-    """Columns one after another, on disk where the first is; one alone is given back."""
+    """Join columns, on disk if the first one is; a single column is returned unchanged."""
     if len(parts) == 1:
         return parts[0]
     joined = empty_like(parts[0], shape=sum(part.size for part in parts))
@@ -461,13 +461,13 @@ def join_columns(parts: Sequence[NDArray[Any]]) -> NDArray[Any]:
 
 
 Where = Callable[[slice], NDArray[np.bool_]]
-"""Of a slice of samples: for which of them it is true."""
+"""Condition on a slice of samples, true or false for each of them."""
 
 
 def first_sample(where: Where, start: int, stop: int, *samples: NDArray[Any]) -> int | None:
     """First sample from ``start`` up to ``stop`` for which a condition on slices is true.
 
-    ``samples`` is what the condition reads.
+    ``samples`` are the arrays that the condition reads.
     """
     for low in range(start, stop, BLOCK):
         found = where(slice(low, min(low + BLOCK, stop)))
@@ -496,25 +496,25 @@ def any_sample(where: Where, n_samples: int, *samples: NDArray[Any]) -> bool:
 def thinned(
     where: Where, n_samples: int, *, most: int, every: int = 1, samples: Sequence[NDArray[Any]] = ()
 ) -> NDArray[np.intp]:
-    """Samples for which a condition is true, evenly thinned to fewer than twice a number.
+    """Samples that meet a condition, thinned evenly to fewer than twice a number.
 
     Parameters
     ----------
     where : callable
-        Of a slice, which may have a step: whether each of its samples is wanted.
+        Condition on a slice, which may have a step: whether each sample is wanted.
     n_samples : int
         Length of the series. [1]
     most : int
-        So many are kept, or up to twice as many. [1]
+        Between this number and twice as many are kept. [1]
     every : int
-        Every so manieth sample of the series is looked at. [1]
+        Step between the samples examined. [1]
     samples : sequence of ndarray
-        What the condition reads.
+        Arrays that the condition reads.
 
     Returns
     -------
     kept : ndarray of int, shape (n_kept,)
-        In order. [1]
+        Indices in order. [1]
 
     Raises
     ------
@@ -535,7 +535,7 @@ def thinned(
     step = max(1, sum(block.size for block in rows()) // most)
     kept, before = [np.empty(0, dtype=np.intp)], 0
     for block in rows():
-        kept.append(block[-before % step :: step].copy())  # a view would keep the block
+        kept.append(block[-before % step :: step].copy())  # a view would keep the block in memory
         before += block.size
     return np.concatenate(kept)
 
@@ -544,24 +544,24 @@ Floats = NDArray[np.float64]
 
 
 def select_samples(where: Where, *series: NDArray[Any]) -> tuple[NDArray[Any], ...]:
-    """Samples of several series for which a condition on slices is true, beside them.
+    """Samples of several series at which a condition on slices is true.
 
     Parameters
     ----------
     where : callable
-        Of a slice: whether each of its samples is wanted.
+        Condition on a slice: whether each sample is wanted.
     *series : ndarray, shape (n_samples,)
         In memory or on disk. [any]
 
     Returns
     -------
     kept : tuple of ndarray, shape (n_kept,)
-        The series themselves where all is wanted. [as series]
+        The series themselves if all samples are wanted. [as series]
 
     Raises
     ------
     IndexError
-        If the series differ in length and not all is wanted.
+        If the series differ in length and not all samples are wanted.
 
     Examples
     --------
@@ -584,7 +584,7 @@ def select_samples(where: Where, *series: NDArray[Any]) -> tuple[NDArray[Any], .
 
 
 def shifted(series: Floats, by: float) -> Floats:
-    """Series less a number, shape (n_samples,); on disk where the series is.
+    """Series minus a number, shape (n_samples,); on disk if the series is.
 
     Examples
     --------
@@ -598,12 +598,12 @@ def shifted(series: Floats, by: float) -> Floats:
 
 
 def mean_of(series: Floats) -> float:
-    """Mean of a series of one sample or more.
+    """Mean of a series of at least one sample.
 
     Notes
     -----
-    Samples are summed as they differ from the first one: of a level that hardly changes the sum
-    of blocks of any length then gives the same mean to the last digit or two.
+    Differences from the first sample are summed, so that the mean of a nearly constant series
+    agrees to the last digit or two for any block length.
 
     Examples
     --------
@@ -617,15 +617,15 @@ def mean_of(series: Floats) -> float:
 
 _CODES_READ = 1 << 16  # samples
 
-_OF_CODES = 0.99  # of the steps, that are whole multiples of one
+_OF_CODES = 0.99  # minimum share of steps that are whole multiples of one
 
-_OF_TURNS = 0.3  # of them, that are followed by another
+_OF_TURNS = 0.3  # minimum share of steps followed by a different one
 
 
 def step_of_codes(values: Floats) -> float:
-    """Step between the codes of a channel, all of whose steps are multiples of it; 0 of others.
+    """Quantisation step of a channel whose steps are all multiples of it; 0 for others.
 
-    A ramp without noise has one step too, but does not go now by one code and now by another.
+    A noiseless ramp also has a single step, but its steps do not vary between multiples.
 
     Examples
     --------
@@ -640,7 +640,7 @@ def step_of_codes(values: Floats) -> float:
     moves = steps[steps > 1e-9 * steps.max(initial=0.0)]
     if not moves.size:
         return 0.0
-    # of a wave that passes over codes the levels of its rise and of its fall lie between each other
+    # if a wave skips codes, the levels of its fall lie between those of its rise
     levels = np.sort(values[:_CODES_READ][np.isfinite(values[:_CODES_READ])])
     apart = np.diff(levels)
     step = float(apart[apart > 1e-9 * moves.max()].min())
@@ -651,12 +651,12 @@ def step_of_codes(values: Floats) -> float:
 
 
 def rounding_left(step: float, noise: float) -> float:
-    r"""Standard uncertainty that rounding leaves in a mean of readings with normal noise.
+    r"""Standard uncertainty from rounding that remains in the mean of readings with normal noise.
 
     .. math:: u = q / \sqrt{12} \; e^{-2 (\pi \sigma / q)^2}
 
-    Noise of more than half a step spreads the readings over several codes, and their mean is free
-    of the steps.
+    Noise above half a step spreads the readings over several codes, and their mean is then free of
+    the quantisation.
 
     Examples
     --------
@@ -669,9 +669,9 @@ def rounding_left(step: float, noise: float) -> float:
 
 
 def step_that_fills(values: Floats) -> float:
-    """Step between neighbours by value: half of the whole range lies in steps at least as long.
+    """Step between sorted neighbours such that half of the range lies in steps at least as long.
 
-    Readings that fall on the same few places again and again leave it as long as those are apart.
+    Readings that repeat the same few values do not shorten it below the distance between these.
 
     Examples
     --------
@@ -686,21 +686,21 @@ def step_that_fills(values: Floats) -> float:
 
 
 def median_step_reaches(series: Floats, factor: float, value: float) -> bool:
-    """Whether a multiple of the median difference of neighbours is as great as a value.
+    """Whether a multiple of the median step reaches a value.
 
     Parameters
     ----------
     series : ndarray, shape (n_samples,)
-        Two samples or more, such as times. [any]
+        At least two samples, such as times. [any]
     factor : float
         Positive. [1]
     value : float
-        What the multiple is held against. [as series]
+        Value compared with the multiple. [as series]
 
     Returns
     -------
     reaches : bool
-        As ``factor * np.median(np.diff(series)) >= value`` has it. [1]
+        Same as ``factor * np.median(np.diff(series)) >= value``. [1]
 
     Raises
     ------
@@ -709,8 +709,8 @@ def median_step_reaches(series: Floats, factor: float, value: float) -> bool:
 
     Notes
     -----
-    The median lies where half of the differences are below it, so it need not be known: they are
-    counted.  Where one half is below and the other is not, it is the mean of the two beside.
+    The differences below the limit are counted, so that the median itself is not needed.  If
+    exactly half are below, the median is the mean of the two differences on either side.
 
     Examples
     --------
@@ -734,21 +734,21 @@ def interval_labels(
     stop: NDArray[np.integer[Any]],
     values: NDArray[Any],
 ) -> NDArray[Any]:
-    """Value of the interval of each sample, 0 outside all.
+    """Value of the interval that contains each sample, 0 outside all.
 
     Parameters
     ----------
     like : ndarray, shape (..., n_samples)
-        A series of the record, beside which the labels lie. [any]
+        A series of the record, whose storage the labels follow. [any]
     first, stop : ndarray of int, shape (n_intervals,)
-        First sample, and the one after the last; in order, without overlap. [1]
+        First sample and end sample (exclusive); in order, without overlap. [1]
     values : ndarray, shape (n_intervals,)
-        One an interval. [any]
+        One per interval. [any]
 
     Returns
     -------
     labels : ndarray, shape (n_samples,)
-        Of the type of the values. [as values]
+        Type as the values. [as values]
 
     Raises
     ------
@@ -777,7 +777,7 @@ def over_intervals(
     first: NDArray[np.integer[Any]],
     stop: NDArray[np.integer[Any]],
 ) -> NDArray[Any]:
-    """Sum, least or greatest of the samples of each interval, in bounded memory.
+    """Sum, minimum or maximum over each interval, in bounded memory.
 
     Parameters
     ----------
@@ -786,19 +786,19 @@ def over_intervals(
     series : ndarray, shape (n_samples,)
         In memory or on disk. [any]
     first : ndarray of int, shape (n_intervals,)
-        First sample of each; intervals may overlap, in any order. [1]
+        First sample of each interval; intervals may overlap, in any order. [1]
     stop : ndarray of int, shape (n_intervals,)
         Sample after the last, greater than ``first``. [1]
 
     Returns
     -------
     results : ndarray, shape (n_intervals,)
-        One an interval. [as series]
+        One per interval. [as series]
 
     Raises
     ------
     IndexError
-        If an interval begins beyond the series.
+        If an interval starts beyond the series.
 
     Examples
     --------
@@ -824,7 +824,7 @@ def over_intervals(
         else:
             bounds = np.column_stack([first[at:end], stop[at:end]]).ravel() - low
             samples = series[low : int(reached[end - 1]) + 1]
-            if reached[end - 1] == series.size:  # reduceat takes no bound after the last sample
+            if reached[end - 1] == series.size:  # reduceat accepts no end after the last sample
                 samples = np.append(samples, samples[-1:])
             results[at:end] = operation.reduceat(samples, bounds)[::2]
         release_pages(series)

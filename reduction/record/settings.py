@@ -1,9 +1,8 @@
-"""Every setting of the reduction, with its default.
+"""All settings of the reduction, with their defaults.
 
-The pure stages take these; `reduction.campaign` fills them from campaign.toml.
-A value of None means: found by the stated first pass over the whole record, and
-written into the product, so that reading in pieces changes nothing.  `Limits` alone changes no
-number and stands in no product.
+The pure stages take these; `reduction.campaign` fills them from campaign.toml. None means that the
+value is found in a first pass over the whole record and written into the product, so that reading
+in pieces does not change it.  `Limits` affects no number and is not stored in any product.
 """
 
 from __future__ import annotations
@@ -24,7 +23,7 @@ StrainMethod = Literal[
 StoredSamples = Literal["selected", "all"]
 
 Waveform = Literal["triangular", "sinusoidal", "other"]
-"""Of the channel that the machine drives, as it was programmed."""
+"""Programmed waveform of the channel that the machine drives."""
 
 Control = Literal["position", "load"]
 """Channel that the machine drives."""
@@ -32,24 +31,24 @@ Control = Literal["position", "load"]
 
 @dataclass(frozen=True)
 class QualitySettings:
-    """When a sample is flagged (nothing is deleted)."""
+    """Criteria for flagging a sample (nothing is deleted)."""
 
     stuck_samples: int = 50
     """A channel repeating one value this often while the crosshead moves is stuck. [1]"""
     spike_factor: float = 12.0
-    """Samples, ten at most, this many robust deviations off their neighbours are a spike. [1]"""
+    """Up to ten samples this many robust deviations off their neighbours are a spike. [1]"""
     gap_factor: float = 3.5
     """A time step this many median steps long is a gap. [1]"""
     rate_tolerance: float = 0.2
-    """A record whose steps differ by more than this share from their median says so. [1]"""
+    """A note is raised if steps differ by more than this share from their median. [1]"""
 
 
 @dataclass(frozen=True)
 class PhaseSettings:
-    """When the crosshead stands still."""
+    """Criteria for a standstill of the crosshead."""
 
     minimum_duration: float = 3.0
-    """Shortest standstill that is a hold or a rest. [s]"""
+    """Minimum duration of a hold or rest. [s]"""
     position_tolerance: float | None = None
     """Range of position inside a standstill; None: from the record's noise. [m]"""
     tension_tolerance: float | None = None
@@ -60,15 +59,15 @@ class PhaseSettings:
 
 @dataclass(frozen=True)
 class StrainSettings:
-    """How position becomes strain of the splice-free length."""
+    """Conversion of position to strain of the splice-free length."""
 
     method: StrainMethod | None = None
-    """None: tension-driven where the pooled marks span a factor of 2 in tension, else marks."""
+    """None: tension-driven if the pooled marks span a factor of 2 in tension, else marks."""
 
 
 @dataclass(frozen=True)
 class CycleSettings:
-    """What a cycle is, and which part of a branch has a constant rate."""
+    """Definition of a cycle, and of the constant-rate part of a branch."""
 
     control: Control = "position"
     """Channel on which reversals are found."""
@@ -78,7 +77,7 @@ class CycleSettings:
     trim_threshold: float = 0.97
     """A sample is kept in the trimmed branch while its rate is this share of the plateau. [1]"""
     expected_cycles: int | None = None
-    """Number of cycles the test plan asks for; a difference is a note. [1]"""
+    """Number of cycles in the test plan; a difference raises a note. [1]"""
     break_in_cycles: int = 0
     """Cycles left out of every mean over cycles. [1]"""
 
@@ -105,7 +104,7 @@ class ModulusSettings:
 
 @dataclass(frozen=True)
 class HoldSettings:
-    """When a hold supports a relaxation or creep number."""
+    """Criteria for relaxation or creep results from a hold."""
 
     minimum_duration: float = 30.0
     """Shortest hold that is fitted. [s]"""
@@ -117,50 +116,50 @@ class HoldSettings:
 
 @dataclass(frozen=True)
 class SlipSettings:
-    """When a drop of peak tension from cycle to cycle is a step and not creep."""
+    """Criteria for a step in peak tension from cycle to cycle, as opposed to creep."""
 
     minimum_cycles: int = 50
-    """Shortest run of cycles in which steps are looked for. [1]"""
+    """Shortest run of cycles searched for steps. [1]"""
     false_alarm: float = 0.001
-    """Chance that a record without steps shows one. [1]"""
+    """Probability of a false step in a record without steps. [1]"""
 
 
 @dataclass(frozen=True)
 class RopeSettings:
-    """What the steps of a rope programme are read at."""
+    """Settings for the steps of a rope programme."""
 
     last_cycles: int = 10
     """Cycles at the end of a step over which its dynamic stiffness is taken. [1]"""
     reference_time: float = 600.0
-    """Time after loading at which the static stiffness between two holds stands. [s]"""
+    """Time after loading used for the static stiffness between two holds. [s]"""
     failure_share: float = 0.5
     """A peak below this share of the median peak, to the end, is a failure. [1]"""
 
 
 @dataclass(frozen=True)
 class _ArchiveSettings:
-    """Which samples an archive holds."""
+    """Samples stored in an archive."""
 
     samples: StoredSamples | None = None
-    """Every one, or those of selected cycles and outside cycles; None: by the longest record."""
+    """All samples, or selected cycles and samples outside cycles; None: by the longest record."""
     longest_record: int = 1_000_000
-    """Longest record stored whole; of a longer one about a quarter of this at most. [1]"""
+    """Longest record stored in full; a longer one keeps at most about a quarter of this. [1]"""
 
 
 @dataclass(frozen=True)
 class Limits:
-    """What one log may be before it is refused; no number depends on it."""
+    """Limits on one log before it is refused; they affect no number."""
 
     file_size: int = 100_000_000_000
-    """Largest file. [byte]"""
+    """Maximum file size. [byte]"""
     unpacked_size: int = 2_500_000_000
-    """Memory that a file which is read whole, or one piece of another, may unpack to. [byte]"""
+    """Maximum unpacked size of a file read whole, or of one piece of another file. [byte]"""
     line_length: int = 1_000_000
-    """Longest line of a text. [byte]"""
+    """Maximum length of a text line. [byte]"""
     columns: int = 10_000
-    """Most columns. [1]"""
+    """Maximum number of columns. [1]"""
     time: float = 3600.0
-    """Longest time for reading it, looked at between blocks. [s]"""
+    """Maximum reading time, checked between blocks. [s]"""
 
 
 @dataclass(frozen=True)
