@@ -1,6 +1,6 @@
-"""What a script calls: run a campaign, look up, export, predict a hose, fit a surface.
+"""Functions for scripts: run a campaign, look up, export, predict a hose, fit a surface.
 
-Opening archives and campaigns is `reduction.archive`'s; both are reached as ``reduction.<name>``.
+Archives and campaigns are opened by `reduction.archive`; both are used as ``reduction.<name>``.
 """
 
 from __future__ import annotations
@@ -83,7 +83,7 @@ def look_up(
     temperature: str | None = None,
     **levels: Any,
 ) -> xr.Dataset:
-    """Look up design values of a published line or of a campaign of one's own.
+    """Look up design values of a published line or of your own campaign.
 
     Parameters
     ----------
@@ -91,30 +91,30 @@ def look_up(
         A published line by its name, ``"published"`` for all, an archive, or
         ``processed/<campaign>``.
     quantity : str
-        Its name, or its symbol such as ``"K_ap"``.
+        Name, or symbol such as ``"K_ap"``.
     line : str, optional
-        Which line, where the source holds several, such as ``"T-1 new"``.
+        Line, where the source has several, such as ``"T-1 new"``.
     branch : {"ascending", "descending"}, optional
-        Of a quantity that differs by it.
+        Branch, for a quantity that differs by branch.
     extrapolate : {"refuse", "flag"}
-        What to do outside the tested range.
+        Action for points outside the tested range.
     population : str or float, optional
-        All specimens of one kind as one line, with tolerance limits of this share of the kind, such
+        Combine all specimens of one kind, with tolerance limits for this share of the kind, such
         as ``"95 %"``.
     rank : bool
-        All lines in the order of the quantity at one load.
+        Order all lines by the quantity at one load.
     material, construction, condition : str, optional
-        Only lines of it, such as ``"nylon"``, ``"double braid"``, ``"new"``.
+        Only lines with these, such as ``"nylon"``, ``"double braid"``, ``"new"``.
     diameter : str, float or pint.Quantity, optional
-        Only lines of it. [m]
+        Only lines with this diameter. [m]
     tolerance : str or float, optional
-        Of the diameter. [1]
+        Relative tolerance of the diameter. [1]
     medium, temperature : str, optional
-        Only from tests in it, such as ``"wet"``, ``"5 degC"``.
+        Only tests under these conditions, such as ``"wet"``, ``"5 degC"``.
     **levels : str, float, array_like or xarray.DataArray
-        ``frequency``, ``mean_tension``, ``tension_amplitude``, ``tension``, ``strain``, or of
+        ``frequency``, ``mean_tension``, ``tension_amplitude``, ``tension``, ``strain``, or for
         surfaces over strain ``mean_strain`` and ``strain_amplitude``: a text
-        with a unit (``"20 %RBS"``), numbers in SI, or anything with ``to_base_units`` such as a
+        with a unit (``"20 %RBS"``), numbers in SI, or any object with ``to_base_units`` such as a
         pint quantity. Arrays are broadcast together, ``DataArray`` by the names of their
         dimensions.
 
@@ -122,9 +122,9 @@ def look_up(
     -------
     values : xarray.Dataset
         The quantity with its 95 % intervals (``_low`` and ``_high``), flags, and in its attributes
-        source, rule, warnings and errata. Of a population also each specimen, their standard
-        deviation and the limits; of a ranking a row per line, from the least to the greatest, with
-        the lines that it ties with.
+        source, rule, warnings and errata. For a population also each specimen, their standard
+        deviation and the limits; for a ranking one row per line, from the least to the greatest,
+        with the lines that it ties with.
 
     Raises
     ------
@@ -133,7 +133,7 @@ def look_up(
 
     Examples
     --------
-    Table 15 of CG-D-39-80 at the centre of the design, to its own digits of the line.
+    Table 15 of CG-D-39-80 at the centre of the design, to the printed digits.
 
     >>> found = look_up("nylon-double-braid-0.5in-new", "K_ap", frequency="0.3 Hz",
     ...     mean_tension="21 %RBS", tension_amplitude="8.5 %RBS")
@@ -181,7 +181,7 @@ def look_up(
 def _with_limits(
     mean: xr.Dataset, found: PopulationValues, dims: tuple[Hashable, ...]
 ) -> xr.Dataset:
-    """The mean of the specimens of a kind, with their scatter and the limits of the kind."""
+    """The mean of the specimens of a kind, with their scatter and the tolerance limits."""
     name, unit = found.values.quantity, {"units": found.values.unit}
     share = f"with 95 % confidence {100 * found.share:g} % of the kind"
     kept = {
@@ -257,12 +257,12 @@ def _level(name: str, value: Any, line: LineSource) -> xr.DataArray:
 
 
 def _has_unit(value: Any) -> bool:
-    """Whether it is a quantity of pint, or of a package like it."""
+    """Whether it is a quantity of pint or a similar package."""
     return hasattr(value, "to_base_units")
 
 
 def _plain(value: Any) -> Any:
-    """What a settings file says of a value: quantities become text with their unit."""
+    """A value as in a settings file: quantities become text with their unit."""
     if isinstance(value, Mapping):
         return {str(key): _plain(one) for key, one in value.items()}
     if _has_unit(value):
@@ -277,7 +277,7 @@ def _plain(value: Any) -> Any:
 
 
 def _table_of(runs: Mapping[str, Any] | pd.DataFrame | xr.Dataset) -> pd.DataFrame:
-    """Columns as a table of runs has them, with their units in the headers."""
+    """Columns as a table of runs, with their units in the headers."""
     if isinstance(runs, pd.DataFrame):
         return runs
     columns: dict[str, Any] = {}
@@ -291,7 +291,7 @@ def _table_of(runs: Mapping[str, Any] | pd.DataFrame | xr.Dataset) -> pd.DataFra
 
 @contextmanager
 def _file_of(given: Any, name: str) -> Iterator[Path]:
-    """A file that is given, or one that says what is given, for as long as it is read."""
+    """The given file, or a temporary one with the given content."""
     if isinstance(given, str | Path):
         yield Path(given)
         return
@@ -334,27 +334,27 @@ def run(
     jobs: int = 1,
     units: UnitSystem = "si",
 ) -> xr.DataTree | xr.Dataset:
-    """Reduce a campaign, as ``reduction run`` does, and open what it made.
+    """Reduce a campaign, as ``reduction run`` does, and open the result.
 
     Parameters
     ----------
     campaign : str or pathlib.Path
         The campaign.toml.
     processed, reports : str or pathlib.Path
-        Folders of the products and of the report.
+        Folders for the products and for the report.
     tests : sequence of str, optional
-        Only these.
+        Only these tests.
     force : bool
-        Whether to redo tests that did not change.
+        Whether to repeat tests that did not change.
     jobs : int
-        How many tests at once; above one, call it below ``if __name__ == "__main__":``.
+        Number of parallel tests; above one, call it below ``if __name__ == "__main__":``.
     units : {"si", "us"}
-        What the report shows; files are SI.
+        Units of the report; files are always SI.
 
     Returns
     -------
     campaign : xarray.DataTree
-        As of `reduction.open_campaign`.
+        As from `reduction.open_campaign`.
 
     Raises
     ------
@@ -364,7 +364,7 @@ def run(
     Warns
     -----
     UserWarning
-        For each test that failed; the others are reduced all the same.
+        For each test that failed; the others are reduced nevertheless.
     """
     loaded = load_campaign(Path(campaign))
     with local_workers(jobs) if jobs > 1 else nullcontext() as workers:
@@ -391,22 +391,21 @@ def export(
     to : str
         Format, such as ``"moordyn"`` or ``"csv"``.
     out : str or pathlib.Path
-        The file.
+        Output file.
     **options : str, bool or pint.Quantity
-        Those of the command, such as ``form="static-dynamic"``, ``frequency="0.3 Hz"`` or
-        ``diameter="26 mm"``; ``units="us"`` of a table.
+        Options of the command, such as ``form="static-dynamic"``, ``frequency="0.3 Hz"`` or
+        ``diameter="26 mm"``; ``units="us"`` for a table.
 
     Returns
     -------
     done : ExportedFiles
-        ``paths`` that were written, ``notes`` on what they hold that was not tested (also in their
-        headers), and with ``verify=True`` the ``checks`` by the program. ``plot()`` draws the
-        curve.
+        ``paths`` of the written files, ``notes`` on untested content (also in the file headers),
+        and with ``verify=True`` the ``checks`` by the program. ``plot()`` draws the curve.
 
     Raises
     ------
     ReductionError
-        If the source cannot be written so.
+        If the source cannot be written in this format.
 
     Examples
     --------
@@ -433,7 +432,7 @@ def predict_hose(spec: str | Path | Mapping[str, Any]) -> xr.Dataset:
     Parameters
     ----------
     spec : str, pathlib.Path or mapping
-        The SPEC.toml of the hose, or what stands in it: ``{"hose": {"wrap_angle": "64 deg", ...},
+        The SPEC.toml of the hose, or its content: ``{"hose": {"wrap_angle": "64 deg", ...},
         "cord": {"strain": [...], "load": [...]}}``, with units in text or pint quantities.
 
     Returns
@@ -445,7 +444,7 @@ def predict_hose(spec: str | Path | Mapping[str, Any]) -> xr.Dataset:
     Raises
     ------
     ReductionError
-        If the hose cannot be built so.
+        If such a hose cannot be built.
     """
     with _file_of(spec, "hose.toml") as path:
         plan, _ = load_hose(path)
@@ -467,34 +466,34 @@ def fit_surface(
     Parameters
     ----------
     runs : str, pathlib.Path, mapping, pandas.DataFrame or xarray.Dataset
-        A CSV of runs: levels of the factors and responses, a row for each run; or its columns by
-        name. Units stand in the names, ``"stiffness [N]"``, or are those of the columns (pint
-        quantities, the attribute ``units``).
+        A CSV of runs (levels of the factors and responses, one row per run), or its columns by
+        name. Units are given in the names, ``"stiffness [N]"``, or by the columns (pint quantities,
+        the attribute ``units``).
     spec : str, pathlib.Path or mapping, optional
-        The SPEC.toml with low and high levels, or what stands in it.
+        The SPEC.toml with low and high levels, or its content.
 
     Returns
     -------
     surfaces : xarray.Dataset
         Over ``response`` and ``term``: ``coefficient`` of coded levels, -1 to 1, with its
-        ``covariance``, ``coefficient_engineering`` of levels as they are, standard uncertainties,
-        ``r2``, ``sigma``, and tests for lack of fit.  Units are of the response, ``response_unit``.
+        ``covariance``, ``coefficient_engineering`` for levels in units, standard uncertainties,
+        ``r2``, ``sigma``, and tests for lack of fit.  ``response_unit`` has the unit of a response.
 
     Raises
     ------
     ReductionError
-        If the runs do not carry the ten terms, or their levels are none of the plan.
+        If the runs do not determine the ten terms, or their levels are not those of the plan.
 
     Warns
     -----
     UserWarning
-        For each note that could move the surface.
+        For each note that could affect the surface.
 
     Notes
     -----
-    The covariance is that of the scatter, :math:`\sigma^2 (X^T X)^{-1}`: a table of runs says
-    nothing of errors that its runs share, and an interval from the covariance does not hold what a
-    quadratic misses between the levels.  Half way between them, over ``point``, the dataset has
+    The covariance is that of the scatter, :math:`\sigma^2 (X^T X)^{-1}`: a table of runs does not
+    show errors that its runs share, and an interval from the covariance leaves out the lack of fit
+    of a quadratic between the levels.  Half way between them, over ``point``, the dataset has
     the values with their 95 % intervals, scatter and ``lack_of_fit_standard_uncertainty``.
     """
     loaded = None

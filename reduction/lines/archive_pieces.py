@@ -1,4 +1,4 @@
-"""Archives of one specimen, of stepwise tests too, as pieces of a tension-strain curve."""
+"""Archives of one specimen, including stepwise tests, as pieces of a tension-strain curve."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _ROWS = "_uncertainty_contribution"
 
 
 def alignment_words(dataset: xr.Dataset, place: int) -> tuple[str, ...]:
-    """Where the curves of one specimen lie, if its cycles drift; nothing if they do not."""
+    """Reference of the curves of one specimen whose cycles drift; empty if they do not."""
     laid_on = stored(dataset, "alignment_strain")
     if laid_on is None or np.isnan(laid_on.values[place]):
         return ()
@@ -45,7 +45,7 @@ def alignment_words(dataset: xr.Dataset, place: int) -> tuple[str, ...]:
 
 
 def check_words(dataset: xr.Dataset, specimen: str) -> tuple[str, ...]:
-    """Why a test has the status `check`, of one specimen or of the whole test; nothing if not."""
+    """Why a test has the status `check`, for a specimen or the whole test; else empty."""
     others = [name for name in specimens_of(dataset) if name != specimen]
     return tuple(
         f"{dataset.attrs.get('test', 'the test')} has the status check: {one}"
@@ -60,7 +60,7 @@ def check_words(dataset: xr.Dataset, specimen: str) -> tuple[str, ...]:
 def parts_of(
     dataset: xr.Dataset, name: str, specimen: int | None = None, *, of: str
 ) -> tuple[Floats, Contributions | None]:
-    """Both parts of the uncertainty of one curve of an archive."""
+    """Both parts of the uncertainty of one curve in an archive."""
     rows = stored(dataset, f"{name}{_ROWS}")
     whole = f"{name}_standard_uncertainty"
     own = np.asarray(
@@ -91,7 +91,7 @@ def _pieces_of_weights(
         down = piece_of_steps(steps, name=name, branch="descending", shared=shared)
         return (mean_piece(up, down),)
     except DataError:
-        # weights were never taken off: the way up stands for the mean, and says so by its branch
+        # weights were never removed: the ascending branch replaces the mean, and keeps its name
         return (up,)
 
 
@@ -128,11 +128,11 @@ def _steps(dataset: xr.Dataset, random: Floats) -> StepwiseResult:
 
 
 _SAME = 1e-6
-"""Relative difference of two diameters that are one."""
+"""Relative difference within which two diameters are equal."""
 
 
 def specimens_of(dataset: xr.Dataset) -> tuple[str, ...]:
-    """Names of the specimens of an archive of a test; none of another archive."""
+    """Names of the specimens in the archive of a test; none for other archives."""
     if "specimen" not in dataset:
         return ()
     return tuple(dataset.variables["specimen"].values.astype(str).tolist())
@@ -141,7 +141,7 @@ def specimens_of(dataset: xr.Dataset) -> tuple[str, ...]:
 def _pieces_of_test(
     dataset: xr.Dataset, specimen: str, *, branch: PieceBranch, name: str
 ) -> tuple[CurvePiece, ...]:
-    """Pieces that one test gives: its cycles, its first rise, its weights, or its slow pull."""
+    """Pieces from one test: its cycles, its first loading, its weights, or its slow pull."""
     place = specimens_of(dataset).index(specimen)
     if "secant_modulus" in dataset and "step" in dataset.sizes:
         return _pieces_of_weights(dataset, branch, name)
@@ -161,7 +161,7 @@ def _pieces_of_test(
     if "quasi_static_strain" in dataset and "tension_grid" in dataset:
         strain = dataset.variables["quasi_static_strain"].values[place]
         if np.count_nonzero(np.isfinite(strain)) > 1:
-            # the first rise of a slow pull is the pull
+            # the first loading of a slow pull is the pull
             random, shared = parts_of(dataset, "quasi_static_strain", place, of="strain")
             grid = dataset.variables["tension_grid"].values
             return (*pieces, piece_of_pull(strain, grid, random, name=name, shared=shared))
@@ -267,7 +267,7 @@ def _said(dataset: xr.Dataset) -> str:
 
 
 def _differ(one: StrainModel, other: StrainModel) -> bool:
-    """Whether two strain models are of two laws; the range of the marks does not matter."""
+    """Whether two strain models have different laws; the range of the marks does not matter."""
     if one.method != other.method or one.coefficients.keys() != other.coefficients.keys():
         return True
     values = [np.array(list(model.coefficients.values())) for model in (one, other)]
@@ -275,7 +275,7 @@ def _differ(one: StrainModel, other: StrainModel) -> bool:
 
 
 def _one_number(datasets: Sequence[xr.Dataset], specimen: str, name: str) -> float:
-    """What is stated of the specimen; NaN where nothing is."""
+    """Value stated for the specimen; NaN where none is."""
     found = [
         (float(one[name].values[specimens_of(one).index(specimen)]), _id(one))
         for one in datasets

@@ -1,7 +1,7 @@
 """Archives and processed campaigns as sources of design values.
 
-Of a reduced test there are curves, moduli and tensions over strain and slow pulls; of an experiment
-there are surfaces.
+A reduced test gives curves, moduli and tensions over strain and slow pulls; an experiment gives
+surfaces.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ _ROPES = ("rope", "wire")
 
 _CONDITIONS = ("medium", "soak", "temperature", "date", "rest")
 
-_Parts = dict[str, Any]  # fields of `LineCurve` that say how well it is known
+_Parts = dict[str, Any]  # fields of `LineCurve` that give its uncertainty
 
 CURVES = (*_OVER_STRAIN, *_OVER_TENSION)
 """Variables of a reduced test that are looked up as curves."""
@@ -93,7 +93,7 @@ def _branches(dataset: xr.Dataset, name: str, place: int) -> list[LineCurve]:
         if seen.sum() < 2:
             continue
         at = strain[seen]
-        # bins without a cycle between two that have one are not known
+        # bins without a cycle between two that have one stay unknown
         missing = np.flatnonzero(np.diff(np.flatnonzero(seen)) > 1)
         curves.append(
             LineCurve(
@@ -126,7 +126,7 @@ def _checks(dataset: xr.Dataset, place: int) -> tuple[str, ...]:
 
 
 def _uncertainty(dataset: xr.Dataset, name: str, place: tuple[int, ...], seen: Bools) -> _Parts:
-    """Uncertainty of a curve where it was seen, by its parts; nothing where it has none."""
+    """Uncertainty of a curve where it was measured, by its parts; empty without an uncertainty."""
     if f"{name}_standard_uncertainty" not in dataset:
         return {}
     spread = np.asarray(
@@ -173,7 +173,7 @@ def _of_pull(dataset: xr.Dataset, place: int) -> list[LineCurve]:
 
 
 _SCALES = (*SCALES, "")
-"""A surface on a scale that was asked for stands before the one of the quantity itself."""
+"""A surface on the requested scale is preferred to that of the quantity itself."""
 
 _TEXTS = {
     "kind": "specimen_kind",
@@ -228,7 +228,7 @@ def _line_source_of_experiment(
 
 
 def looked_up_surface(response: str, names: Sequence[str]) -> str:
-    """Name of the surface that the look-up takes a response from, of those fitted; empty if none.
+    """Name of the fitted surface from which the look-up takes a response; empty if none.
 
     Examples
     --------
@@ -239,7 +239,7 @@ def looked_up_surface(response: str, names: Sequence[str]) -> str:
 
 
 def _specimens_of(dataset: xr.Dataset, experiment: str) -> tuple[str, ...]:
-    """Names of the specimens whose runs an experiment is of."""
+    """Names of the specimens tested in the runs of an experiment."""
     row = dataset.variables["experiment"].values.astype(str).tolist().index(experiment)
     return tuple(
         sorted({str(name) for name in dataset.variables["run_specimen"].values[row] if str(name)})
@@ -247,7 +247,7 @@ def _specimens_of(dataset: xr.Dataset, experiment: str) -> tuple[str, ...]:
 
 
 def _facts_of_specimens(dataset: xr.Dataset) -> dict[str, Facts]:
-    """What the archive of a reduced test states of each of its specimens, by name."""
+    """Properties of each specimen that the archive of a reduced test states, by name."""
     if "specimen" not in dataset:
         return {}
     names = dataset.variables["specimen"].values.astype(str).tolist()
@@ -265,7 +265,7 @@ def _facts(dataset: xr.Dataset, place: int) -> dict[str, Any]:
 
 
 def _agreed(facts: Sequence[Facts]) -> dict[str, Any]:
-    """What all specimens have alike; nothing is said of what they differ in."""
+    """Properties that all specimens have in common; those that differ are left out."""
     agreed: dict[str, Any] = dict.fromkeys(_TEXTS, "") | dict.fromkeys(_NUMBERS, float("nan"))
     for name, nothing in agreed.items():
         found = {one.get(name, nothing) for one in facts}
@@ -277,16 +277,16 @@ def _agreed(facts: Sequence[Facts]) -> dict[str, Any]:
 def _shared(
     dataset: xr.Dataset, row: int, name: str, n_terms: int
 ) -> tuple[tuple[Component, ...], Floats]:
-    """Errors that the runs share, and what each of them adds to the coefficients of a surface.
+    """Errors that the runs share, and the contribution of each to the coefficients of a surface.
 
-    Not a number, where that is not kept of every run.
+    NaN where the contribution is not stored for every run.
     """
     rows = stored(dataset, f"{name}_coefficient_uncertainty_contribution")
     if rows is None:
         return (), np.empty((0, n_terms))
     own = rows.values[row, :, :n_terms]
     component = components_of(dataset, row)
-    # an experiment with fewer errors than another of the archive is filled up
+    # an experiment with fewer errors than another in the archive is padded
     is_one = np.array([bool(one.source) for one in component], dtype=bool)
     known = np.flatnonzero(is_one & own.any(axis=1))
     return tuple(component[place] for place in known), own[known]
@@ -344,7 +344,7 @@ def _surface(
 
 
 def _one_strength(dataset: xr.Dataset, row: int) -> float:
-    """Break strength of the runs; NaN where it is not known, or they differ."""
+    """Break strength of the runs; NaN where unknown or different."""
     if "run_rated_break_strength" not in dataset:
         return float("nan")
     found = dataset.variables["run_rated_break_strength"].values[row]
@@ -353,7 +353,7 @@ def _one_strength(dataset: xr.Dataset, row: int) -> float:
 
 
 def _scale(name: str, unit: str, strength: float, experiment: str) -> float:
-    """From the unit of the levels to SI: a share of a break strength becomes a tension."""
+    """Factor from the unit of the levels to SI: a share of a break strength becomes a tension."""
     try:
         own = quantity(name).unit
     except KeyError:
@@ -384,7 +384,7 @@ def _line_source_of_test(dataset: xr.Dataset, specimen: str) -> LineSource:
 
 
 def _levels_of_specimen(dataset: xr.Dataset, place: int) -> tuple[LineLevels, ...]:
-    """What a cyclic test has at its own level; nothing of bedding in."""
+    """Quantities of a cyclic test at its own level; none for bedding in."""
     names = [f"test_{one}" for one in CYCLE]
     is_level = (
         dataset.attrs.get("test_kind") == "cyclic" and "bedding_first_stiffness" not in dataset
@@ -425,7 +425,7 @@ def _one_level(dataset: xr.Dataset, place: int, name: str, at: Floats) -> LineLe
 
 
 def _conditions(dataset: xr.Dataset) -> dict[str, str]:
-    """In which a test was made, as far as the campaign states it."""
+    """Conditions of a test, as far as the campaign states them."""
     return {one: str(dataset.attrs[one]) for one in _CONDITIONS if dataset.attrs.get(one)}
 
 
@@ -484,15 +484,15 @@ SURFACES = "surfaces.nc"
 
 
 def archives_of_lines(folder: Path) -> list[Path]:
-    """Archives of a campaign's folder that may have something to look up, surfaces last."""
+    """Archives in a campaign's folder that may contain design values, surfaces last."""
     surfaces = folder / SURFACES
     return [*archives_of_tests(folder), *([surfaces] if surfaces.is_file() else [])]
 
 
 def lines_of_archive(path: Path) -> list[LineSource]:
-    """Every line of one archive that has something to look up.
+    """Every line of one archive that has design values.
 
-    Surfaces come with the conditions and checks of the tests that lie beside them.
+    Surfaces are given with the conditions and checks of the tests in the same folder.
     """
     opener = ReadOnce()
     lines = _lines_at(path, opener)
@@ -510,7 +510,7 @@ def _lines_at(path: Path, opener: Opener) -> list[LineSource]:
 def lines_of_open_archive(
     archive: xr.Dataset, path: Path, opener: Opener = reading
 ) -> list[LineSource]:
-    """Every line of one archive that is open, as `lines_of_archive`."""
+    """Every line of one open archive, as `lines_of_archive`."""
     if "experiment" in archive.sizes:
         names = archive.variables["experiment"].values.astype(str).tolist()
         kinds = archive.variables["experiment_kind"].values.astype(str).tolist()
@@ -530,7 +530,7 @@ def lines_of_open_archive(
             else one
             for one in made
         ]
-    # a rope without a diameter has levels, and no curve
+    # a rope without a diameter has levels but no curve
     if not any(name in archive for name in (*CURVES, *(f"test_{one}" for one in _AT_LEVELS))):
         return []
     names = archive.variables["specimen"].values.astype(str).tolist()
@@ -538,7 +538,7 @@ def lines_of_open_archive(
         _line_of_curves(archive, place, name, _curves_of_specimen(archive, place))
         for place, name in enumerate(names)
     ]
-    # of a specimen whose curves were refused the notes of its test say why: it is no line
+    # where the curves of a specimen were refused, the notes of its test say why: it is no line
     return [line for line in found if line.curves or line.levels]
 
 
@@ -562,11 +562,11 @@ def _with_slow_pulls(
 
 
 def _are_other_waves(folder: Path, runs: Sequence[tuple[str, str]], opener: Opener) -> bool:
-    """Whether a run of an experiment was reduced as a wave that is no sine."""
+    """Whether a run of an experiment was reduced as a non-sinusoidal wave."""
     tests = {test for test, _ in runs}
     for path in archives_of_tests(folder):
         if path.stem in tests:
-            # one that cannot be read is told of by itself
+            # an unreadable archive is reported elsewhere
             with suppress(ArchiveError), opener(path) as archive:
                 if _cycle_settings(archive).get("waveform", "sinusoidal") != "sinusoidal":
                     return True
@@ -576,7 +576,7 @@ def _are_other_waves(folder: Path, runs: Sequence[tuple[str, str]], opener: Open
 def _slow_pulls(
     path: Path, settings: Mapping[str, Any], opener: Opener, runs: Sequence[tuple[str, str]]
 ) -> dict[str, LineCurve]:
-    """K_0 by the slow pull of each specimen of an experiment, as far as its archive is there."""
+    """K_0 by the slow pull of each specimen of an experiment, where its archive exists."""
     pulls = settings.get("quasi_static", {})
     found = {}
     for specimen, test in pulls.items():
@@ -613,7 +613,7 @@ def _with_bend(
     for path in archives_of_tests(folder):
         if path.stem not in tests:
             continue
-        # one that cannot be read is told of by itself
+        # an unreadable archive is reported elsewhere
         with suppress(ArchiveError), opener(path) as archive:
             names = [f"test_{one}" for one in RunOfLine._fields]
             if all(one in archive for one in names):
@@ -625,14 +625,14 @@ def _with_bend(
 
 
 def lines_of_folder(folder: Path) -> list[LineSource]:
-    """Every line of a processed campaign that has something to look up.
+    """Every line of a processed campaign that has design values.
 
-    A rope that is in several tests, and in no experiment with surfaces, is one line more: K_ap, H
-    and loss factor at the level of each test, original and static stiffness, and K_0 and strain of
-    its slow pull.  It bears the name of the specimen, its tests are called TEST SPECIMEN.  So is
-    one whose only test is of holds, where these have a static stiffness.
+    A rope that is in several tests, but in no experiment with surfaces, is one more line: K_ap,
+    H and loss factor at the level of each test, original and static stiffness, and K_0 and strain
+    of its slow pull.  It has the name of the specimen, and its tests are called TEST SPECIMEN.  The
+    same holds for a rope whose only test has holds, if these have a static stiffness.
     """
-    opener = ReadOnce()  # surfaces take K_0 of their runs and pulls, too
+    opener = ReadOnce()  # surfaces also take K_0 of their runs and pulls
     found = [(path.stem, _lines_at(path, opener)) for path in archives_of_lines(folder)]
     named = _with_unique_names(found)
     fitted = {one for line in named if line.surfaces for one in line.specimens}
@@ -668,7 +668,7 @@ def _with_runs(line: LineSource, tests: Sequence[LineSource]) -> LineSource:
 
 
 def _checks_of_runs(runs: Sequence[LineSource]) -> tuple[str, ...]:
-    """How many runs of an experiment have the status `check`, and why the first of them has it."""
+    """Number of runs of an experiment with the status `check`, and the reason of the first."""
     doubted = [texts for line in runs if (texts := line.levels[0].warnings[0])]
     if not doubted:
         return ()
@@ -677,7 +677,7 @@ def _checks_of_runs(runs: Sequence[LineSource]) -> tuple[str, ...]:
 
 
 def ropes_with_pulls(folder: Path) -> list[LineSource]:
-    """Ropes of a processed campaign with levels and a slow pull.
+    """Ropes of a processed campaign that have levels and a slow pull.
 
     Raises
     ------
@@ -698,10 +698,10 @@ def ropes_with_pulls(folder: Path) -> list[LineSource]:
 
 
 def _with_bend_of_levels(folder: Path, line: LineSource) -> LineSource:
-    """A rope with what the loops of its levels tell of a three-parameter line.
+    """A rope with the parameters of a three-parameter line from the loops of its levels.
 
-    K_0 of its slow pull is as bent as they are; K_ap and H of a wave that is no sine are those of
-    its fundamental, as K_1 and tau of a run.
+    K_0 of its slow pull has the bend of these loops; K_ap and H of a non-sinusoidal wave are those
+    of its fundamental, as are K_1 and tau of a run.
     """
     curve = next((one for one in line.curves if one.quantity == _K_0), None)
     tests = {test for one in line.levels if one.variables == CYCLE for test in one.tests}
@@ -749,7 +749,7 @@ def _as_sine(levels: LineLevels, of_sine: Mapping[str, Mapping[str, float]]) -> 
 
 
 def _sine_over_wave(archive: xr.Dataset, place: int) -> dict[str, float]:
-    """K_ap and H of the fundamental of a test over those of its wave; none of a sine."""
+    """Ratio of K_ap and H of the fundamental to those of the wave; empty for a sinusoid."""
     cycles = _cycle_settings(archive)
     if cycles.get("waveform") == "sinusoidal" or "storage_over_time" not in archive:
         return {}
@@ -791,7 +791,7 @@ def _cycle_of_level(archive: xr.Dataset, place: int, curve: LineCurve) -> RunOfL
             values("cycle_last_sample"),
         )
     )
-    if "sample_index" in archive:  # of a long record some cycles are stored
+    if "sample_index" in archive:  # only some cycles of a long record are stored
         index = values("sample_index")
         at = [np.searchsorted(index, one) for one in (first, turn, last)]
         whole = at[2] - at[0] == last - first
@@ -809,7 +809,7 @@ def _cycle_of_level(archive: xr.Dataset, place: int, curve: LineCurve) -> RunOfL
 
 
 def _rope(folder: Path, name: str, tests: Sequence[LineSource]) -> LineSource:
-    """What all tests of one rope give together."""
+    """Combined values of all tests of one rope."""
     by_quantity: dict[str, list[LineLevels]] = {}
     for line in tests:
         for one in line.levels:
@@ -841,7 +841,7 @@ def _rope(folder: Path, name: str, tests: Sequence[LineSource]) -> LineSource:
 
 
 def _without_pooled(line: LineSource, ropes: Sequence[LineSource]) -> LineSource:
-    """A test of a rope without what the line of the rope has."""
+    """A test of a rope without the values that the line of the rope has."""
     own = next(one for one in ropes if one.name == line.specimens[0])
     kept = tuple(one for one in line.curves if not any(one is taken for taken in own.curves))
     return replace(line, levels=(), curves=kept)
@@ -854,7 +854,7 @@ _CHANGES = {
 
 
 def _changes(folder: Path, specimen: str) -> list[LineLevels]:
-    """Original and static stiffness of a rope, between the tensions that each is a chord of."""
+    """Original and static stiffness of a rope, each a chord between two tensions."""
     path = folder / CHANGE_IN_LENGTH
     if not path.is_file():
         return []
@@ -900,12 +900,12 @@ def _one_change(archive: xr.Dataset, place: int, name: str) -> LineLevels:
 
 
 def experiments_with_pulls(path: Path) -> list[LineSource]:
-    """Experiments of an archive of surfaces, one for each specimen and its slow pull.
+    """Experiments of an archive of surfaces, one per specimen and slow pull.
 
     Parameters
     ----------
     path : pathlib.Path
-        Archive of the surfaces of a campaign, with the archives of its tests beside it.
+        Archive of the surfaces of a campaign, in the folder of the archives of its tests.
 
     Returns
     -------
@@ -918,7 +918,7 @@ def experiments_with_pulls(path: Path) -> list[LineSource]:
     DataError
         If no specimen of an experiment has a slow pull.
     ArchiveError
-        If the archive of a pull is missing, or holds none.
+        If the archive of a pull is missing or has no pull.
     """
     opener = ReadOnce()
     with opener(path) as archive:
@@ -972,7 +972,7 @@ def _pull_of(folder: Path, test: str, specimen: str, opener: Opener = reading) -
 
 
 def _with_unique_names(found: Sequence[tuple[str, Sequence[LineSource]]]) -> list[LineSource]:
-    """Lines of a campaign by their files; a specimen that is in several is called TEST SPECIMEN.
+    """Lines of a campaign by file; a specimen that is in several files is called TEST SPECIMEN.
 
     Examples
     --------
@@ -986,13 +986,13 @@ def _with_unique_names(found: Sequence[tuple[str, Sequence[LineSource]]]) -> lis
 
 
 def unique_names(named: Sequence[tuple[str, str]]) -> list[str]:
-    """Names of lines by their tests and specimens, as `_with_unique_names` gives them."""
+    """Names of lines by test and specimen, as given by `_with_unique_names`."""
     count = Counter(name for _, name in named)
     return [f"{test} {name}" if count[name] > 1 else name for test, name in named]
 
 
 def _specimens(path: Path, names: set[str], opener: Opener) -> dict[str, Facts]:
-    """What the archives of tests beside an archive of experiments state of its specimens."""
+    """Properties that the archives of tests beside an archive of experiments state by specimen."""
     known: dict[str, Facts] = {}
     for one in archives_of_tests(path.parent):
         if names <= known.keys():

@@ -1,16 +1,16 @@
 r"""Deployed assemblies: tension against length, stiffness, load of each tether.
 
-**Tethers side by side, other parts in line: tension of a deployed assembly against its length.**
+**Tension of a deployed assembly against its length, with tethers side by side and parts in line.**
 All tethers have one length between the bridles; each has the tension of its own curve there, and
 the length of every part in line follows from the tension:
 
 .. math:: T = \sum_i F_i(p), \qquad p = p_i(F_i), \qquad
           L(T) = p(T) + \sum_j \ell_j\,(1 + \varepsilon_j(T))
 
-Length is explicit in tension part by part, so that the curve is a table and nothing is iterated.
+Length is explicit in tension for each part, so the curve is a table and needs no iteration.
 
-A deployed assembly at work: length and load of each tether on the curve, EA and stroke by the tests
-that cover the cycle, and whether a tether goes slack.
+Working state of a deployed assembly: length and load of each tether on the curve, EA and stroke
+from the tests that cover the cycle, and whether a tether goes slack.
 
 References
 ----------
@@ -64,13 +64,13 @@ class SeriesPart:
     Parameters
     ----------
     name : str
-        Chain, bridle, swivel, wire ...
+        For example chain, bridle, swivel, wire.
     length : float
-        Without tension. [m]
+        Length without tension. [m]
     spring_constant : float
-        EA, force per unit strain; infinite where it is rigid. [N]
+        EA, force per unit strain; infinite for a rigid part. [N]
     curve : CompositeCurve or None
-        In place of a spring constant.
+        Replaces the spring constant.
     """
 
     name: str
@@ -79,7 +79,7 @@ class SeriesPart:
     curve: CompositeCurve | None = None
 
     def __post_init__(self) -> None:
-        """Refuse a part that is no part."""
+        """Refuse an invalid part."""
         if not self.length >= 0:
             raise SettingsError(
                 f"{self.name} has no length", found=f"{self.length:g} m", needed="zero or above"
@@ -92,7 +92,7 @@ class SeriesPart:
             )
 
     def length_at(self, tension: ArrayLike) -> Floats:
-        """Length [m] at a tension [N]; NaN beyond a curve."""
+        """Length [m] at a tension [N]; NaN beyond the curve."""
         load = np.asarray(tension, dtype=np.float64)
         if self.curve is not None:
             return np.asarray(self.length * (1 + self.curve.strain_at(load)))
@@ -100,11 +100,11 @@ class SeriesPart:
 
 
 def _equal_tethers(tether: _Tether, n_tethers: int) -> tuple[_Tether, ...]:
-    """Return tethers that are all alike.
+    """Return identical tethers.
 
     Notes
     -----
-    Assemblies of [1]_ have one, four and six (sec. 2.3.2).
+    Assemblies of [1]_ have one, four and six tethers (sec. 2.3.2).
 
     Examples
     --------
@@ -116,11 +116,11 @@ def _equal_tethers(tether: _Tether, n_tethers: int) -> tuple[_Tether, ...]:
 
 
 def _unequal_tethers(tether: _Tether, free_length: ArrayLike) -> tuple[_Tether, ...]:
-    """Return tethers of one material and one kind of splice, cut to lengths of their own.
+    """Return tethers of one material and one kind of splice, cut to different lengths.
 
     Notes
     -----
-    The shortest carries most; a load that all share equally is that of equal lengths.
+    The shortest carries most; loads are equal only where lengths are.
 
     Examples
     --------
@@ -134,18 +134,18 @@ def _unequal_tethers(tether: _Tether, free_length: ArrayLike) -> tuple[_Tether, 
 
 @dataclass(frozen=True)
 class StatedSplices:
-    """Splices of a tether, without a test of their own.
+    """Splices of a tether, stated without a test.
 
     Parameters
     ----------
     length : float
-        Of both together, relaxed; zero where there are none. [m]
+        Relaxed length of both together; zero where there are none. [m]
     strain_ratio : float or None
-        Their strain over that of the free length. [1]
+        Strain of the splices over that of the free length. [1]
     strain, at_tension : float or None
-        Theirs at a tension; rigid where neither this nor a ratio is stated. [1], [N]
+        Strain of the splices at a tension; rigid where neither this nor a ratio is stated. [1], [N]
     exponent : float
-        Of the tension, with ``strain``. [1]
+        Exponent of the tension, with ``strain``. [1]
     """
 
     length: float
@@ -155,7 +155,7 @@ class StatedSplices:
     exponent: float = 1.0
 
     def __post_init__(self) -> None:
-        """Refuse splices that are none."""
+        """Refuse invalid splices."""
         checks = (
             ("length", self.length, self.length >= 0, "zero or above"),
             ("strain_ratio", self.strain_ratio, (self.strain_ratio or 0.0) >= 0, "zero or above"),
@@ -183,8 +183,8 @@ def stated_model(splices: StatedSplices, free_length: float, *, name: str) -> St
 
     Notes
     -----
-    The two laws are those of the strain correction: a splice that strains by a share of what the
-    rubber does, or by its tension ([1]_ has the first one from Table 3).
+    The two laws are those of the strain correction: the strain of a splice is a share of that of
+    the rubber, or depends on its tension ([1]_ has the first one, from Table 3).
 
     Examples
     --------
@@ -207,13 +207,14 @@ def stated_model(splices: StatedSplices, free_length: float, *, name: str) -> St
 
 
 def _deployed_model(model: StrainModel, free_length: float | None) -> StrainModel:
-    """Strain model of a tether that is deployed, from the one that was tested.
+    """Strain model of a deployed tether, from that of the tested one.
 
     Notes
     -----
-    By gauge-length a position may be a displacement from anywhere: of a tether without splices
-    the free length is the length.  See `reduction.stages.strain.strain_model.with_free_length` for
-    the rest; a third of a tether of [1]_, Table 3, is splices.
+    With a gauge length, the origin of the position may be arbitrary: for a tether without splices
+    the length is set to the free length.  For the rest see
+    `reduction.stages.strain.strain_model.with_free_length`; a third of a tether of [1]_, Table 3,
+    is splices.
 
     Examples
     --------
@@ -232,19 +233,19 @@ def _deployed_model(model: StrainModel, free_length: float | None) -> StrainMode
     return model if free_length is None else with_free_length(model, free_length)
 
 
-# nodes of tension beside those of the curve: denser near slack, where splices stretch fastest
+# nodes of tension added to those of the curve: denser near slack, where splices stretch fastest
 _N_NODES = 400
 
 _OF_CELL = ("tension_gain", "tension_offset")
 
 _APART = 1e-9
-"""Share of the range of lengths that two nodes are apart."""
+"""Least distance between two nodes, as a share of the range of lengths."""
 
 
 @dataclass(frozen=True)
 @read_only_arrays
 class _AssemblyCurve:
-    """Tension of an assembly against its length; arrays of shape (n,) are nodes."""
+    """Tension of an assembly against its length; arrays of shape (n,) hold values at nodes."""
 
     total_length: Floats
     tension: Floats
@@ -267,12 +268,12 @@ class _AssemblyCurve:
 
     @property
     def shared_standard_uncertainty(self) -> Floats:
-        """Of the tension by what is shared with others, all errors together. [N]."""
+        """Uncertainty of the tension from errors shared with others, all together. [N]."""
         return np.asarray(np.sqrt(np.sum(self.contribution**2, axis=0)))
 
     @property
     def span_share(self) -> float:
-        """Share of a length to each side of the cycle whose EA stands beside a node. [1]."""
+        """Half span of the cycle whose EA is given at a node, as a share of its length. [1]."""
         longer = float(self.total_length[-1] / self.total_length[0]) - 1
         return min(_SPAN, longer / _LEAST_SPANS)
 
@@ -309,14 +310,14 @@ def _assemble(tethers: Sequence[_Tether], parts: Sequence[SeriesPart] = ()) -> _
 
     Notes
     -----
-    Bridles stay parallel; weight, buoyancy, bending and the twist of the assembly are not in it
+    Bridles stay parallel; weight, buoyancy, bending and twist of the assembly are left out
     ([1]_, sec. 2.3.2: a swivel has to turn, or the tethers do not share).  A part is straight at
-    zero tension.  The splices stretch by the tension they carry, as in the test: the length is
-    the inverse of the strain correction.  The uncertainty is that of the curve, which equal
-    tethers share in full; curves that differ share what their tests do, by its sign, and are
-    independent in the rest.  A load cell is taken as the one under which the splices were marked,
-    unless they are stated: then tension at one length is wrong by as much as at one strain.  The
-    splices' own, that of the tolerance of the lengths and of parts in line are not in it.
+    zero tension.  The splices stretch with the tension that they carry, as in the test: the length
+    is the inverse of the strain correction.  The uncertainty is that of the curve, which equal
+    tethers share in full; different curves share the errors of their tests, with their sign, and
+    are independent in the rest.  Splices that are not stated are assumed marked under the same load
+    cell, whose error in tension is then the same at one length as at one strain.  The errors of the
+    splices, of the tolerance of the lengths and of parts in line are left out.
 
     Examples
     --------
@@ -361,11 +362,11 @@ def _assemble(tethers: Sequence[_Tether], parts: Sequence[SeriesPart] = ()) -> _
     more = np.sum([part.length_at(tension) for part in parts], axis=0) if parts else 0.0
     total = nodes + more
     kept = rises & np.isfinite(total)
-    # lengths of two tethers may differ by rounding alone: no slope stands between such nodes
+    # lengths of two tethers may differ by rounding only: such nodes give no slope
     apart = _APART * (nodes[-1] - nodes[0])
     kept &= np.concatenate([[True], (np.diff(total) > apart) & (np.diff(nodes) > apart)])
     total, nodes, tension = total[kept], nodes[kept], tension[kept]
-    # compliance in line takes its share of what the tension is wrong by at one length
+    # compliance in line reduces the error of the tension at one length
     stiffness = np.gradient(tension, total) / np.gradient(tension, nodes)
     slack = np.interp([one.length[0] for one in own], nodes, total)
     random = spread[kept] * stiffness
@@ -389,7 +390,7 @@ def _assemble(tethers: Sequence[_Tether], parts: Sequence[SeriesPart] = ()) -> _
 
 @dataclass(frozen=True)
 class _Loaded:
-    """A tether on nodes of its tension; what is random and ``moved`` is of that at one length."""
+    """A tether on nodes of its tension; random part and ``moved`` are at constant length."""
 
     length: Floats
     tension: Floats
@@ -399,7 +400,7 @@ class _Loaded:
     moved: Floats
 
     def at(self, length: Floats, values: Floats) -> Floats:
-        """Values at lengths; zero where it is slack."""
+        """Values at lengths; zero where the tether is slack."""
         return np.interp(length, self.length, values, left=0.0)
 
     def shared_at(self, length: Floats) -> Contributions:
@@ -409,7 +410,7 @@ class _Loaded:
 
 
 def _random(tethers: Sequence[_Tether], spread: Floats) -> Floats:
-    """What is not shared with other curves: in full by tethers of one curve, else as squares."""
+    """Part not shared with other curves: added in full for tethers of one curve, else squared."""
     curves = [id(one.curve) for one in tethers]
     of_curves = [
         spread[[own == curve for own in curves]].sum(axis=0) for curve in dict.fromkeys(curves)
@@ -422,7 +423,7 @@ def _lengths(tether: _Tether) -> _Loaded:
     curve = tether.curve
     fine = curve.tension[-1] * np.linspace(0.0, 1.0, _N_NODES) ** 2
     force = np.union1d(curve.tension, fine)
-    # nodes that rounding has put side by side
+    # merge nodes that differ by rounding only
     force = force[np.concatenate([[True], np.diff(force) > 1e-12 * force[-1]])]
     strain = curve.strain_at(force)
     length = position_by_model(tether.model, strain=strain, tension=force)
@@ -434,10 +435,11 @@ def _lengths(tether: _Tether) -> _Loaded:
             needed="a length that rises",
         )
     free = position_by_model(tether.model, strain=strain, tension=np.zeros(force.size))
-    # splices take their share of what the curve is wrong by at one length
+    # splices reduce the error of the curve at one length
     share = np.gradient(free, force) / np.gradient(length, force)
     random = np.interp(strain, curve.strain, curve.random_standard_uncertainty) * share
-    # the load cell that read the marks is in the law of the splices too, and moves the whole length
+    # the load cell with which the marks were read is in the law of the splices too: its error
+    # moves the whole length
     is_whole = [not tether.is_stated and one.source in _OF_CELL for one in curve.component]
     rows = [
         np.interp(strain, curve.strain, row) * (1.0 if whole else share)
@@ -481,12 +483,12 @@ def _working_point(
 
     Notes
     -----
-    [1]_, sec. 2.3.2: a tether must not be allowed to go slack, since it may then tangle and be
-    cut.  The longest does so first, while the assembly is still taut.
+    [1]_, sec. 2.3.2: a tether must not go slack, since it may then tangle and be cut.  The longest
+    goes slack first, while the assembly is still taut.
 
     Examples
     --------
-    One tether of 100 N per unit strain and 1 m, between 60 and 140 N:
+    One tether of 100 N per unit strain, 1 m long, between 60 and 140 N:
 
     >>> from reduction.lines.composite import _composite_curve
     >>> from reduction.lines.composite import CurvePiece
@@ -567,8 +569,8 @@ def _worst_sharing(
     Notes
     -----
     The load of a tether falls with its own length and rises with that of every other one, so the
-    worst case is at a corner: one short and all others long, or the other way round.  [1]_, sec.
-    2.3.2, 2.3.3 has no tolerance; it says that an assembly that twists does not share (sec. 2.3.2).
+    worst case is at a corner: one short and all others long, or vice versa.  [1]_, sec. 2.3.2,
+    2.3.3 has no tolerance; it says that an assembly that twists does not share (sec. 2.3.2).
 
     Examples
     --------
@@ -615,13 +617,13 @@ def _worst_sharing(
 
 
 _SPAN, _LEAST_SPANS = 0.05, 10
-"""Share of a length to each side over which a secant is taken where no amplitude is stated, and
-how many of them are in a curve: a rope breaks before it is 20 % longer."""
+"""Half width of a secant, as a share of the length, where no amplitude is stated, and the least
+number of such spans in a curve: a rope breaks before it is 20 % longer."""
 
 
 @dataclass(frozen=True)
 class WorkingLevel:
-    """Where an assembly stands: a tension [N], a total length [m], or a strain of its tethers [1].
+    """State of an assembly: a tension [N], a total length [m], or a strain of its tethers [1].
 
     ``tension_amplitude`` is half the range about it. [N]
     """
@@ -633,18 +635,18 @@ class WorkingLevel:
 
 @dataclass(frozen=True)
 class _StiffnessOfTest:
-    """What one test says of a cycle.
+    """Stiffness over a cycle from one test.
 
     Parameters
     ----------
     words : str
-        Which test, and which part of it.
+        Test, and part of it.
     low, high : float
         Loads of the assembly between which it was tested. [N]
     covered : float
-        Share of the cycle that these are. [1]
+        Share of the cycle between these loads. [1]
     spring_constant, standard_uncertainty : float
-        EA over the loads that all tests which count have in common; NaN where it does not. [N]
+        EA over the loads common to all tests used; NaN where the test is not used. [N]
     """
 
     words: str
@@ -660,41 +662,41 @@ class _StiffnessOfTest:
 class WorkingState:
     """An assembly at one working level.
 
-    Mean length and loads are those of the curve, EA and stroke those of the tests.
+    Mean length and loads are from the curve, EA and stroke from the tests.
 
     Parameters
     ----------
     level : WorkingLevel
-        As asked.
+        Requested level.
     point : _WorkingPoint
-        On the curve.
+        Point on the curve.
     strain : ndarray, shape (n_tethers,)
-        Of the free length of each tether. [1]
+        Strain of the free length of each tether. [1]
     standard_uncertainty, random_standard_uncertainty, shared_standard_uncertainty : float
-        Of the tension at this length: both parts, of the curve by itself, and of what its tests
-        share with others. [N]
+        Of the tension at this length: both parts together, the part of the curve alone, and the
+        part that its tests share with others. [N]
     low, high : float
-        Ends of the cycle: as asked, or without an amplitude those of the span about it. [N]
+        Ends of the requested cycle, or without an amplitude those of the span about it. [N]
     secant_spring_constant, least_spring_constant, greatest_spring_constant : float
         EA over the cycle, and the ends of its interval; NaN where no test covers it. [N]
     stiffness : float
         EA over the length at which the assembly goes slack. [N m-1]
     peak_length, minimum_length : float
-        Of the cycle, half the stroke to each side of the mean; NaN where EA is. [m]
+        Mean length plus and minus half the stroke; NaN where EA is. [m]
     common_low, common_high : float
-        Loads that the tests which cover the cycle have in common. [N]
+        Loads common to the tests that cover the cycle. [N]
     curve_spring_constant : float
-        EA of the curve between these loads, which joins tests. [N]
+        EA between these loads of the curve, which joins tests. [N]
     tests : tuple of _StiffnessOfTest
-        Of each piece of the curve.
+        One for each piece of the curve.
     nearest : str
-        The test that is nearest in mean and amplitude, of those that count; empty without one.
+        Test used that is nearest in mean and amplitude; empty without one.
     doubt : str
-        Why the curve is in doubt at what was asked; else empty.
+        Why the curve is in doubt at the requested level; else empty.
     note : str
-        What of its slope is in doubt where no cycle was asked.
+        Doubt about its slope where no cycle was requested.
     sharing : _LoadSharing or None
-        Where the lengths have a tolerance.
+        Given where the lengths have a tolerance.
     """
 
     level: WorkingLevel
@@ -722,17 +724,17 @@ class WorkingState:
 
     @property
     def used(self) -> tuple[_StiffnessOfTest, ...]:
-        """Tests whose EA count."""
+        """Tests whose EA is used."""
         return tuple(one for one in self.tests if np.isfinite(one.spring_constant))
 
 
 @dataclass(frozen=True)
 @read_only_arrays
 class _DeployedAssembly:
-    """An assembly and its work; arrays have the shape (n,) of the nodes of its curve.
+    """An assembly and its working states; arrays hold values at the nodes of its curve, shape (n,).
 
-    ``stiffness`` is of cycles of the span about a node, 5 % of the length to each side or a tenth
-    of how far the curve stretches, ``tests`` are what it is from.
+    ``stiffness`` is for cycles of the span about a node: 5 % of the length to each side, or a tenth
+    of the stretch of the curve.  ``tests`` are its sources.
     """
 
     assembly: _AssemblyCurve
@@ -745,7 +747,7 @@ class _DeployedAssembly:
 
     @property
     def nearest_test(self) -> tuple[str, ...]:
-        """Test whose EA is the nearest at each node; empty where none covers the cycle."""
+        """Test with the nearest EA at each node; empty where none covers the cycle."""
         return tuple(
             self.tests[place].words if place >= 0 else "" for place in self.stiffness.nearest
         )
@@ -753,9 +755,9 @@ class _DeployedAssembly:
 
 @dataclass(frozen=True)
 class DeployedLine:
-    """An assembly with what it was made of.
+    """An assembly and its constituents.
 
-    ``splices`` says by which law a tether has its length, in words.
+    ``splices`` describes the law of the tether length, in words.
     """
 
     name: str
@@ -767,12 +769,12 @@ class DeployedLine:
 
     @property
     def is_equal(self) -> bool:
-        """Whether all tethers carry the same."""
+        """Whether all tethers carry the same load."""
         return bool(np.ptp(self.deployed.assembly.slack_length) == 0)
 
     @property
     def doubts(self) -> tuple[str, ...]:
-        """Why the curve is in doubt inside the asked cycles; without any level, anywhere."""
+        """Why the curve is in doubt inside the requested cycles; without any level, anywhere."""
         named = enumerate(self.deployed.working, start=1)
         found = tuple(f"working.{number}: {state.doubt}" for number, state in named if state.doubt)
         if self.deployed.working or not self.curve.doubt:
@@ -781,7 +783,7 @@ class DeployedLine:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What else to know, of the levels first."""
+        """Other remarks, those of the levels first."""
         named = enumerate(self.deployed.working, start=1)
         found = [f"working.{number}: {state.note}" for number, state in named if state.note]
         if self.curve.doubt and not any(self.curve.doubt in one for one in self.doubts):
@@ -790,7 +792,7 @@ class DeployedLine:
 
     @property
     def words(self) -> str:
-        """What it is."""
+        """Description of the assembly."""
         lengths = self.deployed.free_length
         free = [f"{length:.4g}" for length in dict.fromkeys(lengths)]
         told = f"{len(lengths)} x {self.source.name}, free length {', '.join(free)} m"
@@ -810,7 +812,7 @@ def deploy(
     rated_break_strength: float = float("nan"),
     has_stated_splices: bool = False,
 ) -> _DeployedAssembly:
-    """Put tethers side by side and parts in line, and work them."""
+    """Put tethers side by side and parts in line, and find the working states."""
     first = free_lengths[0] if free_lengths else None
     tether = _Tether(curve, _deployed_model(model, first), is_stated=has_stated_splices)
     alike = len(set(free_lengths)) < 2
@@ -846,11 +848,11 @@ def deploy(
 def _loaded_tests(
     tethers: Sequence[_Tether], parts: Sequence[SeriesPart]
 ) -> tuple[LoadedTest, ...]:
-    """The assembly as each test alone would have it, over the loads of that test.
+    """The assembly for each test alone, over the loads of that test.
 
     Notes
     -----
-    A test is left out where tethers are so unequal that no length keeps all of them inside it.
+    A test is left out where tethers are so unequal that no length keeps all of them in its range.
     """
     found = []
     for piece in tethers[0].curve.pieces:
@@ -879,7 +881,7 @@ def _loaded_tests(
 
 
 def _span_loads(assembly: _AssemblyCurve, length: Floats) -> tuple[Floats, Floats]:
-    """Tensions at the ends of a span about a length, cut off at the ends of the curve. [N]."""
+    """Tensions at the ends of a span about a length, limited to the ends of the curve. [N]."""
     low = np.maximum((1 - assembly.span_share) * length, assembly.total_length[0])
     high = np.minimum((1 + assembly.span_share) * length, assembly.total_length[-1])
     return assembly.tension_at(low), assembly.tension_at(high)
@@ -968,7 +970,7 @@ def _state(
 
 
 def _is_far(assembly: _AssemblyCurve, curve: CompositeCurve, low: float, high: float) -> bool:
-    """Whether the curve is in doubt at a strain that a tether has between two tensions."""
+    """Whether the curve is in doubt at a strain that a tether reaches between two tensions."""
     ends = [np.interp((low, high), assembly.tension, row) for row in assembly.tether_strain]
     return any(
         bool(curve.is_doubtful[(curve.strain >= first) & (curve.strain <= last)].any())
@@ -977,7 +979,7 @@ def _is_far(assembly: _AssemblyCurve, curve: CompositeCurve, low: float, high: f
 
 
 def _curve_spring_constant(assembly: _AssemblyCurve, low: float, high: float) -> float:
-    """EA of the curve between two loads, NaN where there are none. [N]."""
+    """EA of the curve between two loads; NaN where there are none. [N]."""
     short, long = assembly.length_at([low, high])
     return float(assembly.total_length[0] * (high - low) / (long - short))
 
@@ -991,7 +993,7 @@ _LITTLE = 0.1
 def _doubts_of_slope(
     tests: Sequence[_StiffnessOfTest], joined: float, least: float, greatest: float
 ) -> list[str]:
-    """Why no EA is known of a cycle, or the curve does not have that of its tests."""
+    """Why EA of a cycle is unknown, or why EA of the curve differs from that of its tests."""
     if not np.isfinite(least):
         nearest = sorted(tests, key=lambda one: -one.covered)[:_NEAREST_NAMED]
         names = ", ".join(f"{one.words} {one.covered:.0%}" for one in nearest if one.covered > 0)

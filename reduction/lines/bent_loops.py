@@ -1,10 +1,10 @@
-"""K_0 of a cycle, of a line whose loops are as bent as its slow pull.
+"""K_0 of a cycle, for a line whose loops are as bent as its slow pull.
 
-K_0 of a slow pull is its slope at one tension.  A large cycle goes over a part of the pull: where
-the loops of the runs are bent, their K_0 is the chord of the pull over the cycle
-(`reduction.stages.three_parameter_line.loop_midline`).  The loops of a rope may be straight though
-its pull is bent.  At a point without a loop the runs say which: by the share of the way from the
-slope to the chord that their own K_0 goes.
+K_0 of a slow pull is its slope at one tension.  A large cycle covers a part of the pull: where the
+loops of the runs are bent, their K_0 is the chord of the pull over the cycle
+(`reduction.stages.three_parameter_line.loop_midline`).  The loops of a rope may be straight even if
+its pull is bent.  At a point without a loop the K_0 of the runs decide, by their relative position
+between slope and chord.
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ from reduction.stages.three_parameter_line.loop_midline import (
 
 _FEWEST_RUNS = 3
 
-_STRAIGHT = 1e-3  # of K_0; between the points of a curve it is off by less
+_STRAIGHT = 1e-3  # share of K_0; the error between the points of a curve is smaller
 
 
 class RunOfLine(NamedTuple):
-    """A run of which K_0 is known. [N], [N], [N], [J m-1], [N]."""
+    """A run with known K_0. [N], [N], [N], [J m-1], [N]."""
 
     mean_tension: float
     tension_amplitude: float
@@ -49,12 +49,12 @@ def chord_over_slope(
     apparent_spring_constant: ArrayLike,
     hysteresis_energy: ArrayLike,
 ) -> Floats:
-    """Chord of a slow pull over cycles by its slope at their mean tension; 1 where not known.
+    """Chord of a slow pull over cycles, over its slope at their mean tension; 1 where not known.
 
     Examples
     --------
-    T = 4e5 e + 6e6 e^2 and a cycle from 11 to 29 kN with K_ap 1000 kN without loss: strains of
-    .009 about that of 19,514 N, where the slope is 792.7 kN, of 800 kN at 20 kN.
+    T = 4e5 e + 6e6 e^2 and a lossless cycle from 11 to 29 kN with K_ap 1000 kN: strains of
+    .009 about that of 19,514 N, where the slope is 792.7 kN, instead of 800 kN at 20 kN.
 
     >>> at = np.linspace(0, 4e4, 401)
     >>> curve = LineCurve("quasi_static_spring_constant", "mean_tension", 0, 4e4, at=at,
@@ -79,7 +79,7 @@ def chord_over_slope(
 
 
 def _constant_at(curve: LineCurve) -> Callable[[Floats], Floats]:
-    """K_0 at tensions, NaN beyond the pull. [N]."""
+    """K_0 at tensions; NaN beyond the pull. [N]."""
 
     def constant(tension: Floats) -> Floats:
         found = evaluate_curve(curve, tension)
@@ -89,7 +89,7 @@ def _constant_at(curve: LineCurve) -> Callable[[Floats], Floats]:
 
 
 def _half_strain(load: Floats, stiffness: Floats, energy: Floats) -> Floats:
-    """From the mean strain to the strains of peak and valley of the tension. [1]."""
+    """Half the strain range between peak and valley of the tension. [1]."""
     sine = energy * stiffness / (np.pi * load**2)
     return np.asarray(load / stiffness * np.sqrt(1 - sine**2))
 
@@ -103,22 +103,22 @@ def constant_of_level(
     waveform: Waveform = "sinusoidal",
     control: Control = "load",
 ) -> RunOfLine:
-    """A test at a level with K_0 of its loops, as `quasi_static_of_run` has it of a run.
+    """A test at a level with K_0 of its loops, as in `quasi_static_of_run` for a run.
 
     NaN where the bend of the loops is not known.
 
     Parameters
     ----------
     curve : LineCurve
-        K_0 over mean tension, of the slow pull. [N]
+        K_0 over mean tension, from the slow pull. [N]
     cycle : RunOfLine
         Without K_0.
     above_midline, standard_uncertainty : float
         From `reduction.stages.three_parameter_line.loop_midline.tension_above_midline`. [N]
     waveform : {"sinusoidal", "triangular", "other"}
-        Of the driven channel. [-]
+        Waveform of the driven channel. [-]
     control : {"load", "position"}
-        Which that is. [-]
+        Driven channel. [-]
     """
     constant_at = _constant_at(curve)
     mean, load, stiffness, energy = (np.asarray(one) for one in cycle[:4])
@@ -134,9 +134,9 @@ def constant_of_level(
 
 
 def with_bend_of_levels(curve: LineCurve, levels: Sequence[RunOfLine]) -> LineCurve:
-    """K_0 over mean tension with the bend of the loops of single levels, each of which counts.
+    """K_0 over mean tension with the bend of the loops of single levels, all of them used.
 
-    Where the loops of none are known K_0 is anywhere between slope and chord.
+    Where no bend is known, K_0 may be anywhere between slope and chord.
     """
     known = [one for one in levels if np.isfinite(one.quasi_static_spring_constant)]
     if known or not levels:
@@ -150,14 +150,14 @@ def with_bend_of_levels(curve: LineCurve, levels: Sequence[RunOfLine]) -> LineCu
 
 
 def with_bend_of_runs(curve: LineCurve, runs: Sequence[RunOfLine]) -> LineCurve:
-    """K_0 over mean tension with the bend that the K_0 of runs shows."""
+    """K_0 over mean tension with the bend given by the K_0 of runs."""
     table = np.array(runs, dtype=np.float64).reshape(-1, len(RunOfLine._fields))
     table = table[np.isfinite(table).all(axis=1)]
     return _with_bend(curve, table) if len(table) >= _FEWEST_RUNS else curve
 
 
 def _with_bend(curve: LineCurve, table: Floats) -> LineCurve:
-    """The same with the bend of runs, one a row; of none as it is."""
+    """The curve with the bend of runs, one per row; unchanged without runs."""
     if not len(table):
         return curve
     mean, load, stiffness, energy, own = table.T
@@ -182,9 +182,9 @@ def constant_of_cycles(
     apparent_spring_constant: ArrayLike,
     hysteresis_energy: ArrayLike,
 ) -> DesignValues:
-    """K_0 of cycles, from its slope at their mean tension, with the same relative uncertainty.
+    """K_0 of cycles, from the slope at their mean tension, with the same relative uncertainty.
 
-    What the bend of the runs misses is one part more of it.
+    The misfit of the bend to the runs is added to the uncertainty.
     """
     if not curve.loop_bend:
         return slope
@@ -215,5 +215,5 @@ _NORMAL = 1.96
 
 
 def share_of_slope(curve: LineCurve, **cycle: ArrayLike) -> Floats:
-    """K_0 of cycles over its slope at their mean tension, by the bend of the runs."""
+    """K_0 of cycles over the slope at their mean tension, by the bend of the runs."""
     return np.asarray(1 + curve.loop_bend * (chord_over_slope(curve, **cycle) - 1))

@@ -1,9 +1,9 @@
-"""Written decks, run in the programs that they are for, beside what was promised.
+"""Comparison of written decks, run in their programs, with the expected values.
 
-A line is stretched through its curve and beyond its end, and where a form has damping, in a sine of
-the levels that it was made for.  What is promised comes from the line, not from the deck: its curve
-with the straight line that goes on beyond, the three parameters in closed form, or the curve with
-its dashpot.  Programs run in a folder and a process of their own; one that is not installed is
+A line is stretched along its curve and beyond its end, and for a form with damping, through a
+sinusoid at the levels of that form.  The expected values come from the line, not from the deck:
+its curve with its straight continuation, the three parameters in closed form, or the curve with
+its dashpot.  Each program runs in a separate folder and process; a program that is not installed is
 named.
 """
 
@@ -38,22 +38,22 @@ from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import Floats
 
 LIMITS = {"tension": 0.01, "strain": 0.01, "EA": 0.01, "K_ap": 0.01, "H": 0.03}
-"""Greatest difference from what was promised, as a share of it. [1]"""
+"""Greatest allowed difference from the expected value, as a share of it. [1]"""
 
 _SHARES = np.array([0.05, 0.2, 0.5, 0.8, 1.0, 1.2])  # of the end of a curve
-_LEAST = 1e-3  # of the greatest tension, below which an error is a share of this
-_OF_MEAN = 0.05  # of a mean strain, as the amplitude of a cycle of a linear line
+_LEAST = 1e-3  # share of the greatest tension below which errors are relative to this share
+_OF_MEAN = 0.05  # amplitude of a cycle of a linear line, as a share of the mean strain
 _AT_REST = 0.1  # strain at which a linear line rests
 _IN_A_CYCLE = 200
-_SETTLED = 1e-3  # of a change, that is left when a cycle is read
+_SETTLED = 1e-3  # share of a change that remains when a cycle is read
 _MOST_CYCLES = 400
 _BEGINS = 3  # rests before the first one
-_GROWN = 3  # cycles until a sine has its amplitude
+_GROWN = 3  # cycles until a sinusoid has its full amplitude
 
 
 @dataclass(frozen=True)
 class ClientCheck:
-    """One number of a program beside the promised one; ``scale`` is what the error is of."""
+    """One number of a program beside the expected one; the error is relative to ``scale``."""
 
     program: str
     quantity: str
@@ -70,26 +70,26 @@ class ClientCheck:
 
     @property
     def is_kept(self) -> bool:
-        """Whether the program keeps what was promised."""
+        """Whether the result of the program agrees with the expected one."""
         return abs(self.error) <= LIMITS[self.quantity]
 
 
 def verify_deck(line: ExportLine, to: str, form: str, paths: Sequence[Path]) -> list[ClientCheck]:
-    """Run written files in the program that they are for.
+    """Run written files in their program.
 
     Parameters
     ----------
     line : ExportLine
-        Whose numbers are promised.
+        Line with the expected values.
     to, form : str
         Format and form.
     paths : sequence of pathlib.Path
-        What was written, the deck last.
+        Written files, the deck last.
 
     Returns
     -------
     checks : list of ClientCheck
-        Every number that was looked at.
+        Every number that was compared.
 
     Raises
     ------
@@ -112,7 +112,7 @@ def verify_deck(line: ExportLine, to: str, form: str, paths: Sequence[Path]) -> 
 
 
 def in_words(checks: Sequence[ClientCheck]) -> tuple[str, ...]:
-    """One sentence a quantity: how far the program is from what was promised.
+    """One sentence per quantity: difference of the program from the expected value.
 
     Examples
     --------
@@ -151,7 +151,7 @@ def _run(arguments: Sequence[str], folder: Path, what: str) -> str:
 
 @dataclass(frozen=True)
 class _Cycle:
-    """A sine that a form is made for, and the loop that is promised of it."""
+    """A sinusoid for which a form is made, and its expected loop."""
 
     mean: float
     amplitude: float
@@ -162,11 +162,11 @@ class _Cycle:
 
     @property
     def at(self) -> str:
-        """In words."""
+        """The levels in words."""
         return f"{self.frequency:.3g} Hz, strain {self.mean:.4g} +- {self.amplitude:.3g}"
 
     def checks(self, program: str, stiffness: float, energy: float) -> list[ClientCheck]:
-        """K_ap and H beside what is promised."""
+        """K_ap and H beside the expected ones."""
         rows = (
             ("K_ap", "N", self.stiffness, stiffness), ("H", "J/m", self.energy, energy),
         )  # fmt: skip
@@ -177,7 +177,7 @@ class _Cycle:
 
 
 def _cycle_of(line: ExportLine, form: str) -> _Cycle | None:
-    """The cycle of a form; None of a form without damping of its own."""
+    """The cycle of a form; None for a form without damping of its own."""
     if form == "syrope" and line.syrope is not None:
         return _cycle_on_a_working_curve(line.syrope, line)
     if form == "damped-table" and line.damping is not None and (of := straight_cycle(line)):
@@ -204,15 +204,15 @@ def _cycle_of(line: ExportLine, form: str) -> _Cycle | None:
     )  # fmt: skip
 
 
-_OF_GAP = 0.1  # to the greatest mean tension, above which the line is another one; a small cycle
+_OF_GAP = 0.1  # of the gap to the greatest mean tension, above which the line changes: small cycle
 
 
 def _cycle_on_a_working_curve(syrope: Syrope, line: ExportLine) -> _Cycle | None:
-    """A cycle whose slow tension stays below the greatest mean one; None where there is no room."""
+    """A cycle whose slow tension stays below the greatest mean; None where there is no room."""
     about, gap = syrope.about_mean, syrope.greatest_mean_tension - syrope.mean_tension
     frequency, part = working_frequency(syrope, line), line.viscoelasticity
     modulus = about.stiffness_at(frequency)
-    # of what the spring of EA_d does not take, in strain
+    # strain that the spring of EA_d does not take
     slow = abs(1 - modulus / about.fast_stiffness)
     series = about.static_stiffness / (1 - about.static_stiffness / about.fast_stiffness)
     amplitude = _OF_GAP * min(gap, syrope.mean_tension) / (slow * series)
@@ -232,7 +232,7 @@ def _cycles_to_settle(part: Viscoelasticity, frequency: float) -> int:
 
 
 def _loop(strain: Floats, tension: Floats) -> tuple[float, float]:
-    """Range of tension over that of strain, and the area, of one whole cycle. [N; J/m]."""
+    """Range of tension over range of strain, and area, of one complete cycle. [N; J/m]."""
     area = float(np.trapezoid(np.append(tension, tension[0]), np.append(strain, strain[0])))
     return float(np.ptp(tension) / np.ptp(strain)), area
 
@@ -301,10 +301,10 @@ json.dump({name: float(found[name]) for name in ("EA", "EAd", "EAd_Lm")}, open("
 
 
 def _deck_numbers(text: str) -> tuple[float, float, float]:
-    """Unstretched length of the line of a deck, height of its lower end; share of its upper end.
+    """Unstretched length of the line in a deck, height of its lower end, share of its upper end.
 
-    Of accelerations that grow along a line of N segments, that share (N + 1)/(3 N) of the tension
-    of the last segment, and the rest of that of the first, is the mean of all, without inertia.
+    For accelerations that grow along a line of N segments, the mean tension without inertia is the
+    share (N + 1)/(3 N) of that of the last segment, plus the rest of that of the first.
     """
     rows = [row.split() for row in text.split("\n")]
     anchor = next(row for row in rows if row[:2] == ["1", "Fixed"])
@@ -319,7 +319,7 @@ def _in_python(driver: str, folder: Path, deck: str, what: str, **job: object) -
     return json.loads((folder / "out.json").read_text())
 
 
-# strains at the ends of even steps [s], the first at the start; gives strain and tension at each
+# strains at the ends of equal steps [s], the first at the start; gives strain and tension at each
 _Stretch = Callable[[Floats, float], tuple[Floats, Floats]]
 
 
@@ -350,11 +350,11 @@ def _stretched(
     in_a_cycle: int = _IN_A_CYCLE,
     least_rest: float = 10.0,
 ) -> list[ClientCheck]:
-    """Rest at strains, then the cycle that the form is made for."""
+    """Rest at strains, then run the cycle of the form."""
     part = None if form in ("table", "damped-table", "syrope") else line.viscoelasticity
     strains, rest = np.array([0.5, 1.0]) * _AT_REST, least_rest
     if form == "syrope" and (syrope := line.syrope) is not None:
-        # from its working curve to the original one, and beyond that
+        # from its working curve to the original one, and beyond it
         line = replace(line, strain=syrope.strain, tension=syrope.tension)
         end = float(syrope.strain[-1])
         top = float(np.interp(syrope.greatest_mean_tension, syrope.tension, syrope.strain))
@@ -375,9 +375,9 @@ def _stretched(
     before = np.concatenate([strains[:1], strains[:-1]])
     rises = np.linspace(before, strains, n_rise, endpoint=False, axis=1)
     held = np.concatenate([rises, np.repeat(strains[:, None], n_rest, axis=1)], axis=1)
-    # from where the deck begins: OpenFAST has that strain in its slow spring
+    # from the start of the deck: OpenFAST has that strain in its slow spring
     first = np.full(_BEGINS * n_rest, strains[0])
-    # the driver of OpenFAST smooths what it is told over some steps: strain is what it had
+    # the OpenFAST driver smooths its input over some steps: take the strain that it applied
     had, found = (
         one[first.size + n_rise + 9 * n_rest // 10 :: n_rise + n_rest]
         for one in stretch(np.concatenate([first, held.ravel(), strains[-1:]]), step)
@@ -447,7 +447,7 @@ def _by_openfast(form: str) -> Callable[[ExportLine, Path, str], list[ClientChec
             (head,) = (place for place, row in enumerate(told) if row.split()[:1] == ["Time"])
             table = np.array([row.split() for row in told[head + 2 :] if row.strip()], dtype=float)
             names = told[head].lower().split()
-            # positions as the program has them: it smooths what it is told
+            # positions as applied: the program smooths its input
             place, top, bottom = (
                 np.interp(time[1:], table[:, 0], table[:, names.index(name)])
                 for name in ("point2pz", "fairten1", "anchten1")
@@ -531,7 +531,7 @@ def _by_raft(line: ExportLine, folder: Path, deck: str) -> list[ClientCheck]:
                    rise=(length * cycle.strain_amplitude * share).tolist())
     )  # fmt: skip
     promised = float(continued_tension(line, cycle.strain))
-    # of a test its middle between the turns, which are those of the curve
+    # for a test, the middle between the turns of the curve
     if line.damping is not None:
         promised = cycle.tension
     by_turns = (found[2, 0] - found[1, 0]) / (2 * cycle.strain_amplitude)
@@ -571,7 +571,7 @@ Layout
 _CABLE_LENGTH, _WEIGHTLESS = (
     10.0,
     "1.0e-4",
-)  # [m]; [N/m], so that the force of the end is that of all
+)  # [m]; [N/m], so that the force at the end is the total
 
 
 def _by_cable(line: ExportLine, folder: Path, deck: str) -> list[ClientCheck]:
@@ -603,7 +603,7 @@ def _by_cable(line: ExportLine, folder: Path, deck: str) -> list[ClientCheck]:
 
 
 def _strain_at(line: ExportLine, force: float) -> float:
-    """Strain at a tension, on the curve and the straight line beyond it."""
+    """Strain at a tension, on the curve and its straight continuation."""
     strain = np.linspace(0.0, 2 * float(line.strain[-1]), 20_001)
     return float(np.interp(force, continued_tension(line, strain), strain))
 

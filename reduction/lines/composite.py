@@ -1,23 +1,23 @@
-r"""Pieces of a tension-strain curve from many tests, and one rising curve from them.
+r"""Pieces of a tension-strain curve from many tests, and one rising curve through them.
 
-**What pieces of a tension-strain curve differ by, and how much of it their own errors explain**:
+**Difference between pieces of a tension-strain curve, and the part that their errors explain**:
 
 .. math:: d = \frac{T_1 - T_2}{\bar T}, \qquad
           u^2(d) = \frac{u_1^2 + u_2^2}{\bar T^2}
               + \sum_k \Bigl(\frac{c_{1k} T_2 - c_{2k} T_1}{\bar T^2}\Bigr)^2
 
 with the mean of both tensions, the random part u of each and the contribution c_k of each error
-that they share.  A gain of one load cell is in both and in no ratio: it explains no difference.
+that they share.  A gain of one load cell is in both and cancels: it explains no difference.
 
-**One monotone curve of tension against strain, from zero, out of many tests.** The curve y is the
-one that rises and is nearest to all pieces T_i:
+**One monotone curve of tension against strain, from zero, from many tests.** The curve y is the
+rising curve that is nearest to all pieces T_i:
 
 .. math:: \min_y \int \sum_i w_i(\varepsilon)\,(y - T_i)^2\,d\varepsilon, \quad
    y' \ge b\,\min_i T_i', \qquad w_i = \frac{h_i\,g_i}{u_i^2 + (s\,\bar T)^2}
 
-u_i is the uncertainty of a piece but for what all of them share, s the relative deviation between
-pieces of its kind where they overlap, h_i falls to zero towards the ends of a piece, and g_i hands
-over to pieces of a kind that goes before.  Without the constraint the answer is the weighted mean.
+u_i is the uncertainty of a piece without the part that all pieces share, s the relative deviation
+between pieces of its kind where they overlap.  h_i falls to zero towards the ends of a piece, and
+g_i where a kind of higher precedence takes over.  Without the constraint y is the weighted mean.
 
 References
 ----------
@@ -76,22 +76,22 @@ class CurvePiece:
     Parameters
     ----------
     name : str
-        Which test and specimen.
+        Test and specimen.
     kind : {"cyclic", "static", "first-loading"}
-        Mean of the cycles of a window, weights hung one after another, or the first rise.
+        Mean of the cycles of a window, loading by hung weights, or the first loading.
     branch : {"ascending", "descending", "mean"}
-        Of it; the mean is that of both at one strain.
+        Branch of the loop; "mean" is the mean of both branches at one strain.
     strain : ndarray, shape (n,)
-        Rising, above zero. [1]
+        Increasing, above zero. [1]
     tension : ndarray, shape (n,)
         Above zero. [N]
     random_standard_uncertainty : ndarray, shape (n,)
-        Of the tension, by what is of this piece alone: scatter of its cycles, readings; zero where
-        not known. [N]
+        Part of the uncertainty of the tension that is independent of all other pieces (scatter of
+        the cycles, readings); zero where not known. [N]
     component : tuple of Component, length n_components
-        Errors that the piece shares with others: of its load cell, its crosshead, its marks.
+        Errors that the piece shares with others: of its load cell, crosshead and marks.
     contribution : ndarray, shape (n_components, n)
-        What each of them adds to the tension, signed. [N]
+        Signed contribution of each shared error to the tension. [N]
     """
 
     name: str
@@ -105,11 +105,11 @@ class CurvePiece:
 
     @property
     def words(self) -> str:
-        """Which test, and which part of it."""
+        """Test, and part of it."""
         return f"{self.name} {_KIND_WORDS[self.kind]}"
 
     def __post_init__(self) -> None:
-        """Check that it is a curve, and make the arrays read-only."""
+        """Check that this is a curve, and make the arrays read-only."""
         as_same_shape(
             strain=self.strain, tension=self.tension, uncertainty=self.random_standard_uncertainty
         )
@@ -140,7 +140,7 @@ class CurvePiece:
         as_finite(f"contributions to {self.name}", self.contribution)
 
     def shared_at(self, strain: Floats) -> Contributions:
-        """Contributions to ``tension`` [N] at strains [1]; beyond an end those of the end."""
+        """Contributions to ``tension`` [N] at strains [1]; constant beyond the ends."""
         rows = [np.interp(strain, self.strain, row) for row in self.contribution]
         table = np.array(rows).reshape(len(self.component), strain.size)
         return Contributions(self.component, {"tension": table})
@@ -163,14 +163,13 @@ def pieces_of_branches(
     kind: Literal["cyclic", "first-loading"] = "cyclic",
     shared: Contributions | None = None,
 ) -> tuple[CurvePiece, ...]:
-    """Tension of both branches on one grid of strain, as an archive holds it, as pieces.
+    """Tension of both branches on one grid of strain, as stored in an archive, as pieces.
 
     Notes
     -----
-    The mean branch runs through the middle of the loop ([1]_, Figure 21): it is neither way of
-    the loop, and has no tangent modulus that was measured.  What both branches share is in their
-    mean as it is, by its sign; what scatters is less by the root of 2.  Points that are slack are
-    left out.
+    The mean branch runs through the middle of the loop ([1]_, Figure 21).  It is neither branch of
+    the loop, so no tangent modulus was measured for it.  Shared errors enter the mean with their
+    sign; the scatter of the mean is smaller by the root of 2.  Slack points are left out.
 
     Examples
     --------
@@ -226,15 +225,16 @@ class CompositeRule:
     Parameters
     ----------
     precedence : tuple of str
-        Kinds, the one that counts first where it exists; kinds that are not named are not used.
+        Kinds, highest precedence first; kinds that are not named are not used.
     taper : float
         Share of a piece, at each end, over which its weight falls to zero; 0.5 makes the weight
         a triangle over the whole piece.
     least_slope : float
-        Share b of the least slope of the pieces there, below which that of the curve may not
-        fall: 0 lets it run level where pieces fall, 1 keeps every slope and moves levels more.
+        Share b of the least slope of the pieces there: the slope of the curve may not fall below
+        it.  0 lets the curve run level where pieces fall; 1 keeps every slope and moves levels
+        more.
     n_points : int
-        Of the grid over all pieces; ends of pieces are added.
+        Number of points of the grid over all pieces; ends of pieces are added.
     """
 
     precedence: tuple[PieceKind, ...] = _KINDS
@@ -269,12 +269,12 @@ class CompositeRule:
 
 
 def mean_piece(ascending: CurvePiece, descending: CurvePiece) -> CurvePiece:
-    """Mean of both branches of a static test, where both were read.
+    """Mean of both branches of a static test, where both were measured.
 
     Notes
     -----
-    Straight lines between the rows.  What both branches share is in their mean as it is.  Neither
-    of the loop, as that of `pieces_of_branches`.
+    Straight lines between the rows.  Shared errors enter the mean with their sign.  It is neither
+    branch of the loop, as in `pieces_of_branches`.
 
     Examples
     --------
@@ -314,14 +314,14 @@ def piece_of_pull(
     name: str,
     shared: Contributions | None = None,
 ) -> CurvePiece:
-    r"""Slow pull as a piece: strain was fitted over tension, the uncertainty is turned over.
+    r"""Slow pull as a piece: strain was fitted over tension, so its uncertainty is converted.
 
     .. math:: u(T) = u(\varepsilon) \, \frac{d T}{d \varepsilon}, \qquad
         c_k(T) = -c_k(\varepsilon) \, \frac{d T}{d \varepsilon}
 
     Notes
     -----
-    A slow pull ([2]_) is a static test that only rises; the loads of [1]_, sec. 4.8, Table 4 were
+    A slow pull ([2]_) is a static test that only loads; in [1]_, sec. 4.8, Table 4, weights were
     hung.
 
     Examples
@@ -363,9 +363,9 @@ def piece_of_steps(
 
     Notes
     -----
-    The relative uncertainty is that of the secant modulus E_s: of the weight and of the reading
-    of the length.  The diameter is in the modulus and in no tension.  Table 4 of [1]_ has a row
-    of each kind that is left out.
+    The relative uncertainty is that of the secant modulus E_s, from the weight and the reading
+    of the length.  The diameter enters the modulus but not the tension.  Table 4 of [1]_ has a
+    row of each kind that is left out.
 
     Examples
     --------
@@ -395,16 +395,16 @@ def piece_of_steps(
 def _between_pieces(
     pieces: Sequence[CurvePiece], tension: Floats, variance: Floats, rows: Floats, known: Bools
 ) -> dict[PieceKind, float]:
-    """Relative deviation between pieces of each kind, by pairs, less what their errors explain.
+    """Relative deviation between pieces of each kind, by pairs, less the part due to their errors.
 
     Notes
     -----
-    First order in the errors (module).  Never below zero: differences that the errors explain
-    leave nothing ([1]_, Figure 35 shows some that they do not).
+    First order in the errors (see the module).  Never below zero: it is zero where the errors
+    explain the differences ([1]_, Figure 35 shows some that they do not).
 
     Examples
     --------
-    Two pieces 10 % apart under one cell, and under two cells of which each may be off by 7 %:
+    Two pieces 10 % apart, with one cell, and with two cells that may each be off by 7 %:
 
     >>> at = np.array([0.5, 1.0])
     >>> load = np.array([95 * at, 105 * at])
@@ -429,7 +429,7 @@ def _between_pieces(
             own = (variance[first, both] + variance[second, both]) / level**2
             moved = (rows[:, first, both] * other - rows[:, second, both] * load) / level**2
             own += (moved**2).sum(axis=0)
-            # two draws of one deviation are apart by twice its variance
+            # two draws of one deviation differ with twice its variance
             found[one.kind] += float(((apart - own) / 2).sum())
             count[one.kind] += int(np.count_nonzero(both))
     return {
@@ -439,18 +439,18 @@ def _between_pieces(
 
 
 def _variance_apart(pieces: Sequence[CurvePiece], strain: Floats, tension: Floats) -> Floats:
-    """Variance of each piece by shared errors, without the part that all pieces have alike.
+    """Variance of each piece by shared errors, without the part that all pieces have in common.
 
     Notes
     -----
-    An error that is in all pieces moves their mean by as much, whatever their weights, and says
-    nothing of which of them to trust.  Of each error what all of them have is the share of the
-    tension that is nearest to zero, and none where the signs differ ([3]_, F.1.2.3).  Beyond its
-    ends a piece has the share of its end, so that no weight jumps where a piece begins.
+    An error in all pieces moves their mean by the same amount, whatever their weights, so it does
+    not tell which of them to trust.  The common part of each error is the share of the tension
+    nearest to zero, and none where the signs differ ([3]_, F.1.2.3).  Beyond its ends a piece keeps
+    the share at its end, so that no weight jumps where a piece begins.
 
     Examples
     --------
-    One of two cells is good to 5 %, a third error of 3 % is in both:
+    One of two cells is accurate to 5 %; a third error of 3 % is in both:
 
     >>> from reduction.record.contributions import Component
     >>> at, both = np.array([0.5, 1.0]), Component("position_gain", "crosshead")
@@ -472,12 +472,12 @@ def _variance_apart(pieces: Sequence[CurvePiece], strain: Floats, tension: Float
 def _pulls_within_loops(
     pieces: Sequence[CurvePiece], strain: Floats, tension: Floats, known: Bools
 ) -> Floats:
-    """Relative difference of first loadings to the kinds before them, over strain.
+    """Relative difference between first loadings and kinds of higher precedence, over strain.
 
     Notes
     -----
-    Another state of the material, not another reading of it: nothing is taken off ([1]_, Figure
-    35).
+    A first loading is another state of the material, not another reading of the same state, so
+    nothing is subtracted ([1]_, Figure 35).
 
     Examples
     --------
@@ -493,7 +493,7 @@ def _pulls_within_loops(
     both = known[own].any(axis=0) & known[before].any(axis=0)
     if not both.any():
         return np.full(strain.size, np.nan)
-    # tension is zero where a piece is not
+    # tension is zero outside a piece
     first, other = (
         tension[rows][:, both].sum(axis=0) / known[rows][:, both].sum(axis=0)
         for rows in (own, before)
@@ -501,26 +501,26 @@ def _pulls_within_loops(
     return np.asarray(np.interp(strain, strain[both], 2 * np.abs(first - other) / (first + other)))
 
 
-# share of a range, from its end, after which a kind that goes before is alone
+# share of a range, from its end, after which the kind of higher precedence is used alone
 _HAND_OVER = 0.1
 
-# weight at the very end of a piece: it decides nothing where another piece is, all where none is
+# weight at the very end of a piece: negligible beside another piece, all the weight where alone
 _LEAST_WEIGHT = 1e-18
 
-# no tension is known better than this share of it: an uncertainty of zero may not decide alone
+# no tension is known better than this share of it: an uncertainty of zero must not dominate
 _LEAST_UNCERTAINTY = 1e-3
 
-# share of the weight below which a piece has no say
+# share of the weight below which a piece is ignored
 _NO_SAY = 0.01
 
-# least slope, over the mean one, where pieces themselves fall: the curve has to rise
+# least slope over the mean slope where the pieces themselves fall, since the curve has to rise
 _LEAST_SLOPE = 1e-6
 
 
 @dataclass(frozen=True)
 @read_only_arrays
 class _Blend:
-    """Pieces as one curve on a grid; arrays have shape (n,), of intervals (n - 1,)."""
+    """Pieces as one curve on a grid; arrays have shape (n,), those of intervals (n - 1,)."""
 
     strain: Floats
     tension: Floats
@@ -540,20 +540,20 @@ class _Blend:
 def _blend_pieces(
     pieces: Sequence[CurvePiece], *, taper: float, least_slope: float, n_points: int
 ) -> _Blend:
-    """Weighted mean of pieces, and the nearest curve that rises.
+    """Weighted mean of pieces, and the nearest rising curve.
 
     Notes
     -----
-    Isotonic regression ([4]_) of the mean less the integral of the least slope, with the weight
-    of all pieces there, bounded below by zero tension: the least squares solution.  Where one
-    piece is alone its slope is above a share of itself, and nothing is moved.
+    Isotonic regression ([4]_) of the mean less the integral of the least slope, weighted with all
+    pieces there and bounded below by zero tension: the least squares solution.  Where a piece is
+    alone, its slope exceeds a share of itself, and nothing is moved.
 
-    A first loading is another state than the loops that follow it.  Behind another kind it has no
-    say where that one reaches, and what it differs by from it there is in its uncertainty beyond,
-    a straight line between the strains where that is known.  Other kinds hand over inside.
+    A first loading is a different state from the loops that follow it.  It is not used where a kind
+    of higher precedence reaches.  Its difference from that kind is added to its uncertainty beyond,
+    interpolated linearly between the strains where it is known.  Other kinds fade out inside.
 
-    What pieces share is in their mean by its sign, and has no say in how they are weighted as far
-    as all of them have it; the curve that rises has the same share of it.
+    Shared errors enter the mean with their sign.  The part that all pieces have in common does not
+    affect the weights; the rising curve has the same share of it.
 
     Examples
     --------
@@ -571,7 +571,7 @@ def _blend_pieces(
     between = _between_pieces(pieces, tension, variance, rows, fade > 0)
     beside = _pulls_within_loops(pieces, strain, tension, fade > 0)
     is_first = np.array([one.kind == "first-loading" for one in pieces])
-    # of the kind of each piece: rises from slack differ by far more than cycles do
+    # by kind of each piece: rises from slack differ by far more than cycles do
     own_kind = np.nan_to_num([between[one.kind] for one in pieces])[:, None]
     differs = np.hypot(own_kind, is_first[:, None] * np.nan_to_num(beside)) * simple
     least = (_LEAST_UNCERTAINTY * simple) ** 2
@@ -603,10 +603,10 @@ def _blend_pieces(
 
 
 def _grid(pieces: Sequence[CurvePiece], n_points: int) -> tuple[Floats, Bools]:
-    """Strains that a piece reaches, and which of the intervals between them one covers."""
+    """Strains of the grid, and for each piece the intervals that it covers."""
     ends = np.array([(one.strain[0], one.strain[-1]) for one in pieces])
     fine = np.linspace(ends.min(), ends.max(), n_points)
-    # a node nearer to an end than this is that end
+    # a node closer than this to an end is moved to that end
     near = 0.05 * (fine[1] - fine[0])
     edges = np.unique(ends)
     edges = edges[np.concatenate([[True], np.diff(edges) > near])]
@@ -627,7 +627,7 @@ def _on_grid(
     over, taken = np.zeros((2, strain.size))
     kind = pieces[0].kind
     for row, one in enumerate(pieces):
-        if one.kind != kind:  # what goes before has had its say: the rest is left over
+        if one.kind != kind:  # kinds of higher precedence are done: only the rest is left over
             over, taken, kind = np.maximum(over, taken), np.zeros(strain.size), one.kind
         inside = (strain >= one.strain[0]) & (strain <= one.strain[-1])
         at = strain[inside]
@@ -652,7 +652,7 @@ def _on_grid(
 
 
 def _widths(strain: Floats, is_covered: Bools) -> Floats:
-    """Width of strain that each node stands for; none of a gap."""
+    """Width of strain that each node stands for; gaps have none."""
     steps = np.where(is_covered, np.diff(strain), 0.0)
     widths = (np.concatenate([[0.0], steps]) + np.concatenate([steps, [0.0]])) / 2
     return np.asarray(np.maximum(widths, 1e-12 * strain[-1]))
@@ -666,40 +666,40 @@ def _least_slopes(
     is_covered: Bools,
     least_slope: float,
 ) -> Floats:
-    """Slope below which the curve may not fall in each interval: of the softest piece there."""
+    """Least slope allowed for the curve in each interval: that of the softest piece there."""
     slopes = np.diff(tension, axis=1) / np.diff(strain)
     of_pieces = np.where(share > _NO_SAY, slopes, np.inf).min(axis=0)
-    # what a piece says outside its range is nothing: a gap has a chord of those beside it
+    # a piece has no slope outside its range; a gap takes the chord of the pieces beside it
     told = np.flatnonzero(is_covered & np.isfinite(of_pieces))
     place = np.searchsorted(told, np.arange(is_covered.size))
     chords = np.where(share > _NO_SAY, _chords(strain, tension)[:, None], np.inf).min(axis=0)
     beside = [chords[told[np.clip(place - back, 0, told.size - 1)]] for back in (1, 0)]
-    softest = np.minimum(*beside)  # infinite where no piece has a chord: it bounds nothing there
+    softest = np.minimum(*beside)  # infinite where no piece has a chord: no bound there
     least = least_slope * np.where(np.isfinite(softest), softest, 0.0)
     least[told] = least_slope * of_pieces[told]
     return np.asarray(np.maximum(least, _LEAST_SLOPE * mean.max() / strain[-1]))
 
 
 def _chords(strain: Floats, tension: Floats) -> Floats:
-    """Slope of each piece from its first node to its last one."""
+    """Slope of each piece between its first and last nodes."""
     reached = tension > 0
     first = reached.argmax(axis=1)
     last = strain.size - 1 - reached[:, ::-1].argmax(axis=1)
     row = np.arange(len(tension))
     apart = strain[last] - strain[first]
-    # a piece between two nodes of the grid has no chord there
+    # a piece between two neighbouring grid nodes has no chord
     risen = tension[row, last] - tension[row, first]
     return np.asarray(np.divide(risen, apart, out=np.full(row.size, np.inf), where=apart > 0))
 
 
 def _rising(strain: Floats, mean: Floats, weight: Floats, least: Floats) -> Floats:
-    """Nearest curve whose slope is nowhere below the least one, and whose tension is above zero."""
+    """Nearest curve whose slope is at least the least one, and whose tension is above zero."""
     given = np.concatenate([[0.0], np.cumsum(least * np.diff(strain))])
     found = scipy.optimize.isotonic_regression(mean - given, weights=weight / weight.max())
     rest = np.asarray(found.x, dtype=np.float64)
     bound = _LEAST_SLOPE * mean.max() * strain[0] / strain[-1]
     rising = np.maximum(rest, bound) + given
-    # where nothing had to move, the mean itself, not its copy by way of a difference
+    # where nothing was moved, use the mean itself, not its copy with rounding from a difference
     moved = np.abs(rising - mean) > 1e-12 * mean.max()
     return np.where(moved, rising, mean)
 
@@ -712,11 +712,11 @@ _LITTLE = 0.03
 
 
 def _quality_warning(blend: _Blend) -> tuple[str, Bools]:
-    """Where the curve is not among its pieces by its own uncertainty, in words and by node.
+    """Where the curve deviates from its pieces beyond its uncertainty, in words and by node.
 
     Notes
     -----
-    What all pieces share moves curve and pieces alike, and is no excuse ([1]_, Figure 35).
+    Errors that all pieces share move curve and pieces alike, and are left out ([1]_, Figure 35).
 
     Examples
     --------
@@ -728,7 +728,7 @@ def _quality_warning(blend: _Blend) -> tuple[str, Bools]:
     >>> print(_quality_warning(blend)[0][:42])
     the curve is up to 2.24 standard uncertain
     """
-    # near slack a little strain is any share of the tension
+    # near slack, a small difference in strain can be any share of the tension
     told = blend.farthest > _LITTLE * blend.tension[-1]
     share = told * blend.farthest / np.sqrt(blend.variance_apart + _MOVED * blend.tension**2)
     worst = int(np.argmax(share))
@@ -745,11 +745,11 @@ def _quality_warning(blend: _Blend) -> tuple[str, Bools]:
 def _notes_of(
     pieces: Sequence[CurvePiece], rule: CompositeRule, blend: _Blend, moved: Bools
 ) -> tuple[str, ...]:
-    """Rule, range, joins, gaps, what is between the pieces, and the greatest change.
+    """Rule, range, joins, gaps, deviation between the pieces, and the greatest change.
 
     Notes
     -----
-    Shares of tension, since pieces of rubber differ by a share of it ([1]_, sec. 4.8).
+    Given as shares of tension, since pieces of rubber differ by a share ([1]_, sec. 4.8).
 
     Examples
     --------
@@ -792,7 +792,7 @@ def _notes_of(
             f"{np.sqrt(np.mean(change**2)):.4g} N rms, most by {change[worst]:+.4g} N "
             f"({share[worst]:+.1%}) at strain {strain[worst]:.4g}"
         )
-        # of all tension: near slack a share says nothing
+        # over all nodes: near slack a local share means nothing
         off = float(np.sqrt(np.sum(change**2) / np.sum(blend.tension**2)))
         apart = next(iter(between.values()), np.inf)
         if off > apart:
@@ -823,33 +823,33 @@ class CompositeCurve:
     strain, tension : ndarray, shape (n,)
         [1], [N]
     standard_uncertainty : ndarray, shape (n,)
-        Both parts that follow, together. [N]
+        Random and shared parts together. [N]
     random_standard_uncertainty : ndarray, shape (n,)
-        Of the pieces by themselves, of their disagreement, and of what making them rise has moved.
+        From the pieces themselves, their disagreement, and the change made so that the curve rises.
         [N]
     component : tuple of Component, length n_components
         Errors that pieces share with each other, and with other curves.
     contribution : ndarray, shape (n_components, n)
-        What each of them adds to the tension, signed. [N]
+        Signed contribution of each shared error to the tension. [N]
     piece : ndarray of int, shape (n,)
         Index of the piece with the greatest weight; -1 where there is none.
     is_join, is_gap, is_moved : ndarray of bool, shape (n - 1,)
-        Of each interval: several pieces contribute; no piece reaches; the curve is not the
-        mean of the pieces, since that falls or is too soft nearby.
+        For each interval: several pieces contribute; no piece reaches; the curve is not the
+        mean of the pieces, since the mean falls or is too soft nearby.
     monotone_change : ndarray, shape (n,)
-        What making it rise has added to the weighted mean of the pieces; NaN without one. [N]
+        Change of the weighted mean of the pieces that makes it rise; NaN without pieces. [N]
     between_pieces : float
-        Relative deviation between pieces where they overlap, of the first kind of the rule that
-        has two; NaN where none has. [1]
+        Relative deviation between pieces where they overlap, for the first kind of the rule with
+        two such pieces; NaN where there is none. [1]
     piece_names, piece_words : tuple of str
-        By index: its test, and its test with its kind.
+        For each piece, its test, and its test with its kind.
     pieces : tuple of CurvePiece
-        By the same index: what the curve is made of.
+        With the same index: pieces that the curve is made of.
     is_doubtful : ndarray of bool, shape (n,)
-        Of each node: the curve is in doubt there.
+        Whether the curve is in doubt at each node.
     doubt : str
-        Where the curve is farther from a piece that has a say than twice its uncertainty and 3 % of
-        the greatest tension, and how far; else empty.
+        Where, and by how much, the curve differs from a piece in use by more than twice its
+        uncertainty and 3 % of the greatest tension; else empty.
     notes : tuple of str
         Rule, range, joins, gaps, and the greatest change.
     """
@@ -875,7 +875,7 @@ class CompositeCurve:
 
     @property
     def shared_standard_uncertainty(self) -> Floats:
-        """Of the tension by what is shared with others, all errors together. [N]."""
+        """Uncertainty of the tension from errors shared with others, all together. [N]."""
         return np.asarray(np.sqrt(np.sum(self.contribution**2, axis=0)))
 
     def tension_at(self, strain: ArrayLike) -> Floats:
@@ -902,23 +902,23 @@ def _composite_curve(
 
     Notes
     -----
-    *Overlap.*  Pieces of one kind are blended.  Their own uncertainties are far smaller than what
-    is between them (another state of the rubber), so s decides, and it is one number of a
+    *Overlap.*  Pieces of one kind are blended.  Their own uncertainties are far smaller than the
+    deviation between them (another state of the rubber), so s dominates.  It is one number per
     kind: the weights are continuous, and so is the mean.
 
-    *Monotony.*  Isotonic regression ([4]_) with the weight of all pieces there, of the mean less
-    the integral of the least slope: the curve is nowhere softer than a share of the softest
-    piece there, and where one piece is alone it is that piece.
+    *Monotony.*  Isotonic regression ([4]_) of the mean less the integral of the least slope,
+    weighted with all pieces there: the curve is nowhere softer than a share of the softest
+    piece there, and where one piece is alone the curve is that piece.
 
-    *To zero.*  A straight line from 0, 0 to the first node; the same over a gap.  If the
-    curvature keeps its sign there, the curve lies between that line and the tangents at its
-    ends: a third of that triangle's height squared is in the variance at the middle node.
+    *To zero.*  A straight line from 0, 0 to the first node, as over a gap.  If the curvature
+    keeps its sign there, the curve lies between that line and the tangents at its ends: a third
+    of the squared height of that triangle is in the variance at the middle node.
 
     *Uncertainty.*  That of a mixture: the mean variance of the pieces, with the greater of their
     variance there and (s T)^2, and the square of the change.  It does not fall with the number
-    of pieces, since they are not draws of one state ([1]_, Figure 35).  What pieces share (a load
-    cell) is averaged by its sign, error by error, and added as squares in the end; s is judged
-    without it.
+    of pieces, since they are not draws of one state ([1]_, Figure 35).  Errors that pieces share
+    (a load cell) are averaged with their sign, error by error, and their squares are added at the
+    end; s is found without them.
 
     Examples
     --------
@@ -987,10 +987,10 @@ def _composite_curve(
 
 
 def _rise_warning(strain: Floats, tension: Floats, variance: Floats, gaps: Integers) -> Floats:
-    """Variance in the middle of each gap: of its ends, and of what curvature may do."""
+    """Variance in the middle of each gap: from its ends, and from a possible curvature."""
     steps = np.diff(strain)
     slopes = np.diff(tension) / steps
-    # tangents from the nodes beyond each end; before the first gap there is none
+    # tangents from the nodes beyond each end; there is none before the first gap
     last = strain.size - 1
     after = np.minimum(gaps + 1 + _TANGENT_NODES, last)
     before = np.maximum(gaps - _TANGENT_NODES, 1)
@@ -998,13 +998,13 @@ def _rise_warning(strain: Floats, tension: Floats, variance: Floats, gaps: Integ
         np.abs(slopes[gaps] - _slopes(strain, tension, gaps + 1, after)),
         np.abs(slopes[gaps] - _slopes(strain, tension, before, gaps)),
     )
-    # above the lower end and below the upper one, whatever the tangents say
+    # above the lower end and below the upper one, whatever the tangents give
     height = np.nan_to_num(np.minimum(height, slopes[gaps])) * steps[gaps] / 2
     return (variance[gaps] + variance[gaps + 1]) / 2 + height**2 / 3
 
 
 def _slopes(strain: Floats, tension: Floats, first: Integers, last: Integers) -> Floats:
-    """Slope between pairs of nodes; NaN where they are one."""
+    """Slope between pairs of nodes; NaN where both are the same node."""
     apart = np.where(last > first, strain[last] - strain[first], np.nan)
     return (tension[last] - tension[first]) / apart
 
@@ -1016,25 +1016,25 @@ class PieceSource:
     Parameters
     ----------
     name : str
-        Of the line or tether.
+        Name of the line or tether.
     branch : {"ascending", "descending", "mean"}
-        Of the cycles.
+        Branch of the cycles.
     pieces : tuple of CurvePiece
         In the order of the tests. [SI]
     model : StrainModel, optional
-        How its length follows from strain and tension, where that is known.
+        Law of its length over strain and tension, where known.
     diameter, rated_break_strength : float
         NaN where not stated. [m], [N]
     linear_density, wet_linear_density : float
-        In air, and less the displaced water; NaN where not stated. [kg m-1]
+        In air and in water; NaN where not stated. [kg m-1]
     sources : tuple of str
-        Where the pieces are from, and what else is behind them.
+        Sources of the pieces, and other data behind them.
     piece_sources : tuple of str
-        Of each piece, one of ``sources``; empty where they are not told apart.
+        One of ``sources`` for each piece; empty where they are not known by piece.
     notes : tuple of str
-        What was left out, and what else to know.
+        Parts that were left out, and other remarks.
     is_synthetic : bool
-        Nothing was tested: the numbers were made.
+        Nothing was tested: the numbers are synthetic.
     """
 
     name: str
@@ -1052,28 +1052,28 @@ class PieceSource:
 
 
 def used_of(source: PieceSource, curve: CompositeCurve) -> PieceSource:
-    """What of a source stands behind a curve: sources of pieces that are not in it are left out.
+    """Source of a curve: without the sources of pieces that are not in the curve.
 
     Parameters
     ----------
     source : PieceSource
-        Of all pieces.
+        Source of all pieces.
     curve : CompositeCurve
-        Of some of them.
+        Curve of some of these pieces.
 
     Returns
     -------
     source : PieceSource
-        With the sources of those, and a note that names the other tests.
+        With the sources of those pieces, and a note that names the other tests.
 
     Raises
     ------
     ValueError
-        If sources of pieces are told, and not of each.
+        If sources are given for some pieces, but not for each.
 
     Notes
     -----
-    A rule leaves out kinds: a test with none of those that it names is no source of the curve.
+    A rule leaves out kinds: a test without a kind that the rule names is no source of the curve.
 
     References
     ----------
@@ -1112,7 +1112,7 @@ def curve_of_piece(piece: CurvePiece) -> CompositeCurve:
 
 
 def tests_of_curve(curve: CompositeCurve) -> tuple[LoadedTest, ...]:
-    """Each piece of a curve as a line of its own, 1 m long at zero tension."""
+    """Each piece of a curve as a separate line, 1 m long at zero tension."""
     found = []
     for piece in curve.pieces:
         own = curve_of_piece(piece)
@@ -1138,19 +1138,19 @@ def compose(source: PieceSource, rule: CompositeRule) -> CompositeCurve:
     Parameters
     ----------
     source : PieceSource
-        Of one line or tether.
+        Pieces of one line or tether.
     rule : CompositeRule
-        Which kind goes before which.
+        Precedence of kinds.
 
     Returns
     -------
     curve : CompositeCurve
-        From zero. [SI]
+        Begins at zero. [SI]
 
     Raises
     ------
     DataError
-        If no piece is of a kind that the rule names; names the source.
+        If no piece is of a kind that the rule names; the message names the source.
 
     Notes
     -----

@@ -4,12 +4,12 @@ r"""EA of a cycle of tension, from the tests that cover it.
     EA = \frac{\sum_i EA_i / d_i^2}{\sum_i 1 / d_i^2}, \qquad
     d_i^2 = (\bar T_i - \bar T)^2 + (A_i - A)^2
 
-T_1 and T_2 are the ends of the loads that all tests which cover the cycle have in common, and d_i
-is how far the mean and the amplitude of test i are from those of the cycle [1]_.  The interval is
-from the least EA_i less its expanded uncertainty to the greatest one with it.
+T_1 and T_2 are the ends of the load range common to all tests that cover the cycle, and d_i is the
+distance of test i from the cycle in mean and amplitude [1]_.  The interval is from the least EA_i
+less its expanded uncertainty to the greatest EA_i plus it.
 
-A curve that joins tests in unlike states keeps the tension continuous, and has the stiffness of
-none of them where they hand over: its slope is not used.
+A curve that joins tests of different states keeps the tension continuous, but where it changes from
+one test to the next it has the stiffness of neither: its slope is not used.
 
 References
 ----------
@@ -31,7 +31,7 @@ from reduction.record.contributions import coverage_factor
 from reduction.record.measurement import Bools, Floats, Integers, read_only_arrays
 
 LEAST_COVER = 0.7
-"""Share of the loads of a cycle that a test has to reach for its EA to count. [1]"""
+"""Share of the loads of a cycle that a test has to reach for its EA to be used. [1]"""
 
 _ROUNDING = 1e-9
 
@@ -39,20 +39,20 @@ _ROUNDING = 1e-9
 @dataclass(frozen=True)
 @read_only_arrays
 class LoadedTest:
-    """Length of a line against its tension by one test alone; arrays have the shape (n,).
+    """Length of a line against its tension in one test; arrays have the shape (n,).
 
     Parameters
     ----------
     words : str
-        Which test, and which part of it.
+        Test, and part of it.
     kind : str
-        Of the piece.
+        Kind of the piece.
     length, tension : ndarray, shape (n,)
-        Both rising. [m], [N]
+        Both increasing. [m], [N]
     random_standard_uncertainty : ndarray, shape (n,)
-        Of the tension at one length. [N]
+        Random part for the tension at one length. [N]
     contribution : ndarray, shape (n_components, n)
-        What each error that tests share adds to the tension at one length, signed. [N]
+        Signed contribution of each shared error to the tension at one length. [N]
     low, high : float
         Loads between which it was tested. [N]
     """
@@ -70,7 +70,7 @@ class LoadedTest:
 @dataclass(frozen=True)
 @read_only_arrays
 class CycleStiffness:
-    """EA of cycles; arrays have the shape (n,) of the cycles or (n_tests, n), NaN where none is.
+    """EA of cycles; arrays have the shape (n,) or (n_tests, n) of the cycles, NaN without one.
 
     Parameters
     ----------
@@ -79,13 +79,13 @@ class CycleStiffness:
     least, greatest : ndarray, shape (n,)
         Ends of its interval: all tests with their expanded uncertainties, 95 %. [N]
     low, high : ndarray, shape (n,)
-        Loads that the tests have in common. [N]
+        Load range common to the tests. [N]
     nearest : ndarray of int, shape (n,)
-        Test that is nearest in mean and amplitude, of those that count; -1 where none does.
+        Test used that is nearest in mean and amplitude; -1 where none is used.
     covered : ndarray, shape (n_tests, n)
         Share of the cycle that each test reaches. [1]
     test_spring_constant, test_standard_uncertainty : ndarray, shape (n_tests, n)
-        Of each test that counts. [N]
+        EA of each test used. [N]
     """
 
     spring_constant: Floats
@@ -102,21 +102,21 @@ class CycleStiffness:
 def stiffness_of_cycles(
     tests: Sequence[LoadedTest], low: ArrayLike, high: ArrayLike, *, slack_length: float
 ) -> CycleStiffness:
-    r"""EA of cycles of tension by the tests that cover at least 70 % of each.
+    r"""EA of cycles of tension from the tests that cover at least 70 % of each.
 
     Parameters
     ----------
     tests : sequence of LoadedTest
-        Those of a kind that goes before stand first.
+        Kinds of higher precedence first.
     low, high : array_like, shape (n,)
         Valley and peak of each cycle. [N]
     slack_length : float
-        Over which strain is taken. [m]
+        Reference length of the strain. [m]
 
     Returns
     -------
     stiffness : CycleStiffness
-        EA with its interval, and of each test. [SI]
+        EA with its interval, in total and by test. [SI]
 
     Raises
     ------
@@ -125,9 +125,9 @@ def stiffness_of_cycles(
 
     Notes
     -----
-    Tests of one kind count together: where loops cover a cycle, static tests and first loadings,
-    which are slower or of another state, have no say.  The chord of a test is taken at its own
-    lengths: what its tension is wrong by at both ends moves its EA,
+    Tests of one kind are used together: where loops cover a cycle, static tests and first loadings,
+    which are slower or of another state, are not used.  The chord of a test is taken at its own
+    lengths: the errors of its tension at both ends change its EA,
 
     .. math:: u^2(EA_i) = \Bigl(\frac{EA_i}{T_2 - T_1}\Bigr)^2
         \Bigl(u_1^2 + u_2^2 + \sum_k (c_{k2} - c_{k1})^2\Bigr)
@@ -197,7 +197,7 @@ def stiffness_of_cycles(
 
 
 def _first_kind_that_covers(tests: Sequence[LoadedTest], is_enough: Bools) -> Bools:
-    """Tests that cover a cycle, of the first kind that has one, shape (n_tests, n)."""
+    """Tests that cover a cycle, of the first kind with such a test, shape (n_tests, n)."""
     is_used = np.zeros_like(is_enough)
     for kind in dict.fromkeys(one.kind for one in tests):
         own = np.array([one.kind == kind for one in tests])[:, None] & is_enough
@@ -212,7 +212,7 @@ def _between(values: Floats, test: LoadedTest, low: Floats, high: Floats) -> Flo
 
 
 def _distance(ends: Floats, valley: Floats, peak: Floats) -> Floats:
-    """How far tests are from cycles in mean and amplitude, shape (n_tests, n). [N]."""
+    """Distance of tests from cycles in mean and amplitude, shape (n_tests, n). [N]."""
     mean = (ends[:, 0] + ends[:, 1] - valley - peak) / 2
     amplitude = (ends[:, 1] - ends[:, 0] - peak + valley) / 2
     return np.asarray(np.maximum(np.hypot(mean, amplitude), _ROUNDING * (valley + peak)))

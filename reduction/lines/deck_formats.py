@@ -1,4 +1,4 @@
-"""Formats of export: the files that each one writes, and how close their curves are."""
+"""Export formats: the files of each format, and the accuracy of their curves."""
 
 from __future__ import annotations
 
@@ -60,8 +60,8 @@ def _abaqus_text(line: ExportLine) -> str:
 
     Notes
     -----
-    Stress is tension over the area at zero tension, of the nominal diameter.  The potential of
-    Marlow takes the data as they are; it needs the origin among them.
+    Stress is tension over the area of the nominal diameter at zero tension.  The Marlow potential
+    takes the data as they are; it needs the origin among them.
     """
     curve = thin_curve(line.strain, line.tension, most=ABAQUS_POINTS)
     diameter = line.needed("diameter")
@@ -84,7 +84,7 @@ def _abaqus_text(line: ExportLine) -> str:
 
 
 def _name(line: ExportLine) -> str:
-    """A label of Abaqus begins with a letter and has at most 80 signs."""
+    """A label of Abaqus begins with a letter and has at most 80 characters."""
     name = line.identifier.replace("-", "_")[:78]
     return name if name[0].isalpha() else f"M_{name}"
 
@@ -163,10 +163,10 @@ def _raft_text(line: ExportLine) -> str:
 
     Notes
     -----
-    RAFT takes from it the mean position and the motion in waves, so that its line is the straight
-    one through the turns of the cycle.  That has no tension at the strain e0, and is written as a
-    line of 1 + e0 times the length and K_ap (1 + e0): tension over length is the same, and so are
-    mass, volume and drag of the whole line.
+    RAFT computes the mean position and the motion in waves with it, so its line is the straight
+    line through the turns of the cycle.  That line has no tension at the strain e0, and is written
+    as a line of 1 + e0 times the length and K_ap (1 + e0): tension over length is the same, and so
+    are mass, volume and drag of the whole line.
     """
     cycle = straight_cycle(line)
     if cycle is None:
@@ -243,9 +243,9 @@ _FIRST, _MOST = 4, 48
 
 _SHORTEST = 1e-3
 
-_ENOUGH = 1e-3  # of the greatest tension
+_ENOUGH = 1e-3  # share of the greatest tension
 
-_ENOUGH_THERE, _FROM = 5e-3, 0.05  # of the tension, from a share of the greatest on
+_ENOUGH_THERE, _FROM = 5e-3, 0.05  # share of the local tension, at least this share of the greatest
 
 _LEAST_SLOPE = 1e-6
 
@@ -271,10 +271,10 @@ def _fit_smooth_curve(strain: Floats, tension: Floats) -> _SmoothCurve:
 
     Notes
     -----
-    The first pieces begin where a curve thinned to five points has them; then the piece with the
-    worst error is halved, again and again, but never below a thousandth of the strain. Worst is
-    what is most beyond a thousandth of the greatest tension, or 0.5 % of the tension there: strain
-    under a tension is to be kept to 1 %. Least squares on an even grid and on the points; the error
+    The first pieces begin at the points of the curve thinned to five points; then the piece with
+    the worst error is halved repeatedly, but not below a thousandth of the strain. Errors are
+    compared with a thousandth of the greatest tension, or 0.5 % of the local tension: the strain at
+    a tension should be right to 1 %. Least squares on a uniform grid and on the points; the error
     is the greatest one anywhere.
 
     Examples
@@ -298,7 +298,7 @@ def _fit_smooth_curve(strain: Floats, tension: Floats) -> _SmoothCurve:
         if bounds[piece + 1] - bounds[piece] <= 2 * _SHORTEST * end:
             piece = int(np.diff(bounds).argmax())
         knots = np.insert(knots, piece + 1, (bounds[piece] + bounds[piece + 1]) / 2)
-        # more knots among the same never fit worse, though one bend may stay the worst
+        # more knots never fit worse, but one bend may stay the worst
         best = _fitted(grid, wanted, knots, end, top)
         error, worst, place = _greatest_error(best, at, load)
     local = local_share(best(grid) - wanted, wanted, top)
@@ -312,12 +312,12 @@ def _greatest_error(
 ) -> tuple[float, float, float]:
     """Greatest difference from the straight lines between the points; the worst, and its strain.
 
-    The worst is over what is enough where it is.
+    The worst is taken relative to the tolerance at its place.
     """
     breaks = np.union1d(at, fitted.x)
     step = np.clip(np.searchsorted(at, breaks[:-1], "right") - 1, 0, at.size - 2)
     slope = (np.diff(load) / np.diff(at))[step]
-    # where the slopes are equal: a quadratic in the strain above the start of the piece
+    # at equal slopes: a quadratic in the strain above the start of the piece
     piece = np.clip(np.searchsorted(fitted.x, breaks[:-1], "right") - 1, 0, fitted.c.shape[1] - 1)
     cubic, square, linear = fitted.c[:3, piece]
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -337,7 +337,7 @@ def _greatest_error(
 def _fitted(
     grid: Floats, wanted: Floats, knots: Floats, end: float, top: float
 ) -> scipy.interpolate.PPoly:
-    """Integral of positive quadratic B-splines through 0 0, as pieces."""
+    """Integral of positive quadratic B-splines from 0 0, as pieces."""
     whole = np.concatenate([[0.0] * _DEGREE, knots, [end] * (_DEGREE + 1)])
     count = whole.size - _DEGREE - 1
     integrals = [
@@ -366,7 +366,7 @@ CABLE_POINTS = 100
 
 _GRAVITY = 9.80665
 
-_SMALL = 1e-4  # bending and torsion were not measured, and zero is singular
+_SMALL = 1e-4  # bending and torsion were not measured, and zero would be singular
 
 
 def _whoicable_text(line: ExportLine, *, form: WhoiCableForm = "expression") -> str:
@@ -388,7 +388,7 @@ def _whoicable_text(line: ExportLine, *, form: WhoiCableForm = "expression") -> 
         f"{smooth.end:.6g} and below zero a straight line goes on and nothing is known"
     ]
     if form == "table":
-        # Cable goes on with the last step of a table, which may be a bend
+        # Cable continues with the last step of a table, which may be a bend
         further = (1 + CONTINUED) * float(at[-1])
         beyond = float(continued_tension(line, further))
         pairs = [*zip(curve.strain, curve.tension, strict=True), (further, beyond)]
@@ -438,19 +438,19 @@ def _whoicable_text(line: ExportLine, *, form: WhoiCableForm = "expression") -> 
 def _with_straight_ends(curve: _SmoothCurve, beyond: float) -> tuple[Floats, Floats]:
     """Pieces with a straight one before the first, at its slope, and one after the last.
 
-    A cubic that goes on beyond its last point may fall, and Cable finds an equilibrium there;
-    ``beyond`` [N] is the slope of the line that is promised there, which the last cubic has not.
+    Beyond its last point a cubic may fall, and Cable finds an equilibrium there; ``beyond`` [N] is
+    the slope of the straight continuation, which the last cubic does not have.
     """
     linear = float(curve.coefficient[0, 1])
     top = float(np.polyval(curve.coefficient[-1, ::-1], curve.end - curve.start[-1]))
     below, above = [0.0, linear, 0.0, 0.0], [top, beyond, 0.0, 0.0]
     powers = np.vstack([below, curve.coefficient, above])
-    # what is before the first piece hangs on its start, strain zero
+    # the piece before the first one starts at the same place, strain zero
     return np.concatenate([[0.0], curve.start, [curve.end]]), powers
 
 
 def _expression(start: Floats, powers: Floats) -> str:
-    """Pieces chosen by ``?:``, each in Horner's form; ``e`` stands in every one of them."""
+    """Pieces selected by ``?:``, each in Horner's form with the variable ``e``."""
     text = ""
     for piece in range(len(powers) - 1, -1, -1):
         here = f"(e - {real_number(float(start[piece]))})"
@@ -477,10 +477,10 @@ _WrittenCurve = Literal["points", "pieces", "none"]
 class _MooringCode:
     """Format of a mooring code.
 
-    ``files`` writes a line, beside a stem for the names of further files, as text by name, "" for
-    the file that was asked for.  ``forms`` are what it can be told, the first where nothing is
-    said and "" where there is one alone; with each how the curve of the line stands in it:
-    ``most_points`` at most, cubic pieces, or not at all.
+    ``files`` writes a line; it takes a stem for the names of further files and returns text by
+    name, "" for the requested file.  ``forms`` are its options, the first the default, and "" if
+    there is only one; the value of each is the form of the curve in it: ``most_points`` at most,
+    cubic pieces, or no curve.
     """
 
     files: Callable[..., dict[str, str]]
@@ -520,7 +520,7 @@ _CODES: dict[str, _MooringCode] = {
 }
 
 FORMS = {name: tuple(form for form in code.forms if form) for name, code in _CODES.items()}
-"""What the format of a mooring code can be told, the first where nothing is said."""
+"""Options of the format of each mooring code, the first the default."""
 
 FORMATS = (*TABLES, *FORMS)
 
@@ -542,7 +542,7 @@ def export_line(
     said = {} if form is None else {"form": form}
     files = _CODES[to].files(line, _stem_beside(path), **said)
     beside = {path.with_name(name): text for name, text in files.items() if name}
-    # what is named is there before what names it
+    # a file is written before the file that names it
     for place, text in {**beside, path: files[""]}.items():
         write_text_atomically(place, text)
     return [*beside, path]
@@ -554,25 +554,25 @@ def export_table(table: ValueTable, to: str, path: Path, *, units: UnitSystem = 
     Parameters
     ----------
     table : ValueTable
-        What is written.
+        Table to write.
     to : str
-        The format.
+        Format.
     path : pathlib.Path
-        The file.
+        File.
     units : {"si", "us"}
-        netCDF is SI in any case.
+        netCDF is always SI.
 
     Returns
     -------
     paths : list of pathlib.Path
-        The file.
+        Written file.
 
     Raises
     ------
     SettingsError
         If the format is not one of them.
     ArchiveError
-        If the disk refuses.
+        If the file cannot be written.
     """
     if to == "netcdf":
         write_netcdf(table, path)
@@ -584,13 +584,13 @@ def export_table(table: ValueTable, to: str, path: Path, *, units: UnitSystem = 
 
 
 def _stem_beside(path: Path) -> str:
-    """How the names of the files beside one begin, other for every other file of a folder.
+    """Beginning of the names of the files beside one, unique among the files of a folder.
 
-    A name in a deck ends at a blank or at a sign of its grammar; where one is left out, or the file
-    does not end in ``.dat``, the name of the file is told apart by a digest of it.
+    A name in a deck ends at a blank or at a character of its grammar; where one is removed, or the
+    file does not end in ``.dat``, a digest of the file name is added.
     """
     stem = re.sub(r"[^A-Za-z0-9_]+", "_", path.stem).strip("_") or "line"
-    # `leg_table.dat` beside `leg.dat` would else find its own name taken
+    # else `leg_table.dat` beside `leg.dat` would find its own name taken
     if path.name == f"{stem}.dat" and not stem.endswith(_TAILS):
         return stem
     return f"{stem}_{sha256(path.name.encode()).hexdigest()[:_DIGITS]}"
@@ -612,7 +612,7 @@ _OF_ONE_STIFFNESS = ("static-dynamic", "load-dependent", "library")
 
 
 def closeness_of(line: ExportLine, to: str, form: str | None) -> tuple[str, ...]:
-    """What is said of the errors of a curve in a format."""
+    """Description of the errors of a curve in a format."""
     if to not in _CODES:
         return ()
     code = _CODES[to]

@@ -1,54 +1,54 @@
 """Decks in the grammar of MoorDyn: MoorDyn-C, MoorPy, OpenFAST.
 
 **MoorDyn: look-up table, static and dynamic stiffness, stiffness that grows with load, Syrope.**
-What MoorDyn 2.7 does with a file that is not to its liking, and what is done here about it:
+MoorDyn 2.7 has these limits and errors; each is handled here as stated:
 
-* a line end after the last row, or more than 30 rows, and it does not start: neither is written;
-* below the first and beyond the last row it keeps the tension: the first row is 0 0, the last one
-  lies beyond the curve, straight on;
-* a loop gives nonsense, and a table beside ``|EA_d`` is replaced by its last secant: neither is
-  possible here;
-* a Syrope line whose dynamic stiffness does not grow is divided by zero, and starts at another
-  tension: it grows by a millionth;
+* it does not start with a line end after the last row, or with more than 30 rows: neither is
+  written;
+* it keeps the tension below the first and beyond the last row: the first row is 0 0, and the last
+  one lies beyond the curve on its straight continuation;
+* a loop gives meaningless results, and a table beside ``|EA_d`` is replaced by its last secant:
+  neither can occur here;
+* a Syrope line whose dynamic stiffness does not grow causes a division by zero and starts at
+  another tension: the stiffness grows by a millionth;
 * a Syrope line without initial conditions ends in a segmentation fault: they are always written;
-* its own choice of a time step (CFL) takes the stiffness of a table as zero, and the line blows up:
-  the deck states a step, from the steepest part of the curve;
-* N = K_1 tau beside a table is far too much damping for cycles that are fast against tau, and
-  asks for steps of microseconds: a table has numerical damping, or the dashpot of one cycle;
-* it gives the tension of the middle of its last step: a cycle has too little hysteresis energy,
-  by half a step over the time by which strain follows tension; the step of a deck with damping is
-  that short, for 1 %;
-* without damping of the fast spring the second-order integration grows without bounds: a little is
-  written, and said to be numerical.
+* its own time step (CFL) takes the stiffness of a table as zero, and the line diverges: the deck
+  states a step from the steepest part of the curve;
+* N = K_1 tau beside a table is far too much damping for cycles that are fast relative to tau, and
+  requires steps of microseconds: a table has numerical damping, or the dashpot of one cycle;
+* it reports the tension at the middle of its last step: a cycle has too little hysteresis energy,
+  by half a step over the lag of strain behind tension; the step of a deck with damping is short
+  enough for 1 %;
+* without damping of the fast spring the second-order integration grows without bounds: a little
+  damping is written, and called numerical.
 
-**MoorPy: its deck with a table, and its library of line properties.** What MoorPy 1.3 does with a
-file that is not to its liking, and what is done here about it:
+**MoorPy: its deck with a table, and its library of line properties.** MoorPy 1.3 has these limits
+and errors; each is handled here as stated:
 
-* a file of the EA column is opened without its first and last sign, and only where the name holds
-  ``.txt``; anything else becomes 1,000 MN without a word: ``|name.txt|`` is written;
+* it opens a file named in the EA column without the first and last character of the name, and only
+  if the name contains ``.txt``; anything else silently becomes 1,000 MN: ``|name.txt|`` is written;
 * the table ends at a line with ``---``; without it, or with a line after it, reading fails;
-* the table is sought in the working folder: the header says so;
-* 1.2 has no line without EA, and so none with a table: the header says so;
+* the table is read from the working folder: the header says so;
+* version 1.2 has no line without EA, and so none with a table: the header says so;
 * the slope of the dynamic stiffness is ``EAD_LM`` in 1.3 and ``EAd_MBL_Lm`` in its own list of
   names: both are written;
-* a least or greatest diameter in the library ends in an error: none is written.
+* a least or greatest diameter in the library causes an error: none is written.
 
-**OpenFAST's MoorDyn module (MoorDyn-F): the grammar of MoorDyn, with other options.** What the
-`moordyn_driver` of OpenFAST 5.0 does with a file that is not to its liking, and what is done here
-about it:
+**OpenFAST's MoorDyn module (MoorDyn-F): the grammar of MoorDyn, with other options.** The
+`moordyn_driver` of OpenFAST 5.0 has these limits and errors; each is handled here as stated:
 
-* a table beside a damping below zero, which MoorDyn-C takes for a share of critical, ends it: the
+* a table beside a negative damping, which in MoorDyn-C is a share of critical, stops it: the
   damping is written as a number;
-* the name of a line type is cut at 20 signs and then not found, that of a table at 40: both are
-  shortened;
-* a stiffness that grows with load does not settle there: K_ap of one line was 104, 49.5 and 47.5 kN
+* the name of a line type is cut at 20 characters and then not found, that of a table at 40: both
+  are shortened;
+* a stiffness that grows with load does not settle: K_ap of one line was 104, 49.5 and 47.5 kN
   after 30, 80 and 90 cycles, where MoorDyn-C and the three parameters have 50. The law in its
-  source is the same and the cause was not found, so that the form is not written;
-* it starts a line with the whole strain in its slow spring, and a viscoelastic one relaxes from
-  there: the header says so;
-* it knows no Syrope: there is no such form.
+  source is the same and the cause was not found, so this form is not written;
+* it starts a line with the whole strain in its slow spring, from which a viscoelastic line
+  relaxes: the header says so;
+* it has no Syrope: there is no such form.
 
-The tests run it where a program `moordyn_driver` is on the path; it is no Python package.
+The tests run it where a program `moordyn_driver` is on the path; it is not a Python package.
 
 References
 ----------
@@ -94,13 +94,13 @@ _COURANT = 0.1
 
 _DEPTH = 100.0
 
-_OF_WAVE = 0.2  # of the way of a wave in 1/(2 pi) of a cycle, at most, of the line of a deck
+_OF_WAVE = 0.2  # greatest length of the line of a deck over the wave path in 1/(2 pi) of a cycle
 
 _SHORTEST_STEP, _LONGEST_STEP = 1e-4, 0.02
 
 _SHARE_OF_LAG = 0.02
-"""Of the time by which strain follows tension, as a step: MoorDyn gives the tension of the middle
-of its last step, and what is late by half of it has 1 % less hysteresis energy. [1]"""
+"""Time step as a share of the lag of strain behind tension: MoorDyn gives the tension of the middle
+of its last step, and a delay of half a step lowers the hysteresis energy by 1 %. [1]"""
 
 _COLUMNS = (
     "TypeName Diam Mass/m EA BA/-zeta EI Cd Ca CdAx CaAx",
@@ -109,10 +109,10 @@ _COLUMNS = (
 
 
 def deck_length(line: ExportLine) -> float:
-    """Of the line of a deck: its own where it has one. [m].
+    """Length of the line in a deck: its own length where it has one. [m].
 
-    Else so short that a wave is along it well within the measured cycle: of a soft line that is
-    moved fast, inertia would be part of what a run of the deck shows.
+    Else short enough for a wave to pass along it well within the measured cycle: in a soft line
+    that moves fast, inertia would otherwise affect the result of the deck.
     """
     if math.isfinite(line.unstretched_length):
         return line.unstretched_length
@@ -124,7 +124,7 @@ def deck_length(line: ExportLine) -> float:
 
 
 def segment_length(line: ExportLine) -> float:
-    """Length of a segment of the line of a deck. [m]."""
+    """Length of a segment of the line in a deck. [m]."""
     return deck_length(line) / _SEGMENTS
 
 
@@ -149,11 +149,11 @@ def _deck(
     conditions: tuple[str, ...] = (),
     program: str = "MoorDyn",
 ) -> str:
-    """A whole input file: one line between two points, with a strain that it may have."""
+    """A complete input file: one line between two points, with a strain that it can have."""
     length = deck_length(line)
     segments, step = _steps(line.needed("linear_density"), stiffness, damping, segment_length(line))
     step = min(step, max(_SHARE_OF_LAG * lag, _SHORTEST_STEP))
-    # the upper end stays under water however long the line is
+    # keeps the upper end under water, however long the line is
     depth = max(_DEPTH, 2 * length * (1 + strain))
     top = length * (1 + strain) - depth
     rule = "-" * 22
@@ -193,7 +193,7 @@ def _deck(
 
 
 def _steps(mass: float, stiffness: float, damping: float, apart: float) -> tuple[int, float]:
-    """Segments of the deck and a stable time step; one segment where five ask for a tiny one."""
+    """Segments of the deck and a stable time step; one segment where five need a tiny step."""
     step = _COURANT * apart * math.sqrt(mass / stiffness)
     if damping > 0:
         step = min(step, _COURANT * mass * apart**2 / damping)
@@ -207,10 +207,10 @@ OpenFastForm = Literal["table", "damped-table", "static-dynamic"]
 MoorDynForm = Literal[OpenFastForm, "load-dependent", "syrope"]
 
 TABLE_POINTS = 29
-"""Rows of a curve: MoorDyn takes 30, and one goes on beyond its end. [1]"""
+"""Rows of a curve: MoorDyn accepts 30, and one of them is beyond the end of the curve. [1]"""
 
 NUMERICAL_DAMPING = -1.0
-"""Internal damping where none was measured, as MoorDyn takes it: share of critical. [1]"""
+"""Internal damping where none was measured, in MoorDyn's form: share of critical. [1]"""
 
 _FAST_SHARE = 0.1
 
@@ -235,7 +235,7 @@ def _table_text(line: ExportLine, curve: ThinnedCurve) -> str:
 
 
 def _continued(line: ExportLine, curve: ThinnedCurve) -> ThinnedCurve:
-    """One row more, straight on: these programs keep the last tension beyond the last row."""
+    """One more row on a straight line: these programs keep the last tension beyond the last row."""
     further = float(f"{(1 + CONTINUED) * float(curve.strain[-1]):.10g}")
     beyond = float(continued_tension(line, further))
     return replace(
@@ -329,7 +329,7 @@ def moordyn_files(line: ExportLine, stem: str, *, form: MoorDynForm = "table") -
 
 
 def _stiffness_words(part: Viscoelasticity) -> tuple[str, ...]:
-    """What the numbers of the stiffness are."""
+    """Description of the stiffness values."""
     return (
         f"EA_s {plain_number(part.static_stiffness, 6)} N is K_0; EA_d "
         f"{plain_number(part.fast_stiffness, 6)} N is K_0 + "
@@ -343,11 +343,11 @@ def _stiffness_words(part: Viscoelasticity) -> tuple[str, ...]:
 
 
 def _running_words(part: Viscoelasticity) -> str:
-    """What a cycle has where the stiffness follows the running tension."""
+    """Values of a cycle where the stiffness follows the running tension."""
     if not math.isfinite(part.frequency):
         return "MoorDyn uses the running tension of the slow part as the mean"
     running, held = part.running_stiffness_at(part.frequency), part.stiffness_at(part.frequency)
-    # H = pi T_a^2 E'' / K_ap^2: a cycle of the same tension amplitude stretches less where stiffer
+    # H = pi T_a^2 E'' / K_ap^2: a cycle of the same tension amplitude strains less if stiffer
     energy = running.imag / held.imag * (abs(held) / abs(running)) ** 2
     return (
         "MoorDyn uses the running tension of the slow part as the mean: a small cycle at "
@@ -427,7 +427,7 @@ def _dashpot_of(line: ExportLine) -> CycleDamping:
     return line.damping
 
 
-_NO_GROWTH = 1e-6  # of the dynamic stiffness, over a curve: zero ends in no number
+_NO_GROWTH = 1e-6  # share of the dynamic stiffness, over a curve: zero growth gives NaN
 
 
 def _syrope_files(line: ExportLine, stem: str) -> dict[str, str]:
@@ -489,7 +489,7 @@ def _syrope_files(line: ExportLine, stem: str) -> dict[str, str]:
 
 
 def working_frequency(syrope: Syrope, line: ExportLine) -> float:
-    """Of the levels of a line; where it has none, that at which its dashpot takes most. [Hz]."""
+    """Frequency of the levels of a line, else that of greatest loss in its dashpot. [Hz]."""
     part = line.viscoelasticity
     if part is not None and math.isfinite(part.frequency):
         return part.frequency
@@ -497,7 +497,7 @@ def working_frequency(syrope: Syrope, line: ExportLine) -> float:
 
 
 def _working_words(syrope: Syrope, part: Viscoelasticity | None) -> str:
-    """What a cycle has on the working curve, whose slope takes the place of K_0."""
+    """Values of a cycle on the working curve, whose slope replaces K_0."""
     about = syrope.about_mean
     slope = f"slope of the working curve at the mean {plain_number(about.static_stiffness, 6)} N"
     if part is None or not math.isfinite(part.frequency):
@@ -600,20 +600,20 @@ def _library(line: ExportLine) -> str:
     )
 
 
-# OpenFAST hands its own gravity to the module, unless the file has another
+# OpenFAST passes its own gravity to the module, unless the file has another
 _LEFT_OUT = ("0 writeLog", "1 disableOutTime", "10 TmaxIC", "0.1 dtIC", NO_GRAVITY, WEIGHTLESS)
 
 _ABOUT_GRAVITY = "gravity is that of OpenFAST: the line sags, and has more tension than its strain"
 
 
 _NAME, _FILE = 20, 40
-"""Signs after which MoorDyn-F cuts the name of a line type, and of a table. [1]"""
+"""Characters after which MoorDyn-F cuts the names of a line type and of a table. [1]"""
 
 _DIGEST = 6
 
 
 def _shortened(name: str, most: int) -> str:
-    """NAME within MOST signs, told apart by a digest where it is cut."""
+    """NAME within MOST characters, made unique by a digest where it is cut."""
     if len(name) <= most:
         return name
     return f"{name[: most - _DIGEST - 1]}_{sha256(name.encode()).hexdigest()[:_DIGEST]}"

@@ -1,6 +1,6 @@
 """Text in the files of every mooring code: numbers, remarks, and the header.
 
-The header says where the numbers of an export are from, and over which range they hold.
+The header gives the sources of the numbers of an export, and their range.
 """
 
 from __future__ import annotations
@@ -23,18 +23,18 @@ _WIDTH = 100
 
 
 def number(value: float) -> str:
-    """Shortest of 15 digits: steps that were there before a change of unit are there after it."""
+    """Shortest form with 15 digits: rounded values stay round after a change of unit."""
     return f"{value:.15g}"
 
 
 def real_number(value: float) -> str:
-    """The same with a point, where a number without one is no real."""
+    """The same with a decimal point, where a number without one is not real."""
     head, sign, power = number(value).partition("e")
     return (head if "." in head else f"{head}.0") + sign + power
 
 
 def one_line(text: str) -> str:
-    """Text that every grammar takes as a remark: one line, ASCII, no comment or rule signs."""
+    """Text valid as a remark in every grammar: one line, ASCII, no comment or rule characters."""
     plain = " ".join(text.split()).encode("ascii", "replace").decode()
     return re.sub(
         "-{2,}",
@@ -44,7 +44,7 @@ def one_line(text: str) -> str:
 
 
 def header_lines(line: ExportLine, curve: ThinnedCurve | None, *remarks: str) -> list[str]:
-    """Header of a file, without the signs that make it a remark there."""
+    """Header of a file, without comment characters."""
     told = [f"Line {line.name}, written by reduction {__version__}"]
     if line.is_synthetic:
         told.append("SYNTHETIC: generated from a formula, nothing was tested")
@@ -66,7 +66,7 @@ def header_lines(line: ExportLine, curve: ThinnedCurve | None, *remarks: str) ->
     return [
         part
         for text in told
-        # a hyphen is the sign of an option too, which is nothing when it is cut
+        # a hyphen also begins an option, which would be lost when cut
         for part in textwrap.wrap(
             one_line(text), _WIDTH, subsequent_indent="  ", break_on_hyphens=False
         )

@@ -1,18 +1,18 @@
 r"""K_0, K_1 and tau of an exported line, consistent with its K_ap and H.
 
-**How well K_1 and tau of an exported line are known, from K_ap, H and K_0 of one set of runs**:
+**Uncertainty of K_1 and tau of an exported line, from K_ap, H and K_0 of one set of runs**:
 
 .. math:: w^2(y) = \sum_i (s_i w_i)^2 + 1.96^2 \sum_k \Bigl(\sum_i s_i c_{ik}\Bigr)^2
 
 over the inputs i with the half width w_i of each alone, the contribution c_ik of each error that
-they share, and the sensitivity s_i of the parameter.  A load cell is in all three: its gain is in
-K_1 as it is, and leaves tau alone.
+they share, and the sensitivity s_i of the parameter.  A load cell affects all three: its gain
+enters K_1 in full and leaves tau unchanged.
 
-**K_0, K_1 and tau of a line for export, such that it gives back its own K_ap and H.** K_1 and tau
-have surfaces of their own in [1]_, fitted to what was identified run by run.  Beside the surfaces
-of K_ap and H they are a second fit of the same runs, and the two do not agree: over the tested
-levels of the printed lines the first give K_ap from 0.7 to 2.3 times the second.  K_ap and H are
-what was measured, so K_1 and tau are identified from them at the point that is asked for.
+**K_0, K_1 and tau of a line for export, such that the line reproduces its own K_ap and H.** K_1 and
+tau have separate surfaces in [1]_, fitted to the values identified in each run.  These are a second
+fit of the runs of K_ap and H, and the two do not agree: over the tested levels of the printed
+lines, K_ap from K_1 and tau is 0.7 to 2.3 times K_ap from its own surface.  K_ap and H were
+measured, so K_1 and tau are identified from them at the requested point.
 
 References
 ----------
@@ -53,7 +53,7 @@ from reduction.uncertainty.propagation import line_contributions
 
 _STEPS = 201
 
-_SLOPE = 1e-4  # of a mean tension, over which the slope of a working curve is taken
+_SLOPE = 1e-4  # share of a mean tension over which the slope of a working curve is taken
 
 
 @dataclass(frozen=True)
@@ -63,24 +63,24 @@ class Viscoelasticity:
     Parameters
     ----------
     static_stiffness : float
-        Of a slow pull, K_0, per unit strain: EA_s of mooring codes. [N]
+        Stiffness of a slow pull, K_0, per unit strain: EA_s of mooring codes. [N]
     dynamic_stiffness : float
-        Of a fast change, K_0 + K_1: EA_d; where it grows with the mean tension, its value at zero
-        mean tension (alpha). [N]
+        Stiffness for a fast change, K_0 + K_1: EA_d; where it grows with the mean tension, its
+        value at zero mean tension (alpha). [N]
     dashpot_coefficient : float
         N = K_1 tau. [N s]
     dynamic_stiffness_per_mean_tension : float
         beta: EA_d = alpha + beta T_mean. [1]
     mean_tension : float
-        At which the numbers hold; needed where beta is not zero. [N]
+        Mean tension at which the numbers hold; needed where beta is not zero. [N]
     holds : str
-        In words: levels at which the numbers were found.
+        Levels at which the numbers were found, in words.
     frequency : float
-        At which they were found; NaN where they hold at every one. [Hz]
+        Frequency at which they were found; NaN where they hold at every one. [Hz]
     growth : str
-        In words: how beta was found, or why it is zero.
+        How beta was found, or why it is zero, in words.
     tension_amplitude : float
-        At which they were found; NaN where they hold at every one. [N]
+        Amplitude at which they were found; NaN where they hold at every one. [N]
     """
 
     static_stiffness: float
@@ -94,7 +94,7 @@ class Viscoelasticity:
     tension_amplitude: float = math.nan
 
     def __post_init__(self) -> None:
-        """Check that the line is stiffer when it is fast."""
+        """Check that the line is stiffer in fast changes."""
         numbers = (self.static_stiffness, self.dynamic_stiffness, self.dashpot_coefficient)
         slope = self.dynamic_stiffness_per_mean_tension
         if not all(map(math.isfinite, (*numbers, slope))) or min(*numbers, slope) < 0:
@@ -123,18 +123,18 @@ class Viscoelasticity:
 
     @property
     def relaxation_time(self) -> float:
-        """Of the tension at constant strain, tau = N / K_1. [s]."""
+        """Relaxation time of the tension at constant strain, tau = N / K_1. [s]."""
         return self.dashpot_coefficient / (self.fast_stiffness - self.static_stiffness)
 
     @property
     def apparent_stiffness(self) -> float:
-        """Of a cycle, for a code without damping: K_ap at the frequency, else EA_d. [N]."""
+        """Cyclic stiffness for a code without damping: K_ap at the frequency, else EA_d. [N]."""
         known = math.isfinite(self.frequency)
         return self.apparent_stiffness_at(self.frequency) if known else self.fast_stiffness
 
     @property
     def lag(self) -> float:
-        """Time by which strain follows tension at the frequency; infinite without one. [s]."""
+        """Time by which strain lags tension at the frequency; infinite without one. [s]."""
         if not math.isfinite(self.frequency):
             return math.inf
         stiffness = self.stiffness_at(self.frequency)
@@ -161,7 +161,7 @@ class Viscoelasticity:
         Notes
         -----
         With slow strain x, EA_d = g(x) = alpha + beta EA_1 x and EA_1 = g EA_s / (g - EA_s):
-        T = g (e - x) and BA_s dx/dt = g e - (g + EA_1) x, made linear about the mean, where
+        T = g (e - x) and BA_s dx/dt = g e - (g + EA_1) x, linearised about the mean, where
         EA_1 x is the mean tension.
         """
         slow, fast = self.static_stiffness, self.fast_stiffness
@@ -189,8 +189,8 @@ class Viscoelasticity:
         r"""Dashpot of the same line as a spring in series with a spring beside a dashpot. [N s].
 
         Mooring codes put the slow spring :math:`E_1` and its dashpot :math:`B` in series with
-        :math:`EA_d`; equal static stiffness asks for :math:`1/EA_s = 1/E_1 + 1/EA_d`, equal
-        behaviour at every frequency for :math:`B = N (EA_d / (EA_d - EA_s))^2`.
+        :math:`EA_d`; equal static stiffness requires :math:`1/EA_s = 1/E_1 + 1/EA_d`, and equal
+        behaviour at every frequency :math:`B = N (EA_d / (EA_d - EA_s))^2`.
         """
         share = self.fast_stiffness / (self.fast_stiffness - self.static_stiffness)
         return self.dashpot_coefficient * share**2
@@ -199,24 +199,25 @@ class Viscoelasticity:
 @dataclass(frozen=True)
 @read_only_arrays
 class Syrope:
-    """Working curves of a fibre rope that remembers its greatest mean tension.
+    """Working curves of a fibre rope, which depend on its greatest mean tension so far.
 
     Parameters
     ----------
     strain, tension : ndarray, shape (n_points,)
         Original working curve, from 0 0. [1], [N]
     form : {"LINEAR", "QUADRATIC", "EXP"}
-        Of the working curves below it.
+        Form of the working curves below it.
     k1, k2 : float
-        LINEAR: k1 below 1 is the strain at zero tension over that at the greatest one, from 1 on
-        the slope; k2 is not used. QUADRATIC: 0 <= k1 < 1, 0 < k2 <= 1. EXP: 0 <= k1 < 1, k2 > 0.
+        LINEAR: k1 below 1 is the strain at zero tension over that at the greatest tension, k1 from
+        1 on is the slope; k2 is unused. QUADRATIC: 0 <= k1 < 1, 0 < k2 <= 1. EXP: 0 <= k1 < 1,
+        k2 > 0.
         [1], [N]
     dynamic_stiffness, dynamic_stiffness_per_mean_tension : float
         alpha and beta of EA_d = alpha + beta T_mean. [N], [1]
     slow_damping, fast_damping : float
         Dashpots of the slow and of the fast spring. [N s]
     greatest_mean_tension, mean_tension : float
-        Where the line starts: without them MoorDyn ends with a segmentation fault. [N]
+        Start of the line: without them MoorDyn ends with a segmentation fault. [N]
     """
 
     strain: Floats
@@ -232,7 +233,7 @@ class Syrope:
     mean_tension: float
 
     def __post_init__(self) -> None:
-        """Check what MoorDyn does not."""
+        """Check what MoorDyn does not check."""
         allowed = {
             "LINEAR": (0 < self.k1, "k1 above 0"),
             "QUADRATIC": (0 <= self.k1 < 1 and 0 < self.k2 <= 1, "0 <= k1 < 1 and 0 < k2 <= 1"),
@@ -278,7 +279,7 @@ class Syrope:
         self._refuse_stiff_working_curve()
 
     def _refuse_stiff_working_curve(self) -> None:
-        """MoorDyn starts such a line at another tension, without a word."""
+        """Refuse a line that MoorDyn would silently start at another tension."""
         along = np.linspace(0.0, 1.0, _STEPS)
         top = float(np.interp(self.greatest_mean_tension, self.tension, self.strain))
         share, slope = along, np.ones(_STEPS)
@@ -321,13 +322,14 @@ class Syrope:
 
     @property
     def about_mean(self) -> Viscoelasticity:
-        """What a small cycle about the mean tension has, on the working curve of the greatest one.
+        """Parameters of a small cycle about the mean tension, on the greatest working curve.
 
         Notes
         -----
         MoorDyn has BA_s dz/dt = (e - e_w) (alpha + beta T_w) on the working curve T_w(e_w), with
-        z = e_w - ln(1 + beta T_w / alpha) / beta: linear about the mean, a spring EA_d in series
-        with BA_s beside a spring that makes the slope of the working curve of both.
+        z = e_w - ln(1 + beta T_w / alpha) / beta.  Linearised about the mean, this is a spring EA_d
+        in series with a dashpot BA_s beside a spring; both springs together have the slope of the
+        working curve.
         """
         step = _SLOPE * self.mean_tension
         strains = [
@@ -353,9 +355,9 @@ def _said_identified(
     is_exact: bool,
     measured_as: str,
 ) -> str:
-    """K_1 and tau, what they give back, and how well they are known.
+    """K_1 and tau, the K_ap and H that they give, and their uncertainty.
 
-    ``half`` are half widths of 95 % by name; ``is_exact`` where no interval of K_0 is known.
+    ``half`` are half widths of 95 % by name; ``is_exact`` where K_0 has no known interval.
     """
     spring = part.fast_stiffness - part.static_stiffness
     return (
@@ -369,7 +371,7 @@ def _said_identified(
 
 
 def _said_known(half: Mapping[str, Floats], *, is_exact: bool) -> str:
-    """How well K_1 and tau are known; what K_ap, H and K_0 share, they share here."""
+    """Uncertainty of K_1 and tau; errors shared by K_ap, H and K_0 are shared here."""
     spring, time = (
         float(half[name]) for name in ("dissipation_spring_constant", "relaxation_time")
     )
@@ -389,7 +391,7 @@ def _said_printed(
     frequency: float,
     amplitude: float,
 ) -> str:
-    """What the surfaces of K_1 and tau would have given; K_0 ``rest`` beside them."""
+    """Result of the surfaces of K_1 and tau, with K_0 ``rest``."""
     if not printed:
         return "the source has no surfaces of K_1 and tau that can be used"
     spring, time = (float(one.value) for one in printed.values())
@@ -406,7 +408,7 @@ def _said_printed(
 def _said_instead(
     part: Viscoelasticity, measured: Mapping[str, DesignValues], amplitude: float, reason: int
 ) -> str:
-    """That the printed K_1 and tau stand, and how far off they are."""
+    """Statement that the printed K_1 and tau are used, and how far off they are."""
     spring = part.fast_stiffness - part.static_stiffness
     return (
         f"DOUBTFUL: K_1 {plain_number(spring)} N and tau "
@@ -433,7 +435,7 @@ def _against(part: Viscoelasticity, measured: Mapping[str, DesignValues], amplit
 def _warnings_of_identified(
     line: LineParameters, half_widths: Mapping[str, Floats], energy: DesignValues
 ) -> list[str]:
-    """Intervals in which there is no damping at all, or that are not known."""
+    """Intervals that include zero damping, or are not known."""
     said = []
     if not math.isfinite(float(energy.surface_low)):
         said.append("DOUBTFUL: the uncertainty of the damping is unknown: H has no interval")
@@ -453,7 +455,7 @@ def _warnings_of_identified(
 
 
 def _warnings_of_printed(time: DesignValues) -> list[str]:
-    """The same of a tau that is a design value itself."""
+    """The same for a tau that is itself a design value."""
     if not math.isfinite(float(time.surface_low)):
         return ["DOUBTFUL: the uncertainty of the dashpot is unknown: tau has no interval"]
     if float(time.surface_low) <= 0:
@@ -465,7 +467,7 @@ def _warnings_of_printed(time: DesignValues) -> list[str]:
 
 
 def _said_over_frequency(part: Viscoelasticity, frequencies: Floats, found: DesignValues) -> str:
-    """K_ap of the exported line against the surface at several frequencies."""
+    """K_ap of the exported line beside the surface, at several frequencies."""
     rows = []
     for row, frequency in enumerate(frequencies):
         model, own = part.apparent_stiffness_at(float(frequency)), float(found.value[row])
@@ -493,7 +495,7 @@ def _interval_of(found: DesignValues) -> str:
 
 
 def _said_of_value(found: DesignValues) -> str:
-    """Where one design value is from."""
+    """Source of one design value."""
     known = math.isfinite(float(found.surface_high))
     is_vague = known and float(found.surface_low) < 0
     of = (
@@ -519,13 +521,13 @@ _LOOP = ("apparent_spring_constant", "hysteresis_energy")
 def _half_widths(
     line: LineParameters, rest: DesignValues, apparent: DesignValues, energy: DesignValues
 ) -> dict[str, Floats]:
-    """Half widths of the 95 % intervals of what was identified from three design values.
+    """Half widths of the 95 % intervals of K_1 and tau identified from three design values.
 
     Notes
     -----
     First order ([2]_), by the logarithmic derivatives of eqs. 1 and 4 of [1]_.  The levels of a
-    design value are true ones: amplitude and frequency are exact, and what a wrong load cell does
-    to them is in the contributions to the surfaces.
+    design value are true values: amplitude and frequency are exact, and the effect of a wrong load
+    cell on them is in the contributions to the surfaces.
 
     Examples
     --------
@@ -570,7 +572,7 @@ Extrapolate = Literal["refuse", "flag"]
 
 @dataclass(frozen=True)
 class _LineDynamics:
-    """The three parameters at one point, where they are from, and what is against them."""
+    """The three parameters at one point, their sources, and doubts about them."""
 
     part: Viscoelasticity
     sources: tuple[str, ...]
@@ -580,9 +582,9 @@ class _LineDynamics:
 def slow_and_waves(
     source: LineSource, levels: Mapping[str, float] | None = None
 ) -> tuple[float, float, str] | None:
-    """K_0, K_ap, and in words where: at levels, or in the middle of the tested ones. [N].
+    """K_0, K_ap, and their point in words: the levels, or the middle of the tested range. [N].
 
-    None where a source has not both.
+    None where a source lacks one of them.
     """
     if not {_REST, _APPARENT} <= set(source.quantities) or _APPARENT not in source.surfaces:
         return None
@@ -609,12 +611,11 @@ def line_dynamics(
     -----
     K_1 and tau are identified from K_ap, H and K_0 ([1]_, eqs. 1 and 4 solved at once), as
     `reduction.stages.three_parameter_line.line_model.identify_by_amplitude` does for a run; so the
-    exported line gives back K_ap and H at that point.  Where there is no such line (E' not above
-    K_0, or H not above zero), the printed K_1 and tau take their place as long as K_ap of them is
-    in the 95 % interval of the surface of K_ap.  How well they are known is said by this module:
-    one load cell is in K_ap, H and K_0.  The growth with the mean tension is that of the straight
-    line of least squares through K_0 + K_1, found in the same way at nine means over the tested
-    ones.
+    exported line reproduces K_ap and H at that point.  Where no such line exists (E' not above
+    K_0, or H not above zero), the printed K_1 and tau are used if their K_ap is in the 95 %
+    interval of the surface of K_ap.  Their uncertainty is that of this module, since one load cell
+    affects K_ap, H and K_0.  The growth with the mean tension is the slope of the least-squares
+    line through K_0 + K_1, found in the same way at nine means over the tested range.
     """
     if "mean_tension" not in levels:
         raise SettingsError(
@@ -706,14 +707,14 @@ def _part(
 def _value(
     source: LineSource, quantity: str, levels: Mapping[str, Any], extrapolate: Extrapolate
 ) -> DesignValues:
-    """Design value at those of the levels that the quantity varies with."""
+    """Design value at those levels with which the quantity varies."""
     if quantity in source.surfaces:
         names = source.factor_names
     else:
         rows = [one.variables for one in source.levels if one.quantity == quantity]
         curves = [one.variable for one in source.curves if one.quantity == quantity]
         names = tuple(curves or (name for one in rows for name in one))
-    # a pull is over the tension, which is the mean of the cycles
+    # a pull is a function of the tension, here the mean of the cycles
     given = {
         name: levels["mean_tension"] if name == "tension" else levels[name]
         for name in names
@@ -728,7 +729,7 @@ def _rest_of_cycle(
     levels: Mapping[str, Any],
     extrapolate: Extrapolate,
 ) -> DesignValues:
-    """K_0: slope of the pull at the mean tension, or over the cycle where the runs are bent."""
+    """K_0: slope of the pull at the mean tension, or over the cycle where the loops are bent."""
     slope = _value(source, _REST, levels, extrapolate)
     curve = next((one for one in source.curves if one.quantity == _REST), None)
     if curve is None or not measured:
@@ -746,7 +747,7 @@ def _rest_of_cycle(
 def _identified(
     rest: DesignValues, measured: Mapping[str, DesignValues], levels: Mapping[str, Any]
 ) -> LineParameters:
-    """K_1 and tau of K_ap, H and K_0."""
+    """K_1 and tau from K_ap, H and K_0."""
     return identify_by_amplitude(
         apparent_spring_constant=measured[_APPARENT].value,
         hysteresis_energy=measured[_ENERGY].value,
@@ -764,7 +765,7 @@ def _instead(
     levels: Mapping[str, float],
     reason: int,
 ) -> Viscoelasticity:
-    """Printed K_1 and tau, where K_ap of them is not to be told from that of the surface."""
+    """Printed K_1 and tau, where their K_ap is within the interval of the surface."""
     apparent = measured[_APPARENT]
     why = f"no K_1 and tau of {source.name} give back its K_ap and H there: {REASONS[reason]}"
     numbers = (
@@ -808,7 +809,7 @@ def _over_frequency(
 def _growth(
     source: LineSource, levels: Mapping[str, float], fast: float, *, is_identified: bool
 ) -> tuple[float, str]:
-    """Slope of K_0 + K_1 over the mean tension, zero where none can be written, and words. [1]."""
+    """Slope of K_0 + K_1 over the mean tension with a description; zero if not exported. [1]."""
     surface = source.surfaces.get(_APPARENT if is_identified else _SPRING)
     if surface is not None and "mean_tension" in source.factor_names:
         place = source.factor_names.index("mean_tension")
@@ -852,7 +853,7 @@ def _growth(
 
 
 def _tested_means(source: LineSource, levels: Mapping[str, float]) -> Floats:
-    """Means of the tests that differ from these levels in the mean alone. [N]."""
+    """Mean tensions of the tests that differ from these levels in the mean only. [N]."""
     means: list[float] = []
     for one in source.levels:
         if one.quantity != _APPARENT or "mean_tension" not in one.variables:
@@ -870,7 +871,7 @@ def _tested_means(source: LineSource, levels: Mapping[str, float]) -> Floats:
 
 
 def _totals(source: LineSource, over: Mapping[str, Floats], *, is_identified: bool) -> Floats:
-    """K_0 + K_1 at points, NaN where there is none. [N]."""
+    """K_0 + K_1 at points; NaN where there is none. [N]."""
     names = (_APPARENT, _ENERGY) if is_identified or source.by_fundamental else ()
     measured = {name: _value(source, name, over, "flag") for name in names}
     rest = _rest_of_cycle(source, measured, over, "flag")
@@ -878,5 +879,5 @@ def _totals(source: LineSource, over: Mapping[str, Floats], *, is_identified: bo
         spring = _identified(rest, measured, over).dissipation_spring_constant
     else:
         spring = _value(source, _SPRING, over, "flag").value
-    # a K_0 that is not trusted says nothing of the growth
+    # a K_0 that is not trusted gives no growth
     return np.where(rest.is_inside, rest.value + spring, np.nan)

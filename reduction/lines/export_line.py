@@ -41,11 +41,11 @@ class CurveSpread:
     standard : ndarray, shape (n_points,)
         Both parts. [N]
     random : ndarray, shape (n_points,), optional
-        Of the curve by itself; None where the parts are not kept apart. [N]
+        Part that is not shared with other curves; None where the parts are not separate. [N]
     component : tuple of Component, length n_components
         Errors that the curve shares with others.
     contribution : ndarray, shape (n_components, n_points)
-        What each of them adds to the tension, signed. [N]
+        Signed contribution of each shared error to the tension. [N]
     """
 
     standard: Floats
@@ -54,7 +54,7 @@ class CurveSpread:
     contribution: Floats = field(default_factory=lambda: np.empty((0, 0)))
 
     def __post_init__(self) -> None:
-        """Check that all is of the same points, and make the arrays read-only."""
+        """Check that all arrays are of the same points, and make them read-only."""
         n_points = self.standard.size
         of_random = n_points if self.random is None else self.random.size
         rows = (len(self.component), n_points)
@@ -67,7 +67,7 @@ class CurveSpread:
 
     @property
     def shared(self) -> Floats:
-        """Of what is shared, all errors together. [N]."""
+        """Uncertainty from shared errors, all together. [N]."""
         if not self.component:
             return np.where(np.isnan(self.standard), np.nan, 0.0)
         return np.asarray(np.sqrt(np.sum(self.contribution**2, axis=0)))
@@ -80,17 +80,17 @@ class CurveSpread:
         wanted : ndarray, shape (n,)
             [1]
         strain : ndarray, shape (n_points,)
-            Of the curve, rising. [1]
+            Strains of the curve, increasing. [1]
 
         Returns
         -------
         spread : CurveSpread
-            Straight lines between the points; NaN beyond them, where nothing was read.
+            Interpolated linearly between the points; NaN beyond them, where nothing was measured.
 
         Raises
         ------
         ValueError
-            If the strains are not as many as the points.
+            If there is not one strain for each point.
 
         Examples
         --------
@@ -112,17 +112,17 @@ class CurveSpread:
 
 
 SEA_WATER = 1025.0
-"""Density that turns a wet mass into a displaced volume. [kg m-3]"""
+"""Density that converts a wet mass into a displaced volume. [kg m-3]"""
 
 FIBRE_DENSITY = {"nylon": 1140.0, "polyester": 1380.0}
-"""By material; specific gravity of [1]_. [kg m-3]"""
+"""Density by material, from the specific gravity in [1]_. [kg m-3]"""
 
 
 @dataclass(frozen=True)
 class Hydrodynamics:
-    """Drag and added-mass coefficients, across the line and along it, and where they are from.
+    """Drag and added-mass coefficients, transverse and axial, with their source.
 
-    Drag across refers to diameter times length, drag along to pi times that, as MoorDyn has it.
+    The transverse drag area is diameter times length, the axial one pi times that, as in MoorDyn.
     """
 
     normal_drag: float
@@ -143,20 +143,20 @@ CYLINDER = Hydrodynamics(
 
 @dataclass(frozen=True)
 class CycleDamping:
-    """A dashpot beside the curve of a test that gives the hysteresis energy of its cycles back.
+    """A dashpot beside the curve of a test that reproduces the hysteresis energy of its cycles.
 
     Parameters
     ----------
     coefficient : float
         Tension over the rate of strain. [N s]
     frequency : float
-        Of the cycles. [Hz]
+        Frequency of the cycles. [Hz]
     strain_amplitude : float
-        Half their range. [1]
+        Half the strain range of the cycles. [1]
     hysteresis_energy : float
-        Of one cycle. [J m-1]
+        Energy of one cycle. [J m-1]
     standard_uncertainty : float
-        Of that energy. [J m-1]
+        Uncertainty of that energy. [J m-1]
     apparent_stiffness : float
         K_ap of the test; NaN where not known. [N]
     """
@@ -176,7 +176,7 @@ def cycle_damping(
     standard_uncertainty: float = math.nan,
     apparent_stiffness: float = math.nan,
 ) -> CycleDamping:
-    r"""Dashpot of a line whose sinusoidal cycle has a hysteresis energy.
+    r"""Dashpot of a line from the hysteresis energy of its sinusoidal cycle.
 
     .. math:: c = \frac{H}{2 \pi^2 f \varepsilon_a^2}
 
@@ -186,13 +186,13 @@ def cycle_damping(
     Parameters
     ----------
     hysteresis_energy : float
-        Of one cycle. [J m-1]
+        Energy of one cycle. [J m-1]
     frequency : float
         [Hz]
     strain_amplitude : float
-        Half the range. [1]
+        Half the strain range. [1]
     standard_uncertainty : float, optional
-        Of the energy. [J m-1]
+        Uncertainty of the energy. [J m-1]
     apparent_stiffness : float, optional
         K_ap of the cycle. [N]
 
@@ -204,7 +204,7 @@ def cycle_damping(
     Raises
     ------
     DataError
-        If any of them is not above zero.
+        If any of these numbers is not above zero.
 
     Examples
     --------
@@ -233,7 +233,7 @@ def cycle_damping(
 
 
 def damping_words(damping: CycleDamping) -> str:
-    """What the dashpot beside a table is of, and what it is not."""
+    """Cycle that the dashpot beside a table represents, and the limits of the dashpot."""
     energy, spread = damping.hysteresis_energy, 1.96 * damping.standard_uncertainty
     known = f" +-{plain_number(spread, 2)} (95 percent)" if math.isfinite(spread) else ""
     doubt = "DOUBTFUL, the interval includes zero: " if spread >= energy else ""
@@ -249,47 +249,47 @@ def damping_words(damping: CycleDamping) -> str:
 @dataclass(frozen=True)
 @read_only_arrays
 class ExportLine:
-    """A line as a mooring code takes it.
+    """A line in the form that a mooring code needs.
 
     Parameters
     ----------
     name : str
-        Becomes the line type; other signs than letters, digits, ``_`` and ``-`` become ``_``.
+        Becomes the line type; characters other than letters, digits, ``_`` and ``-`` become ``_``.
     strain, tension : ndarray, shape (n_points,)
-        One curve, strain rising, tension not falling. [1], [N]
+        One curve; strain increases, tension does not decrease. [1], [N]
     curve : str
-        What it is, in words: which branch, which cycles, or the mean of what. Never a loop.
+        Kind of curve, in words: branch, cycles, or mean of several. Never a loop.
     tested : tuple of float
-        Least and greatest strain that was tested; NaN where nothing was. [1]
+        Least and greatest tested strain; NaN where nothing was tested. [1]
     turns : tuple of float
-        Strains at which a mean cycle turns, where its curve goes on to them beyond the branches,
-        which are trimmed; else NaN. [1]
+        Turning strains of a mean cycle, where its curve is continued to them beyond the trimmed
+        branches; else NaN. [1]
     diameter : float
         NaN where not stated. [m]
     linear_density, wet_linear_density : float
-        In air, and less the displaced water; NaN where not stated. [kg m-1]
+        In air and in water; NaN where not stated. [kg m-1]
     rated_break_strength : float
         NaN where not stated. [N]
     unstretched_length : float
-        Of the whole line; NaN where a curve holds for any length. [m]
+        Length of the whole line; NaN where a curve holds for any length. [m]
     material : str
-        Of the fibre, where it is stated.
+        Material of the fibre, where stated.
     viscoelasticity : Viscoelasticity, optional
-        Where it was found.
+        Given where it was found.
     syrope : Syrope, optional
-        Where it is known.
+        Given where it is known.
     damping : CycleDamping, optional
-        Of the cycles that the curve is the mean of.
+        Damping of the cycles whose mean is the curve.
     spread : CurveSpread, optional
         Uncertainty of the tensions, where it is known.
     hydrodynamics : Hydrodynamics
-        With their source.
+        Coefficients with their source.
     sources : tuple of str
-        Where every number came from, over which range, which errata touch it.
+        Source of every number, its range, and the errata that affect it.
     notes : tuple of str
-        Joins, gaps, what else to know.
+        Joins, gaps and other remarks.
     is_synthetic : bool
-        Nothing was tested: the numbers were made.
+        Nothing was tested: the numbers are synthetic.
     """
 
     name: str
@@ -314,7 +314,7 @@ class ExportLine:
     is_synthetic: bool = False
 
     def __post_init__(self) -> None:
-        """Check that somebody has said what the curve is and where it is from."""
+        """Check that the kind of the curve and its source are stated."""
         for name, needed in (
             ("name", "letters or digits"),
             ("curve", "a branch or a mean, in words"),
@@ -333,13 +333,13 @@ class ExportLine:
 
     @property
     def measured(self) -> tuple[float, float]:
-        """Least and greatest strain with a measured tension: of the branches, or of the turns."""
+        """Least and greatest strain with a measured tension, of the branches or of the turns."""
         (low, high), (lower, upper) = self.tested, self.turns
         return (lower if lower < low else low, upper if upper > high else high)
 
     @property
     def identifier(self) -> str:
-        """The name as one ASCII word that every code takes; accents are left away."""
+        """The name as one ASCII word that every code accepts; accents are removed."""
         bare = unicodedata.normalize("NFKD", self.name)
         bare = "".join(sign for sign in bare if not unicodedata.combining(sign))
         word = re.sub(r"[^A-Za-z0-9_-]+", "_", re.sub("-{2,}", "-", bare)).strip("-")
@@ -378,7 +378,7 @@ class ExportLine:
         )
 
     def needed(self, name: str) -> float:
-        """A property that a format cannot do without; `SettingsError` where it is not stated."""
+        """A property that a format needs; `SettingsError` where it is not stated."""
         value = float(getattr(self, name))
         if not (math.isfinite(value) and value > 0):
             raise SettingsError(
@@ -408,11 +408,11 @@ def siblings_of(line: LineSource, others: Sequence[LineSource]) -> tuple[LineSou
 def start_against(
     strain: Floats, tension: Floats, branch: str, siblings: Sequence[LineSource]
 ) -> tuple[str, ...]:
-    """How far the straight line from 0 0 is from what was measured there in other tests.
+    """Difference between the straight line from 0 0 and tensions measured there in other tests.
 
     Notes
     -----
-    The windows of a tether ([2]_) begin at the stretch about which it was cycled.
+    The windows of a tether ([2]_) begin at the stretch at which it was cycled.
     """
     said = []
     for other in siblings:
@@ -436,10 +436,10 @@ def start_against(
 
 
 LIFT = 1e-6
-"""Share of the greatest tension that is added over the curve where it does not rise. [1]"""
+"""Share of the greatest tension that is added along the curve where it does not rise. [1]"""
 
 LEAST_SHARE = 1e-3
-"""Tension, over the greatest, below which an error counts as if it were that much. [1]"""
+"""Share of the greatest tension below which errors are taken relative to that share. [1]"""
 
 _HALVINGS = 56
 
@@ -460,11 +460,11 @@ class _Close(Protocol):
 @dataclass(frozen=True)
 @read_only_arrays
 class ThinnedCurve:
-    """A curve from 0 0, strictly rising; arrays have the shape (n_points,).
+    """A strictly rising curve from 0 0; arrays have the shape (n_points,).
 
-    ``error`` is the greatest difference in tension from the curve that was given [N], ``share``
-    the same over the greatest tension, ``local`` the greatest difference over the tension there,
-    ``words`` what was done.
+    ``error`` is the greatest difference in tension from the given curve [N], ``share`` the same
+    over the greatest tension, ``local`` the greatest difference over the tension at that point, and
+    ``words`` a description of the changes.
     """
 
     strain: Floats
@@ -481,9 +481,9 @@ def curve_from_zero(strain: ArrayLike, tension: ArrayLike) -> tuple[Floats, Floa
     Parameters
     ----------
     strain : array_like, shape (n_points,)
-        Strictly rising. [1]
+        Strictly increasing. [1]
     tension : array_like, shape (n_points,)
-        Not falling. [N]
+        Not decreasing. [N]
 
     Returns
     -------
@@ -492,20 +492,20 @@ def curve_from_zero(strain: ArrayLike, tension: ArrayLike) -> tuple[Floats, Floa
     tension : ndarray, shape (n_kept,)
         The first is zero. [N]
     words : str
-        What was added.
+        Description of the added points.
 
     Raises
     ------
     DataError
         If there are fewer than two points, one is not finite, the curve turns back or falls (a
-        loop), ends at no tension, or has tension where there is no strain.
+        loop), ends at zero tension, or has tension at zero strain.
 
     Notes
     -----
-    The rule: points without strain or without tension are left out; the last of them that has
-    strain says where the line comes taut, and below it the line is slack. Where there is none, a
-    straight line joins 0 0 and the first point; it was not measured. Where the curve does not
-    rise, one millionth of the greatest tension is added evenly over the strain.
+    Points without strain or without tension are left out. The last of them with a strain is where
+    the line becomes taut; below it the line is slack. Without such a point, a straight line joins
+    0 0 and the first point; it was not measured. Where the curve does not rise, one millionth of
+    the greatest tension is added evenly over the strain.
 
     Examples
     --------
@@ -560,9 +560,9 @@ def curve_from_zero(strain: ArrayLike, tension: ArrayLike) -> tuple[Floats, Floa
 
 
 CONTINUED = 0.3
-"""Of its greatest strain, by which a curve goes on straight in a table. [1]"""
+"""Share of its greatest strain by which a curve continues straight in a table. [1]"""
 
-_LAST = 0.02  # of the greatest strain: what the slope of the end is taken over
+_LAST = 0.02  # share of the greatest strain over which the end slope is taken
 
 
 def end_slope(strain: Floats, tension: Floats) -> float:
@@ -579,12 +579,12 @@ def end_slope(strain: Floats, tension: Floats) -> float:
 
 
 def continued_tension(line: ExportLine, strain: ArrayLike) -> Floats:
-    """Tension that is promised at a strain: of the curve from 0 0, and straight beyond its end.
+    """Tension expected at a strain: that of the curve from 0 0, continued straight beyond its end.
 
     Parameters
     ----------
     line : ExportLine
-        With its curve.
+        Line with its curve.
     strain : array_like, shape (...)
         At least zero. [1]
 
@@ -601,20 +601,20 @@ def continued_tension(line: ExportLine, strain: ArrayLike) -> Floats:
 
 @dataclass(frozen=True)
 class _StraightCycle:
-    """The straight line through the turns of a cycle, and the energy that is not in it.
+    """The straight line through the turns of a cycle, and the energy that it lacks.
 
     Parameters
     ----------
     strain, tension : float
-        In the middle of the cycle. [1], [N]
+        At the middle of the cycle. [1], [N]
     strain_amplitude : float
-        Half the range. [1]
+        Half the strain range. [1]
     stiffness : float
-        Range of tension over that of strain, K_ap. [N]
+        Tension range over strain range, K_ap. [N]
     hysteresis_energy : float
         [J m-1]
     holds : str
-        In words: levels of the cycle.
+        Levels of the cycle, in words.
     """
 
     strain: float
@@ -634,7 +634,7 @@ _IN_A_CYCLE = 2000
 
 
 def _loop_tensions(line: ExportLine, damping: CycleDamping) -> Floats:
-    """Tensions of a curve and its dashpot over a sine up to the end of the curve. [N]."""
+    """Tensions of a curve and its dashpot over a sinusoid up to the end of the curve. [N]."""
     phase = 2 * np.pi * np.arange(_IN_A_CYCLE) / _IN_A_CYCLE
     strain = float(line.strain[-1]) + damping.strain_amplitude * (np.sin(phase) - 1)
     rate = 2 * np.pi * damping.frequency * damping.strain_amplitude * np.cos(phase)
@@ -642,23 +642,23 @@ def _loop_tensions(line: ExportLine, damping: CycleDamping) -> Floats:
 
 
 def loop_stiffness(line: ExportLine, damping: CycleDamping) -> float:
-    """K_ap of a curve with its dashpot, in the cycle of the dashpot. [N]."""
+    """K_ap of a curve with its dashpot, over the cycle of the dashpot. [N]."""
     return float(np.ptp(_loop_tensions(line, damping))) / (2 * damping.strain_amplitude)
 
 
 def beside_dashpot(line: ExportLine) -> ExportLine:
-    """The curve of a test with its ends such that with the dashpot it has the K_ap of the test.
+    """The curve of a test with its ends moved so that curve and dashpot have the K_ap of the test.
 
     Parameters
     ----------
     line : ExportLine
-        The mean curve of a test, which goes on straight from the ends of its branches to the
-        greatest and least tension of the cycle.
+        The mean curve of a test, continued straight from the ends of its branches to the greatest
+        and least tension of the cycle.
 
     Returns
     -------
     line : ExportLine
-        The same where there is no dashpot, or no straight end.
+        Unchanged where there is no dashpot, or no straight end.
 
     Raises
     ------
@@ -667,9 +667,9 @@ def beside_dashpot(line: ExportLine) -> ExportLine:
 
     Notes
     -----
-    What the dashpot adds is part of the greatest and least tension. Beside a curve that ends at
-    them it would count twice: with a loss factor of 0.3, K_ap would be 3 % too high. The end of
-    the straight line is therefore that at which curve and dashpot together reach as far.
+    The tension of the dashpot is part of the greatest and least tension. Beside a curve that ends
+    at these it would count twice: with a loss factor of 0.3, K_ap would be 3 % too high. The
+    straight line therefore ends where curve and dashpot together reach these tensions.
 
     Examples
     --------
@@ -710,7 +710,7 @@ def beside_dashpot(line: ExportLine) -> ExportLine:
     return replace(made, notes=(*line.notes, said))
 
 
-_CLOSE_TO_MEAN = 0.01  # of the mean tension, the limit of `--verify`
+_CLOSE_TO_MEAN = 0.01  # share of the mean tension, the limit of `--verify`
 
 
 def straight_cycle(line: ExportLine) -> _StraightCycle | None:
@@ -718,8 +718,8 @@ def straight_cycle(line: ExportLine) -> _StraightCycle | None:
 
     Notes
     -----
-    Of a test, the cycle whose upper turn is the end of its curve; of a line with surfaces, the one
-    at the levels, about its curve at the mean tension.
+    For a test, the cycle whose upper turn is the end of its curve; for a line with surfaces, the
+    cycle at the levels, about the curve at the mean tension.
 
     Examples
     --------
@@ -756,13 +756,13 @@ def straight_cycle(line: ExportLine) -> _StraightCycle | None:
 
 
 def without_damping(line: ExportLine) -> str:
-    """What a form that has no damping leaves out; nothing where no cycle of the line is known."""
+    """Damping that a form without damping leaves out; empty where no cycle of the line is known."""
     cycle = straight_cycle(line)
     if cycle is None:
         return ""
     of, stiffness = "that cycle", cycle.stiffness
     if line.damping is not None:
-        # that of the cycle has the range of the dashpot too, which this form has not
+        # K_ap of the cycle includes the tension of the dashpot, which this form does not have
         half = cycle.strain_amplitude
         ends = continued_tension(line, np.array([cycle.strain - half, cycle.strain + half]))
         of, stiffness = "the curve over that cycle", float(np.ptp(ends)) / (2 * half)
@@ -774,7 +774,7 @@ def without_damping(line: ExportLine) -> str:
 
 
 def about_mean(line: ExportLine) -> str:
-    """Where a line of constant stiffness is at its mean tension; nothing without a mean tension.
+    """Position of a line of constant stiffness at its mean tension; empty without a mean tension.
 
     Examples
     --------
@@ -808,21 +808,21 @@ def about_mean(line: ExportLine) -> str:
 
 
 def thin_curve(strain: ArrayLike, tension: ArrayLike, *, most: int) -> ThinnedCurve:
-    """Choose few points of a curve so that straight lines between them stay close to it.
+    """Choose few points of a curve so that straight lines between them stay close to the curve.
 
     Parameters
     ----------
     strain : array_like, shape (n_points,)
-        Strictly rising. [1]
+        Strictly increasing. [1]
     tension : array_like, shape (n_points,)
-        Not falling. [N]
+        Not decreasing. [N]
     most : int
-        Points that may be kept, 0 0 among them; at least 3.
+        Greatest number of points to keep, including 0 0; at least 3.
 
     Returns
     -------
     curve : ThinnedCurve
-        From 0 0, strictly rising, numbers with ten digits.
+        From 0 0, strictly rising, values with ten digits.
 
     Raises
     ------
@@ -831,14 +831,14 @@ def thin_curve(strain: ArrayLike, tension: ArrayLike, *, most: int) -> ThinnedCu
 
     Notes
     -----
-    Small tensions are where a line works, great ones where it breaks: first the error relative to
-    the tension at its place (to a thousandth of the greatest one where it is below that) is made
-    least; then the error over the greatest tension, with the first held to a hundredth, or to a
-    quarter more than its least where that is above a hundredth.
+    A line works at small tensions and breaks at great ones. First the error relative to the local
+    tension (to a thousandth of the greatest one where the local one is smaller) is minimised; then
+    the error over the greatest tension, with the first limited to a hundredth, or to a quarter more
+    than its minimum where that exceeds a hundredth.
 
-    From each kept point the farthest one is taken whose chord leaves all points between them
-    within a tolerance (a cone of slopes, [3]_); its share is halved between what is enough
-    and what is not. The error is then taken from the points as they are written.
+    From each kept point, the next is the farthest point whose chord leaves all points between
+    within a tolerance (a cone of slopes, [3]_). The tolerance is found by bisection. The error is
+    then computed from the points as written.
 
     Examples
     --------
@@ -859,7 +859,7 @@ def thin_curve(strain: ArrayLike, tension: ArrayLike, *, most: int) -> ThinnedCu
     kept, held = _written(at[chosen]), _written(load[chosen])
     if np.any(np.diff(kept) <= 0) or np.any(np.diff(held) <= 0):
         kept, held = at[chosen], load[chosen]
-    # tension of the points that were given, where they have strain and tension of their own
+    # tension of the given points, where they have strain and tension of their own
     given, measured = np.asarray(strain, dtype=np.float64), np.asarray(tension, dtype=np.float64)
     own = given >= 0
     difference = np.interp(given[own], kept, held) - np.maximum(measured[own], 0.0)
@@ -869,14 +869,14 @@ def thin_curve(strain: ArrayLike, tension: ArrayLike, *, most: int) -> ThinnedCu
 
 
 def local_words(curve: _Close) -> str:
-    """How far a curve is off, over the greatest tension and over that of each point.
+    """Error of a curve, over the greatest tension and over that of each point.
 
     A tension below `LEAST_SHARE` of the greatest counts as that much.
 
     Parameters
     ----------
     curve : ThinnedCurve or SmoothCurve
-        As written.
+        Curve as written.
 
     Returns
     -------
@@ -886,7 +886,7 @@ def local_words(curve: _Close) -> str:
     Raises
     ------
     AttributeError
-        If it is no such curve.
+        If the object is no such curve.
     """
     return (
         f"({100 * curve.share:.2g} % of the greatest tension, {100 * curve.local:.2g} % of the "
@@ -895,7 +895,7 @@ def local_words(curve: _Close) -> str:
 
 
 def local_share(difference: ArrayLike, tension: ArrayLike, greatest: float) -> float:
-    """Greatest difference over the tension at its place, or a thousandth of the greatest one.
+    """Greatest difference over the local tension, or over a thousandth of the greatest one.
 
     Examples
     --------
@@ -909,7 +909,7 @@ def local_share(difference: ArrayLike, tension: ArrayLike, greatest: float) -> f
 def _fewest(
     at: Floats, load: Floats, allowed: Callable[[float], Floats], most: int
 ) -> tuple[Integers, float]:
-    """Points of the least share whose tolerances leave few enough, and that share."""
+    """Points for the least share whose tolerances leave few enough points, and that share."""
     chosen: Integers = np.array([0, at.size - 1])
     low, high = 0.0, 1 / LEAST_SHARE
     for _ in range(_HALVINGS):
@@ -923,7 +923,7 @@ def _fewest(
 
 
 def _within(at: Floats, load: Floats, tolerance: Floats, most: int) -> Integers | None:
-    """Points whose chords stay within the tolerances; None where they are too many."""
+    """Points whose chords stay within the tolerances; None where there are too many."""
     last = at.size - 1
     chosen = [0]
     while chosen[-1] < last:
@@ -940,24 +940,24 @@ def _within(at: Floats, load: Floats, tolerance: Floats, most: int) -> Integers 
 
 
 def _written(values: Floats) -> Floats:
-    """The numbers that ten digits give back."""
+    """The values after rounding to ten digits."""
     return np.array([float(f"{value:.{_DIGITS}g}") for value in values])
 
 
 _SAME = 1e-9
 
-_GREATEST_FILL = 1.02  # of the diameter: it and a wet mass, of fresh water perhaps, are rounded
+_GREATEST_FILL = 1.02  # of the diameter: it and the wet mass (fresh water perhaps) are rounded
 
-_LEAST_FILL = 0.6  # of the diameter: a third of the area, where ropes have two thirds
+_LEAST_FILL = 0.6  # of the diameter: a third of the area, where ropes fill two thirds
 
 
 def range_of(line: ExportLine) -> str:
-    """Over which strains a curve was tested, and what stands below.
+    """Tested strains of a curve, and the state below them.
 
     Parameters
     ----------
     line : ExportLine
-        What is exported.
+        Line to export.
 
     Returns
     -------
@@ -967,7 +967,7 @@ def range_of(line: ExportLine) -> str:
     Raises
     ------
     AttributeError
-        If it is no line.
+        If the object is no line.
     """
     of_branches = line.tested
     if not of_branches[0] == of_branches[0]:
@@ -985,7 +985,7 @@ def range_of(line: ExportLine) -> str:
 
 
 def doubts_first(notes: Sequence[str]) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Notes that say what is in doubt, and the others, each in their order.
+    """Notes about doubts, and the other notes, each in their order.
 
     Examples
     --------
@@ -997,27 +997,27 @@ def doubts_first(notes: Sequence[str]) -> tuple[tuple[str, ...], tuple[str, ...]
 
 
 def guards_of(line: ExportLine) -> tuple[str, ...]:
-    """What of a line does not fit, or holds over a part alone.
+    """Properties of a line that are inconsistent, or hold over a part only.
 
     Parameters
     ----------
     line : ExportLine
-        What is exported.
+        Line to export.
 
     Returns
     -------
     words : tuple of str
-        One sentence each; what is in doubt begins with DOUBTFUL.
+        One sentence each; doubts begin with DOUBTFUL.
 
     Raises
     ------
     AttributeError
-        If it is no line.
+        If the object is no line.
 
     Notes
     -----
-    A rope of a fibre that is heavier than water does not float, no rope has more mass than a rod of
-    its fibre, and none a third of it; densities of fibres as in [1]_.
+    A rope of a fibre heavier than water does not float; a rope has no more mass than a rod of its
+    fibre, and no less than a third of it; densities of fibres as in [1]_.
     """
     words = [range_of(line)]
     mass, diameter = line.linear_density, line.diameter

@@ -52,7 +52,7 @@ _NOT_APART = (
     " uncertainty is assigned to this curve"
 )
 
-_STEP_BACK = 1e-3  # of the greatest tension: noise of a mean, not a loop
+_STEP_BACK = 1e-3  # share of the greatest tension: noise of a mean, not a loop
 
 
 def line_from_archive(
@@ -75,7 +75,7 @@ def _line_from_open_archive(
     specimen: str | None = None,
     **stated: Any,
 ) -> ExportLine:
-    """One curve of an archive that is open, as `line_from_archive`."""
+    """One curve of an open archive, as `line_from_archive`."""
     given, origins = _known_of(stated)
     if "hose" in archive.dims:
         if curve is not None:
@@ -100,7 +100,7 @@ def _line_from_open_archive(
 
 
 def _known_of(stated: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:
-    """What is stated at the export and known, and a sentence on where each is from."""
+    """Known values that are stated at the export, and a sentence on the source of each."""
     given = {
         name: value
         for name, value in stated.items()
@@ -161,7 +161,7 @@ def _of_test(archive: xr.Dataset, curve: CurveName, name: str | None) -> dict[st
     branches = [str(value) for value in archive.variables["branch_name"].values]
     by_branch = archive.variables["branch_tension"].values[place]
     rows = [branches.index(one) for one in (_BRANCHES if curve == "mean" else (curve,))]
-    # where a branch is not known there is no mean: half a loop is no curve
+    # where one branch is unknown there is no mean: half a loop is no curve
     tension = by_branch[rows].mean(axis=0)
     strain = archive.variables["strain_bin"].values
     known = np.isfinite(tension)
@@ -234,7 +234,7 @@ def _of_test(archive: xr.Dataset, curve: CurveName, name: str | None) -> dict[st
 
 
 def _damping_of(archive: xr.Dataset, place: int) -> CycleDamping | None:
-    """Dashpot of the cycles of a test; None where their loop has no energy that is known."""
+    """Dashpot of the cycles of a test; None where the energy of their loop is not known."""
     energy, frequency, amplitude, uncertainty, stiffness = (
         _number(archive, name, place)
         for name in (
@@ -252,7 +252,7 @@ def _damping_of(archive: xr.Dataset, place: int) -> CycleDamping | None:
 
 @dataclass(frozen=True)
 class _Turns:
-    """Where the mean cycle turns; NaN where not known."""
+    """Turning points of the mean cycle; NaN where not known."""
 
     strain: tuple[float, float]
     tension: tuple[float, float]
@@ -261,7 +261,7 @@ class _Turns:
 def _turns(archive: xr.Dataset, place: int) -> _Turns:
     """Turns of the mean cycle: K_ap over its strain range, about the middle of peaks and valleys.
 
-    A peak is a reading with noise in it, and K_ap is without that bias.
+    Noise biases a measured peak, but not K_ap.
     """
     middle = _number(archive, "alignment_strain", place)
     if math.isnan(middle):
@@ -275,20 +275,20 @@ def _turns(archive: xr.Dataset, place: int) -> _Turns:
     return _Turns((middle - half, middle + half), (level - pull, level + pull))
 
 
-# of the range of the curve, at each end: of a sine in load whose loss factor is 0.5 a third of the
-# range, where one branch or the other has been cut
+# share of the range of the curve, at each end: for a sinusoidal load and a loss factor of 0.5, a
+# third of the range, where one or the other branch has been trimmed
 _FARTHEST = 0.5
 
-_SHORT = 0.02  # of the range of a cycle, that a curve may leave out at its upper end
+_SHORT = 0.02  # share of the range of a cycle that a curve may lack at its upper end
 
 
 def _to_turns(
     strain: Floats, tension: Floats, turns: _Turns
 ) -> tuple[Floats, Floats, NDArray[np.int64]]:
-    """A mean curve that goes on to the turns of the cycles, and how many points that added.
+    """A mean curve continued to the turns of the cycles, and the number of points added.
 
     Branches are trimmed at their ends, and a slope needs samples on both sides; a mooring code
-    that moves the line by the whole cycle would find no stiffness there.  Both branches meet at
+    that moves the line over the whole cycle would find no stiffness there.  Both branches meet at
     the turns, whose tensions were measured.
 
     Examples
@@ -316,7 +316,7 @@ def _to_turns(
 
 
 def _with_ends(spread: CurveSpread, added: NDArray[np.int64]) -> CurveSpread:
-    """Errors of the last points for those that were added beyond them."""
+    """The curve's uncertainty, with the errors of the end points at points added beyond them."""
 
     def longer(values: Floats) -> Floats:
         padding = [(0, 0)] * (values.ndim - 1) + [(int(added[0]), int(added[1]))]
@@ -338,7 +338,7 @@ def _spread_of(
         return None
     own, shared = parts_of(archive, "branch_tension", place, of="tension")
     own = own[branches]
-    # what is of each branch alone scatters, what both share is in their mean by its sign
+    # errors of each branch alone are independent; shared errors enter the mean with their sign
     random = np.sqrt(np.sum(own**2, axis=0))[known] / len(branches)
     if shared is None:
         return CurveSpread(random)
@@ -347,7 +347,7 @@ def _spread_of(
 
 
 def _rising(strain: Floats, tension: Floats) -> dict[str, Floats]:
-    """The curve where it rises; a step back within noise is levelled, a greater one refused."""
+    """The rising curve; a decrease within noise is levelled, a greater one refused."""
     level = np.maximum.accumulate(tension)
     fall = float(np.max(level - tension))
     if fall > _STEP_BACK * float(level[-1]):
@@ -442,12 +442,12 @@ def _assembly_spread(line: DeployedLine) -> CurveSpread:
 
 
 def line_from_assembly(line: DeployedLine, **stated: Any) -> ExportLine:
-    """Make a line for export of an assembly: its strain is over the length at which it goes slack.
+    """Make an export line of an assembly; its strain refers to the length at which it goes slack.
 
     Notes
     -----
-    Diameter and mass of several tethers side by side are not those of one, and are left to be
-    stated ([1]_, sec. 2.3.2 prints none).
+    Diameter and mass of several tethers side by side are not those of one, and have to be stated
+    ([1]_, sec. 2.3.2 prints none).
     """
     given, origins = _known_of(stated)
     deployed, assembly = line.deployed, line.deployed.assembly
@@ -489,7 +489,7 @@ def line_from_assembly(line: DeployedLine, **stated: Any) -> ExportLine:
     )
 
 
-_ON_GRID = 1e-3  # of an EA: what a grid of strain moves of it
+_ON_GRID = 1e-3  # share of an EA by which the grid of strain can change it
 
 
 def _stiffness_notes(
@@ -498,10 +498,10 @@ def _stiffness_notes(
     tension: Floats,
     cycles: Mapping[str, tuple[float, float]] | None = None,
 ) -> list[str]:
-    """EA of the tests beside that of the table that is exported, and a warning where they differ.
+    """EA of the tests beside that of the exported table, and a warning where they differ.
 
-    Each test is a cycle of its own loads; both EA are over the loads that the tests which cover it
-    have in common.
+    Each test is a cycle of its own loads; both EA are taken over the loads common to the tests that
+    cover it.
     """
     named = list((cycles or {}).items()) + [(one.words, (one.low, one.high)) for one in tests]
     # a mean of tests may end below the loads of one of them
@@ -545,7 +545,7 @@ _WAYS = {
 
 
 def ranges_of(curve: CompositeCurve, flags: Bools) -> list[tuple[float, float]]:
-    """Strains between which intervals of a curve have a flag, neighbours joined. [1].
+    """Strain ranges in which intervals of a curve have a flag, neighbours joined. [1].
 
     Examples
     --------
@@ -564,7 +564,7 @@ def ranges_of(curve: CompositeCurve, flags: Bools) -> list[tuple[float, float]]:
 
 
 def composite_table(source: PieceSource, curve: CompositeCurve) -> ValueTable:
-    """Return every node of a composite curve, its piece, and what is flagged below it."""
+    """Return every node of a composite curve, its piece, and the flags of the interval below it."""
     source = used_of(source, curve)
     piece = np.array([curve.piece_words[place] if place >= 0 else "" for place in curve.piece])
 
@@ -623,7 +623,7 @@ def line_from_composite(source: PieceSource, curve: CompositeCurve, **stated: An
 
     Notes
     -----
-    Tested from the first node of a piece to the last; a gap between is in the notes ([1]_, sec.
+    Tested from the first node of a piece to the last; gaps between are in the notes ([1]_, sec.
     4.8).
     """
     source = used_of(source, curve)
@@ -670,7 +670,7 @@ _POINTS = 201
 
 _LARGE_CONSTANT = 0.01
 
-_MOST_CUT, _LEAST_CUT = 0.9, 0.05  # shares of the greatest tension that a cut may leave or take
+_MOST_CUT, _LEAST_CUT = 0.9, 0.05  # shares of the greatest tension that a cut may leave or remove
 
 _STRAIN = ("strain", "quasi_static_strain")
 
@@ -693,9 +693,8 @@ def line_from_lookup(
     Notes
     -----
     Static and dynamic stiffness are those of `reduction.lines.export_dynamics.line_dynamics`: K_0
-    and
-    K_0 + K_1 at the mean tension, N = K_1 tau ([2]_), identified so that the line gives back its
-    own K_ap and H.
+    and K_0 + K_1 at the mean tension, N = K_1 tau ([2]_), identified so that the line reproduces
+    its own K_ap and H.
     """
     curve = _trusted(source, _curve_of(source, branch))
     strain, tension, cut = _points(source, curve)
@@ -742,14 +741,14 @@ def line_from_lookup(
 
 
 def _strength(source: LineSource) -> tuple[float, str]:
-    """Strength that a code is told where none is stated, and why it is not the rated one. [N]."""
+    """Strength to export where none is stated, and why it is not the rated one. [N]."""
     if source.strength_of:
         return math.nan, (
             f"no break strength is exported: that of the source is of {source.strength_of}; state "
             "--rated-break-strength"
         )
     left = source.tensile_strength
-    # NaN where the line is new: then the rated one stands
+    # NaN where the line is new: then the rated strength is used
     if left < source.rated_break_strength:
         return left, (
             f"break strength {plain_number(left)} N: residual strength in this condition; rated"
@@ -759,7 +758,7 @@ def _strength(source: LineSource) -> tuple[float, str]:
 
 
 def _curve_of(source: LineSource, branch: Branch | None) -> LineCurve:
-    """The one curve of strain and tension."""
+    """The only curve of strain and tension."""
     found = [
         one
         for one in source.curves
@@ -775,7 +774,7 @@ def _curve_of(source: LineSource, branch: Branch | None) -> LineCurve:
             found=", ".join(source.quantities) or "nothing",
             needed="strain over tension, or tension over strain",
         )
-    # where one branch alone was measured it need not be asked for
+    # where only one branch was measured it need not be named
     wanted = branch or (found[0].branch if len(found) == 1 else "")
     of_branch = [one for one in found if one.branch in ("", wanted)]
     if not of_branch:
@@ -788,7 +787,7 @@ def _curve_of(source: LineSource, branch: Branch | None) -> LineCurve:
 
 
 def _trusted(source: LineSource, curve: LineCurve) -> LineCurve:
-    """The curve as far as its slope can be trusted, where the source gives K_0 by that slope."""
+    """The curve up to the limit of K_0, where the source gives K_0 as its slope."""
     for rest in source.curves:
         if rest.is_inverse_slope and rest.high < curve.high and curve.variable == "tension":
             why = f"{curve.range_note}; {rest.range_note}" if curve.range_note else rest.range_note
@@ -797,7 +796,7 @@ def _trusted(source: LineSource, curve: LineCurve) -> LineCurve:
 
 
 def _points(source: LineSource, curve: LineCurve) -> tuple[Floats, Floats, list[str]]:
-    """Strain and tension where both rise, and what was cut."""
+    """Strain and tension where both rise, and notes on the parts left out."""
     at = curve.at if curve.at.size else np.linspace(curve.low, curve.high, _POINTS)
     value = evaluate_curve(curve, at).value
     strain, tension = (value, at) if curve.quantity in _STRAIN else (at, value)
@@ -807,7 +806,7 @@ def _points(source: LineSource, curve: LineCurve) -> tuple[Floats, Floats, list[
             found="values that are open or lost",
             hint="The errata of the source say which.",
         )
-    # segments that meet give their joint twice
+    # adjoining segments repeat their common point
     new = np.append(True, (np.diff(strain) != 0) | (np.diff(tension) != 0))
     strain, tension, notes = strain[new], tension[new], []
     back = np.flatnonzero((np.diff(strain) <= 0) | (np.diff(tension) <= 0))
@@ -841,11 +840,11 @@ def _points(source: LineSource, curve: LineCurve) -> tuple[Floats, Floats, list[
 
 
 def _without_constant(strain: Floats, tension: Floats) -> tuple[Floats, Floats, str]:
-    """The curve of a regression from where its constant weighs little.
+    """The curve of a regression, from the point where its constant is small.
 
-    A pull starts at no strain and no tension; what a cubic has there is an error of its fit, and
-    no slack that anybody measured.  Its share in the strain is a half at twice the constant; there,
-    or at a twentieth of the greatest tension, the straight line from 0 0 joins the curve.
+    A pull starts at zero strain and tension; the strain of a cubic there is an error of the fit,
+    not measured slack.  At twice the constant it is half of the strain; there, or at a twentieth
+    of the greatest tension, the straight line from 0 0 joins the curve.
     """
     constant = float(strain[0])
     joins = (strain >= 2 * constant) | (tension >= _LEAST_CUT * tension[-1])

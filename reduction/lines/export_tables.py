@@ -1,6 +1,6 @@
 """Curves and look-up tables as CSV, JSON, LaTeX, Markdown and netCDF.
 
-Design values are one table that every format takes: levels, value, intervals, loads.
+Design values are one table for every format: levels, value, intervals, loads.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ from reduction.record.plain_text import safe_cell
 CONTRIBUTION = "tension_uncertainty_contribution"
 
 SIGNED = "change of tension per standard uncertainty of each shared error"
-"""What stands where a format has a place for contributions."""
+"""Text where a format can hold contributions."""
 
 
 @dataclass(frozen=True)
@@ -54,10 +54,10 @@ class TableColumn:
 
 @dataclass(frozen=True)
 class ValueTable:
-    """A table, with a sentence on what it is and where its numbers are from.
+    """A table, with a sentence on its contents and the sources of its numbers.
 
-    ``contribution`` is what each of the errors ``component`` adds to the tension of each row,
-    signed, shape (n_components, n_rows), in N; json and netcdf have a place for it.
+    ``contribution`` holds the signed contribution of each error ``component`` to the tension of
+    each row, shape (n_components, n_rows), in N; only json and netcdf store it.
     """
 
     title: str
@@ -69,14 +69,14 @@ class ValueTable:
     contribution: Floats = field(default_factory=lambda: np.empty((0, 0)))
 
     def __post_init__(self) -> None:
-        """Check that the columns are of one length."""
+        """Check that all columns have the same length."""
         sizes = {column.values.shape for column in self.columns}
         if len(sizes) != 1 or len(next(iter(sizes))) != 1:
             raise SettingsError("the columns of a table differ in length", found=str(sorted(sizes)))
 
 
 def curve_table(line: ExportLine) -> ValueTable:
-    """The curve of a line from zero, every point of it, and which points were tested."""
+    """The curve of a line from zero, with every point, and which points were tested."""
     at, load, words = curve_from_zero(line.strain, line.tension)
     low, high = line.tested
     tested = (at >= low * (1 - 1e-9)) & (at <= high * (1 + 1e-9)) & (at > 0)
@@ -192,7 +192,7 @@ def _json(table: ValueTable, units: UnitSystem) -> str:
 
 
 def _contributions(table: ValueTable, units: UnitSystem) -> dict[str, object]:
-    """Signed contributions of the shared errors to the tension; nothing where there are none."""
+    """Signed contributions of the shared errors to the tension; empty where there are none."""
     if not table.component:
         return {}
     unit, factor = display_unit("N", units)
@@ -245,7 +245,7 @@ def _markdown(table: ValueTable, units: UnitSystem) -> str:
 
 
 def _as_markdown(text: str) -> str:
-    r"""Text in one line that no reader of Markdown takes for HTML, a link or a cell.
+    r"""Text in one line that no reader of Markdown parses as HTML, a link or a cell.
 
     Examples
     --------
@@ -257,7 +257,7 @@ def _as_markdown(text: str) -> str:
 
 
 def sheets_of_table(table: ValueTable, *, units: UnitSystem = "si") -> list[Sheet]:
-    """A table as the sheets of a workbook: its values, and what they are."""
+    """A table as the sheets of a workbook: its values, and a description."""
     heads, columns = [], []
     for column in table.columns:
         unit, factor = display_unit(column.unit, units) if column.unit else ("", 1.0)
@@ -287,7 +287,7 @@ _NO_INTERVAL = "nothing: no scatter is known"
 
 
 def format_of_file(path: Path) -> str:
-    """Format of a table by the end of its file's name."""
+    """Format of a table by the suffix of its file."""
     form = _OF_SUFFIX.get(path.suffix.lower())
     if form is None:
         raise SettingsError(
@@ -300,7 +300,7 @@ def format_of_file(path: Path) -> str:
 def table_of_values(
     line: LineSource, found: DesignValues, levels: Mapping[str, ArrayLike]
 ) -> ValueTable:
-    """Design values of one line as a table, one row a point."""
+    """Design values of one line as a table, one row per point."""
     unit = found.unit
     columns = [
         *_levels(line, found, levels),
@@ -334,7 +334,7 @@ def table_of_values(
 def table_of_population(
     kind: LineSource, found: PopulationValues, levels: Mapping[str, ArrayLike]
 ) -> ValueTable:
-    """Specimens of one kind together, with tolerance limits, one row a point."""
+    """Specimens of one kind together, with tolerance limits, one row per point."""
     table = table_of_values(kind, found.values, levels)
     unit, of = found.values.unit, f"{100 * found.share:g} % of the population"
     limit = f"with {100 * found.confidence:g} % confidence {of} are"
@@ -360,7 +360,7 @@ def table_of_difference(
     levels: Mapping[str, ArrayLike],
     other_levels: Mapping[str, ArrayLike],
 ) -> ValueTable:
-    """Two lines at the same points as a table, one row a point."""
+    """Two lines at the same points as a table, one row per point."""
     unit, name = found.unit, found.quantity
     a, b = found.first, found.second
     columns = [
@@ -429,7 +429,7 @@ def _column(name: str, unit: str, meaning: str, values: NDArray[np.generic]) -> 
 
 
 def _between_lines(found: DesignValues) -> list[TableColumn]:
-    """Intervals with the scatter between lines; none where that is not known."""
+    """Intervals with the scatter between lines; none where it is not known."""
     if not np.isfinite(found.line_low).any():
         return []
     unit = found.unit
@@ -488,7 +488,7 @@ def _source(line: LineSource, found: DesignValues) -> str:
 
 
 def _about(line: LineSource) -> list[str]:
-    """What is stated of the line itself."""
+    """Stated properties of the line itself."""
     stated = (
         (
             f"break strength of {line.strength_of}, of which levels are shares,"
@@ -510,7 +510,7 @@ def _is_synthetic(line: LineSource) -> bool:
 
 
 def write_netcdf(table: ValueTable, path: Path) -> None:
-    """Write a table as a netCDF file, SI, with its sources as attributes."""
+    """Write a table as a netCDF file in SI, with its sources as attributes."""
     variables: dict[str, Any] = {}
     for column in table.columns:
         is_flag = column.values.dtype == np.bool_
@@ -551,7 +551,7 @@ def write_netcdf(table: ValueTable, path: Path) -> None:
 
 
 def _contribution_variables(table: ValueTable) -> dict[str, Any]:
-    """Signed contributions to the tension along the errors, by the names of the archives."""
+    """Signed contributions to the tension by error, with the names used in archives."""
     if not table.component:
         return {}
     named = {

@@ -1,22 +1,23 @@
-r"""Whether K_ap, H, K_0, K_1 and tau of a line hold together, and what would.
+r"""Consistency of K_ap, H, K_0, K_1 and tau of a line, and the consistent values.
 
 A spring K_0 beside a Maxwell element has an apparent spring constant between K_0 and K_0 + K_1,
-whatever its relaxation time and the frequency.  The surfaces of a report are fitted one by one, so
-that nothing keeps them there.  K_ap and H are measured in every run, K_0 in a slow pull; K_1 and
-tau were solved from them.  Solving again, in closed form, gives the K_1 and tau that belong to the
-K_ap and H of a page, and a quadratic through them the coefficients that the page should have:
+whatever its relaxation time and the frequency.  The surfaces of a report are fitted one by one,
+which does not ensure this.  K_ap and H are measured in every run, K_0 in a slow pull; K_1 and tau
+were solved from them.  Solving again, in closed form, gives the K_1 and tau that belong to the
+printed K_ap and H, and a quadratic through them gives the coefficients that should be printed:
 
 .. math:: b' = (X^T X)^{-1} X^T g(X b_{K_{ap}}, X b_H, K_0), \qquad
           z_j = \frac{b_j - b'_j}{s \sqrt{[(X^T X)^{-1}]_{jj}}}
 
-with s of the r2 that is printed with the column.  The report refitted values solved from runs, here
-from fitted K_ap and H: what the runs scatter about those is, to first order, orthogonal to the
-quadratic, so that the two agree better than s says, and a z is rather too small.  z is Student's t
-of the five degrees of freedom of s; of ten coefficients one is beyond 4.77 in 5 % of such columns.
+with s from the r2 printed with the column.  The report refitted values solved from runs; here they
+are solved from fitted K_ap and H.  The scatter of the runs about these is, to first order,
+orthogonal to the quadratic, so the two agree better than s says, and z is rather too small.  z is
+Student's t with the five degrees of freedom of s; one of ten coefficients exceeds 4.77 in 5 % of
+such columns.
 
-Of the surfaces of a campaign the runs are known, and with them the interval of each at a point:
-there K_1 and tau of their own surfaces are held against those that K_ap, H and K_0 give, by the
-interval of the difference, in which errors that all of them share stand with their signs.
+For the surfaces of a campaign the runs are known, and so is the interval of each at a point.  Here
+K_1 and tau of their own surfaces are compared with those from K_ap, H and K_0, by the interval of
+the difference, in which errors common to all enter with their signs.
 
 References
 ----------
@@ -54,32 +55,32 @@ K_AP, ENERGY, K_0, K_1, TIME, DASHPOT = (
 SOLVED = (K_1, TIME)
 
 _OF_ALL_COEFFICIENTS = 0.05
-"""Share of good columns of which one coefficient is called wrong. [1]"""
+"""Share of correct columns in which one coefficient is called wrong. [1]"""
 
 
 @dataclass(frozen=True)
 @read_only_arrays
 class ConsistentValues:
-    """A line at points, as printed and as it holds together; arrays have one shape (...).
+    """A line at points, as printed and made consistent; arrays have one shape (...).
 
     Parameters
     ----------
     slow_pull : str
-        Which K_0 was taken, in words.
+        K_0 that was used, in words.
     of_surfaces : dict of str to ndarray
-        K_ap, H, K_1 and tau, as far as the line has surfaces of them. [N], [J m-1], [s]
+        K_ap, H, K_1 and tau, where the line has surfaces of them. [N], [J m-1], [s]
     quasi_static_spring_constant : ndarray
         K_0 of that slow pull at the mean tension, or over the cycle where the loops of the runs are
         bent. [N]
     dissipation_spring_constant, relaxation_time : ndarray
         Solved from the K_ap and H of the surfaces; NaN where there is no solution. [N], [s]
     excess : ndarray
-        K_ap less K_0 and K_1 of the surfaces: above zero no line is so; NaN without K_1. [N]
+        K_ap less K_0 and K_1 of the surfaces: impossible above zero; NaN without K_1. [N]
     excess_uncertainty : ndarray
-        Standard uncertainty of it, of the surfaces alone. [N]
+        Its standard uncertainty, from the surfaces alone. [N]
     half_width : dict of str to ndarray
-        Of the 95 % interval of K_1 and of tau, of its surface less solved; empty for a line of
-        which the coefficients alone are printed. [N], [s]
+        95 % half width of the difference between surface and solution, for K_1 and tau; empty for a
+        line of which only the coefficients are printed. [N], [s]
     reason : ndarray of int
         Why there is no solution: `reduction.stages.three_parameter_line.line_product.REASONS`.
     """
@@ -100,7 +101,7 @@ class ConsistentValues:
         return np.asarray(self.excess > 0)
 
     def is_apart(self, name: str) -> Bools:
-        """K_1 or tau of its surface outside the interval about the solved one."""
+        """Whether K_1 or tau of its surface is outside the interval about the solution."""
         if name not in self.half_width:
             return np.zeros(self.reason.shape, dtype=bool)
         return np.asarray(
@@ -111,18 +112,18 @@ class ConsistentValues:
 @dataclass(frozen=True)
 @read_only_arrays
 class _RefittedSurface:
-    """The coefficients of one column beside those that the other columns ask for.
+    """The coefficients of one column beside those that follow from the other columns.
 
     Parameters
     ----------
     quantity : str
         K_1 or tau.
     slow_pull : str
-        Which K_0 was taken, in words.
+        K_0 that was used, in words.
     printed, consistent : ndarray, shape (10,)
-        B1 .. B10 of the page, and through the solved values. [SI unit of the quantity]
+        B1 .. B10 as printed, and fitted to the solutions. [SI unit of the quantity]
     z : ndarray, shape (10,)
-        Their difference over the standard error by the printed r2; NaN where that is open. [1]
+        Their difference over the standard error from the printed r2; NaN where r2 is open. [1]
     n_solved : int
         Runs of the design that have a solution.
     """
@@ -136,17 +137,17 @@ class _RefittedSurface:
 
     @property
     def worst(self) -> int:
-        """Place of the coefficient that is farthest off."""
+        """Index of the coefficient with the greatest z."""
         return 0 if np.isnan(self.z).all() else int(np.nanargmax(np.abs(self.z)))
 
     @property
     def greatest(self) -> float:
-        """How far off that one is; NaN where r2 is open."""
+        """That greatest z; NaN where r2 is open."""
         return float(abs(self.z[self.worst]))
 
 
 def is_of_loads(levels: Collection[str]) -> bool:
-    """Whether levels are those at which a slow pull and the loops of a rope say the same thing."""
+    """Whether slow pull and loops of a rope are comparable at these levels."""
     return set(levels) == {"frequency", "mean_tension", "tension_amplitude"}
 
 
@@ -157,19 +158,19 @@ def consistent_values(
     mean_tension: ArrayLike,
     tension_amplitude: ArrayLike,
 ) -> tuple[ConsistentValues, ...]:
-    """A line at points by its surfaces, and K_1 and tau that hold with its K_ap and H.
+    """Values of a line at points by its surfaces, and K_1 and tau consistent with its K_ap and H.
 
     Parameters
     ----------
     line : LineSource
-        With surfaces of K_ap and H of sines and its slow pulls; of any other nothing is said.
+        With surfaces of K_ap and H for sinusoids and its slow pulls; others give no values.
     frequency, mean_tension, tension_amplitude : array_like, shape (...)
         Broadcast together. [Hz], [N], [N]
 
     Returns
     -------
     values : tuple of ConsistentValues
-        One for each slow pull; of an open coefficient the first of its values.
+        One for each slow pull; for an open coefficient, its first value is used.
 
     Notes
     -----
@@ -178,8 +179,8 @@ def consistent_values(
 
     Examples
     --------
-    Plaited nylon at 0.3 Hz, 1728 and 489.6 lbf: 45,100 lbf printed for K_ap, 25,000 for K_1, which
-    with the 15,592 lbf of the slow pull is too little.
+    Plaited nylon at 0.3 Hz, 1728 and 489.6 lbf: the printed K_ap is 45,100 lbf; K_1, 25,000 lbf,
+    and the 15,592 lbf of the slow pull are too little for it.
 
     >>> from reduction.lines.published_source import published_sources
     >>> line = published_sources()["nylon-8-strand-plaited-0.5in-new"]
@@ -207,7 +208,7 @@ def consistent_values(
     found = []
     for label, curve in line.slow_pulls.items():
         pull = evaluate_curve(curve, mean)
-        # a printed curve is shown as far as its page has it
+        # a printed curve is shown up to the end of its printed range
         rest = pull.value if line.is_printed else np.where(pull.is_inside, pull.value, np.nan)
         share = np.ones(shape)
         if curve.loop_bend:
@@ -265,7 +266,7 @@ def consistent_values(
 
 
 class _Part(NamedTuple):
-    """What is not known of one number at points: errors that it shares with others, and its own."""
+    """Uncertainty of one number at points: errors that it shares with others, and its own."""
 
     component: tuple[Component, ...]
     contribution: Floats
@@ -291,7 +292,7 @@ _STEP = 1e-4
 def _slope(
     solve: Callable[..., LineParameters], name: str, inputs: tuple[Floats, ...], place: int
 ) -> Floats:
-    """Derivative of a solved number over one of the numbers that it is solved from."""
+    """Derivative of a solved number with respect to one of its inputs."""
     up, down = (
         getattr(solve(*(one * (1 + side * (k == place)) for k, one in enumerate(inputs))), name)
         for side in (_STEP, -_STEP)
@@ -300,7 +301,7 @@ def _slope(
 
 
 def _half_of_difference(parts: Sequence[tuple[Floats, _Part]]) -> Floats:
-    """Half width of the 95 % interval of a weighted sum; NaN where a part is not known."""
+    """Half width of the 95 % interval of a weighted sum; NaN where a part is unknown."""
     together = merged(
         [
             Contributions(one.component, {str(place): one.contribution})
@@ -317,7 +318,7 @@ def _half_of_difference(parts: Sequence[tuple[Floats, _Part]]) -> Floats:
 
 
 def refitted_surfaces(line: LineSource) -> tuple[_RefittedSurface, ...]:
-    """Printed K_1 and tau of a line against a quadratic through the solved ones.
+    """Printed K_1 and tau of a line, compared with a quadratic through the solutions.
 
     Parameters
     ----------
@@ -328,11 +329,11 @@ def refitted_surfaces(line: LineSource) -> tuple[_RefittedSurface, ...]:
     -------
     surfaces : tuple of _RefittedSurface
         One for each slow pull and each of K_1 and tau that is printed; runs without a solution
-        are left out, and nothing is fitted where too few are left.
+        are left out, and there is no fit where too few are left.
 
     Notes
     -----
-    See the module for z.
+    See the module docstring for z.
 
     Examples
     --------
@@ -379,7 +380,7 @@ def refitted_surfaces(line: LineSource) -> tuple[_RefittedSurface, ...]:
 
 
 def critical_z(surface: LineSurface) -> float:
-    """Greatest z of a column whose coefficients are all right, but in one such column of twenty.
+    """Greatest z that a correct column exceeds in one of twenty cases only.
 
     Examples
     --------
@@ -395,21 +396,21 @@ def critical_z(surface: LineSurface) -> float:
 def consistency_warnings(
     line: LineSource, quantity: str, levels: dict[str, Floats]
 ) -> tuple[str, ...]:
-    """What a person has to know before a value of a line whose columns do not hold together.
+    """Warnings about a value of a line whose columns are inconsistent.
 
     Parameters
     ----------
     line : LineSource
-        That is looked up.
+        Line of the look-up.
     quantity : str
-        What is looked up.
+        Quantity of the look-up.
     levels : dict of str to ndarray
-        At which, by name. [SI]
+        Levels of the look-up, by name. [SI]
 
     Returns
     -------
     warnings : tuple of str
-        Points where the printed numbers are impossible, columns that are wrong by z.
+        Points where the printed numbers are impossible, and columns that are wrong by z.
     """
     if quantity not in (K_AP, K_1, TIME, DASHPOT) or not (line.slow_pulls and is_of_loads(levels)):
         return ()
@@ -430,7 +431,7 @@ def consistency_warnings(
 
 
 def _of_surfaces(values: tuple[ConsistentValues, ...], name: str) -> tuple[str, ...]:
-    """Of the points where K_1 or tau is apart by every slow pull, the worst."""
+    """Worst of the points where K_1 or tau differs for every slow pull."""
     if not values:
         return ()
     everywhere = np.all([one.is_apart(name) for one in values], axis=0)
@@ -453,7 +454,7 @@ def _of_surfaces(values: tuple[ConsistentValues, ...], name: str) -> tuple[str, 
 
 
 def _of_points(values: tuple[ConsistentValues, ...]) -> tuple[str, ...]:
-    """Of the points that are impossible by every slow pull, the worst."""
+    """Worst of the points that are impossible for every slow pull."""
     if not values or not np.all([one.is_impossible for one in values], axis=0).any():
         return ()
     everywhere = np.all([one.is_impossible for one in values], axis=0)
@@ -481,7 +482,7 @@ def _of_points(values: tuple[ConsistentValues, ...]) -> tuple[str, ...]:
 def column_warnings(
     line: LineSource, name: str, refits: tuple[_RefittedSurface, ...]
 ) -> tuple[str, ...]:
-    """A column that is wrong by every slow pull."""
+    """A column that is wrong for every slow pull."""
     own = [one for one in refits if one.quantity == name]
     if not own or not min(one.greatest for one in own) > critical_z(line.surfaces[name]):
         return ()

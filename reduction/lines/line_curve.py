@@ -1,20 +1,20 @@
 r"""Curves of a line over one variable, with intervals.
 
-**Intervals for the lines of a kind, from those of the lines that were tested and their scatter.** A
-surface is of the lines that were tested.  Their mean differs from that of all lines of the kind by
-the scatter between lines over the root of their number, and another line from that mean by the
-whole of it.  A scatter is a share of a positive value, so that it is taken on the logarithm:
+**Intervals for lines of a kind, from those of the tested lines and the scatter between lines.** A
+surface holds for the tested lines.  Their mean differs from that of all lines of the kind by the
+scatter between lines over the root of their number; another line differs from that mean by the
+whole scatter.  The scatter is a share of a positive value, so it is taken on the logarithm:
 
 .. math:: u^2 = t_\nu^2 \ln(1 + c^2)\left(a + \frac{1}{n}\right) +
           \left(\frac{y_{high} - y}{y}\right)^2, \qquad y e^{\pm u}
 
-**Intervals of design values taken apart: what is of a value alone, and what it shares**:
+**Parts of the intervals of design values: the value's own part, and the shared part**:
 
 .. math:: w = t_{\nu_{eff}} \sqrt{r^2 + \textstyle\sum_k c_k^2}, \qquad w_r = t_\nu\, r
 
-with the half width w of an interval and w_r of the value alone, its standard uncertainty r, and the
-contribution c_k of each shared error.  Wherever two values are added, subtracted or multiplied, the
-contributions of one error are put together first and squared then.
+with the half width w of an interval and w_r of the value's own part, its standard uncertainty r,
+and the contribution c_k of each shared error.  Wherever two values are added, subtracted or
+multiplied, the contributions of one error are combined first and then squared.
 
 References
 ----------
@@ -76,7 +76,7 @@ def evaluate_curve(curve: LineCurve, at: ArrayLike) -> _CurvePoints:
     curve : LineCurve
         Polynomial or points.
     at : array_like, shape (...)
-        Of its variable. [SI unit of the variable]
+        Values of its variable. [SI unit of the variable]
 
     Returns
     -------
@@ -86,12 +86,12 @@ def evaluate_curve(curve: LineCurve, at: ArrayLike) -> _CurvePoints:
     Raises
     ------
     DataError
-        If a cubic whose slope is wanted has not four coefficients.
+        If a cubic whose slope is needed does not have four coefficients.
 
     Notes
     -----
-    Source: [1]_, Tables 6-9 for polynomials, [2]_ for moduli over strain.  Between points every
-    part of the uncertainty is on a straight line, as the value is: neighbours are of the same
+    Source: [1]_, Tables 6-9 for polynomials, [2]_ for moduli over strain.  Between points, every
+    part of the uncertainty is interpolated linearly, as is the value: neighbours are from the same
     cycles.
 
     Examples
@@ -158,17 +158,17 @@ def interval_between_lines(
     degrees_of_freedom: float,
     is_another: bool,
 ) -> tuple[Floats, Floats]:
-    """95 % interval of the mean of all lines of a kind, or of one more of them.
+    """95 % interval of the mean of all lines of a kind, or of another line of it.
 
     Notes
     -----
     [1]_, sec. 4.4.1 gives the scatter as typical, a tenth for new lines and half for exposed ones,
-    without a number of degrees of freedom: those of the surface are taken for it as well.  The
-    interval is never narrower than the one it is made from.
+    without degrees of freedom: those of the surface are used for it as well.  The interval is never
+    narrower than the given one.
 
     Examples
     --------
-    Four lines that differ by a tenth, a surface without scatter, and very many degrees of freedom:
+    Four lines that differ by a tenth, a surface without scatter, and many degrees of freedom:
     1.96 times 0.0998 times the root of 5/4 is 0.219.
 
     >>> one = np.array(1.0)
@@ -190,7 +190,7 @@ def interval_between_lines(
     with np.errstate(divide="ignore", invalid="ignore"):
         known = np.where(value > 0, value, np.nan)
         down, up = (np.sqrt(own**2 + ((end - value) / known) ** 2) for end in (low, high))
-        # far out, where a logarithm draws the lower end in, the limits given still hold
+        # far out, where the logarithm raises the lower end, the given limits still hold
         below, above = np.minimum(known * np.exp(-down), low), np.maximum(known * np.exp(up), high)
     return np.asarray(below), np.asarray(above)
 
@@ -205,12 +205,12 @@ _EVEN = 1e-6
 
 
 def shared_half_width(contribution: ArrayLike) -> Floats:
-    """Half width of the 95 % interval of shared errors together, known as they are.
+    """Half width of the 95 % interval of shared errors together, with known uncertainties.
 
     Parameters
     ----------
     contribution : array_like, shape (n_components, ...)
-        Signed, one row an error. [any]
+        Signed, one row per error. [any]
 
     Returns
     -------
@@ -224,7 +224,7 @@ def shared_half_width(contribution: ArrayLike) -> Floats:
 
     Notes
     -----
-    Normal, as the errors of instruments are taken ([3]_).
+    Normal, as assumed for the errors of instruments ([3]_).
 
     Examples
     --------
@@ -241,9 +241,9 @@ def own_half_width(found: DesignValues, end: End) -> Floats:
     Parameters
     ----------
     found : DesignValues
-        As looked up.
+        Values as looked up.
     end : {"low", "high", "surface_low", "surface_high", "kind_low", ...}
-        To which end.
+        End of the interval.
 
     Returns
     -------
@@ -257,9 +257,9 @@ def own_half_width(found: DesignValues, end: End) -> Floats:
 
     Notes
     -----
-    See the module.  Of an interval that reaches farther to one side the same share of each is the
-    value's own; the scatter between lines is ([3]_).  Where the parts are not known an interval
-    counts as normal, less what is shared.
+    See the module docstring.  In an asymmetric interval the same share of each side is the value's
+    own part, which includes the scatter between lines ([3]_).  Where the parts are not known, the
+    interval is taken as normal and the shared part is removed.
 
     Examples
     --------
@@ -293,22 +293,22 @@ def own_half_width(found: DesignValues, end: End) -> Floats:
 
 
 def is_even(found: DesignValues) -> bool:
-    """Whether the parts are known and the interval reaches as far to either side everywhere.
+    """Whether the parts are known and the interval is symmetric everywhere.
 
     Parameters
     ----------
     found : DesignValues
-        As looked up.
+        Values as looked up.
 
     Returns
     -------
     is_even : bool
-        False of a surface on another scale, and where an interval is all that is known.
+        False for a surface on another scale, and where only an interval is known.
 
     Raises
     ------
     ValueError
-        Never by itself.
+        Not raised by this function itself.
 
     Notes
     -----
@@ -335,9 +335,9 @@ def half_width_of_parts(
     Parameters
     ----------
     random, degrees_of_freedom : array_like, shape (n_parts, ...)
-        What is of each value alone, and from how much. [any], [1]
+        Random part of each value, and its degrees of freedom. [any], [1]
     contribution : array_like, shape (n_components, ...), optional
-        Of shared errors, put together already. [as random]
+        Contributions of shared errors, already combined. [as random]
     of_contribution : array_like, shape (n_components,)
         Degrees of freedom of each. [1]
 
@@ -353,11 +353,11 @@ def half_width_of_parts(
 
     Notes
     -----
-    Welch and Satterthwaite ([3]_).
+    Welch-Satterthwaite formula ([3]_).
 
     Examples
     --------
-    Two surfaces of five degrees of freedom each are ten together: 2.228 times the root of 2.
+    Two surfaces with five degrees of freedom each have ten together: 2.228 times the root of 2.
 
     >>> print(half_width_of_parts([1.0, 1.0], [5.0, 5.0]).round(3))
     3.151
@@ -375,22 +375,22 @@ def half_width_of_parts(
 
 
 def shared_of(values: Mapping[str, DesignValues]) -> Contributions:
-    """What shared errors add to several values at the same points, one row an error for all.
+    """Contributions of shared errors to several values at the same points, one row per error.
 
     Parameters
     ----------
     values : mapping of str to DesignValues
-        By a name. [unit of each]
+        Values by name. [unit of each]
 
     Returns
     -------
     contributions : Contributions
-        By that name; zero of an error that a value does not know. [unit of each]
+        By that name; zero for an error that a value does not have. [unit of each]
 
     Raises
     ------
     SettingsError
-        If an error stands twice among those of one value.
+        If an error occurs twice among those of one value.
 
     Notes
     -----

@@ -1,11 +1,10 @@
-"""Design values from tests at single levels of a cycle: at a tested level, or between two of them.
+"""Design values from tests at single levels of a cycle: at a tested level, or between two.
 
 Nothing is fitted and nothing is extrapolated.  Tests whose levels agree are one level: its value is
-their mean, and the interval holds the scatter between them where there are several.  Between two
-tested levels, on the straight line that joins them, the value is interpolated and the interval
-spans the intervals of both: that holds wherever the quantity rises or falls throughout between
-them, and asks for nothing else.  A frequency counts by its logarithm, since
-periods are tested in decades.
+their mean, and with several tests the interval includes the scatter between them.  On the straight
+line between two tested levels the value is interpolated, and the interval spans the intervals of
+both: this requires only that the quantity is monotone between them.  A frequency is interpolated by
+its logarithm, since periods are tested in decades.
 """
 
 from __future__ import annotations
@@ -24,23 +23,23 @@ from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import Bools, Floats, read_only_arrays
 
 SAME_LEVEL = 0.02
-"""Share within which a machine that is told one level reaches it, and two levels are one. [1]"""
+"""Relative difference within which a machine reaches a set level, and two levels are equal. [1]"""
 
 
 INTERPOLATED = "not tested, interpolated between"
-"""How a note on a value between two tested levels begins."""
+"""Beginning of a note on a value between two tested levels."""
 
 TESTED_IN = ("medium", "soak", "temperature")
-"""Conditions in which a value is another one."""
+"""Conditions that change a value."""
 
 
 @dataclass(frozen=True)
 @read_only_arrays
 class _LevelPoints:
-    """Tested levels at points; arrays have the shape (n_points,), contributions a row per error.
+    """Results at points; arrays have the shape (n_points,), contributions one row per error.
 
-    ``low`` and ``high`` are of one more test, NaN where a level has a single one; ``notes`` name
-    the tests that were used, ``warnings`` are of those.
+    ``low`` and ``high`` are for one more test, NaN where a level has a single one; ``notes`` name
+    the tests that were used, ``warnings`` are those of these tests.
     """
 
     value: Floats
@@ -58,7 +57,7 @@ class _LevelPoints:
 
 @dataclass(frozen=True)
 class _Level:
-    """Tests at one level, put together."""
+    """Tests at one level, combined."""
 
     at: Floats
     value: float
@@ -80,7 +79,7 @@ def _is_same(a: Floats, b: Floats) -> Bools:
 
 
 def levels_of_tests(levels: LineLevels) -> list[tuple[Floats, tuple[int, ...]]]:
-    """Levels that differ, in the order of the tests, with the tests at each.
+    """Different levels, in the order of the tests, with the tests at each.
 
     Examples
     --------
@@ -104,12 +103,12 @@ def levels_of_tests(levels: LineLevels) -> list[tuple[Floats, tuple[int, ...]]]:
 def completed_levels(
     levels: LineLevels, given: Mapping[str, Floats], name: str
 ) -> dict[str, Floats]:
-    """What is asked for, with each level that was not stated and that all tests have alike.
+    """Requested levels, completed with each missing level that is equal in all tests.
 
     Raises
     ------
     SettingsError
-        If a level is none of the tests', or one is missing at which the tests differ.
+        If a level is not one of the tests', or one is missing in which the tests differ.
     """
     unknown = sorted(set(given) - set(levels.variables))
     if unknown:
@@ -134,7 +133,7 @@ def completed_levels(
 
 
 def refuse_mixed_conditions(levels: LineLevels, name: str) -> None:
-    """Refuse tests that were made wet and dry, or at several temperatures, as one line."""
+    """Refuse to combine tests made wet and dry, or at several temperatures, as one line."""
     seen = {
         tuple((key, one[key]) for key in TESTED_IN if one.get(key)) for one in levels.conditions
     }
@@ -148,7 +147,7 @@ def refuse_mixed_conditions(levels: LineLevels, name: str) -> None:
 
 
 def _distinct(values: Floats) -> list[float]:
-    """Values that differ, rising."""
+    """Distinct values, increasing."""
     found: list[float] = []
     for one in np.sort(values).tolist():
         if not found or one - found[-1] > SAME_LEVEL * one:
@@ -169,7 +168,7 @@ def _level_words(levels: LineLevels, at: Sequence[float]) -> str:
 
 
 def _together(levels: LineLevels, at: Floats, tests: tuple[int, ...]) -> _Level:
-    """Mean of the tests at one level; of several, their scatter is in the interval."""
+    """Mean of the tests at one level; with several, their scatter is in the interval."""
     rows, n = list(tests), len(tests)
     value = float(levels.value[rows].mean())
     own = levels.random_standard_uncertainty[rows]
@@ -177,7 +176,7 @@ def _together(levels: LineLevels, at: Floats, tests: tuple[int, ...]) -> _Level:
     run_random = np.nan
     if n > 1:
         scatter = float(levels.value[rows].std(ddof=1))
-        # two tests may agree by chance: never better than what each is known to
+        # two tests may agree by chance: never better than the uncertainty of each
         within = float(np.sqrt(np.sum(own**2)) / n)
         random, freedom = max(scatter / np.sqrt(n), within), float(n - 1)
         run_random = float(np.hypot(max(scatter, within * np.sqrt(n)), random))
@@ -199,26 +198,26 @@ def _together(levels: LineLevels, at: Floats, tests: tuple[int, ...]) -> _Level:
 
 
 def _is_log(levels: LineLevels) -> Bools:
-    """Which variables are interpolated by their logarithm."""
+    """Whether each variable is interpolated by its logarithm."""
     return np.array([variable == "frequency" for variable in levels.variables])
 
 
 def _scaled(levels: LineLevels, at: Floats) -> Floats:
-    """Levels on the scales on which they are interpolated."""
+    """Levels on the scales of interpolation."""
     return np.where(_is_log(levels), np.log(np.where(_is_log(levels), at, 1.0)), at)
 
 
 def evaluate_levels(levels: LineLevels, at: Floats, name: str) -> _LevelPoints:
-    """Value at points, of a tested level or between two of them.
+    """Value at points, at a tested level or between two.
 
     Parameters
     ----------
     levels : LineLevels
         Tests of one line.
     at : ndarray, shape (n_points, n_variables)
-        In the order of its variables. [SI]
+        Columns in the order of its variables. [SI]
     name : str
-        Of the line, for messages.
+        Name of the line, for messages.
 
     Returns
     -------
@@ -228,16 +227,16 @@ def evaluate_levels(levels: LineLevels, at: Floats, name: str) -> _LevelPoints:
     Raises
     ------
     DataError
-        If a point is no tested level and not on the straight line between two of them.
+        If a point is not a tested level and not on the straight line between two of them.
 
     Notes
     -----
-    See the module.  A level is tested where every variable is within `SAME_LEVEL` of it; of the
-    pairs of levels with a point between them the closest one is taken.
+    See the module docstring.  A level is tested where every variable is within `SAME_LEVEL` of it;
+    of the pairs of levels with a point between them, the closest pair is used.
 
     Examples
     --------
-    A quarter of the way from 100 to 200 N, the interval from the least to the greatest end:
+    A quarter of the way from 100 to 200 N; the interval spans both:
 
     >>> two = LineLevels(
     ...     "apparent_spring_constant", ("mean_tension",), np.array([[100.0], [200.0]]),
@@ -288,7 +287,7 @@ def evaluate_levels(levels: LineLevels, at: Floats, name: str) -> _LevelPoints:
 
 
 def _distance(levels: LineLevels, a: Floats, b: Floats) -> float:
-    """Between two levels, each variable as a share of the greatest tested one."""
+    """Distance of two levels, each variable as a share of the greatest tested one."""
     scale = np.ptp(_scaled(levels, levels.at), axis=0)
     scale = np.where(scale > 0, scale, 1.0)
     return float(np.linalg.norm((_scaled(levels, a) - _scaled(levels, b)) / scale))
@@ -302,17 +301,17 @@ def _fill_between(
     rows: Floats,
     is_found: Bools,
 ) -> tuple[list[str], list[_Level]]:
-    """Interpolate at points between two levels, closest pairs first; what is said, and of which."""
+    """Interpolate at points between two levels, closest pairs first; give notes and warnings."""
     scaled = _scaled(levels, at)
     pairs = sorted(combinations(known, 2), key=lambda two: _distance(levels, two[0].at, two[1].at))
     said: list[str] = []
     used: list[_Level] = []
     for one, other in pairs:
         start, way = _scaled(levels, one.at), _scaled(levels, other.at) - _scaled(levels, one.at)
-        # a variable in which both agree says nothing of how far along a point is
+        # a variable that is equal in both does not locate a point between them
         moves = ~_is_same(one.at[:, None], other.at[:, None])
         way = np.where(moves, way, 0.0)
-        # the mean over the variables that differ of how far along each of them is
+        # mean of the relative positions in the variables that differ
         steps = np.where(moves, (scaled - start) / np.where(moves, way, 1.0), 0.0)
         along = steps.sum(axis=1) / moves.sum()
         on_line = start + along[:, None] * way

@@ -1,4 +1,4 @@
-r"""Looks up design values of a line from its surfaces and curves.
+r"""Look-up of design values of a line from its surfaces and curves.
 
 References
 ----------
@@ -59,7 +59,7 @@ SLACK_SHARE = 0.3
 """The same for a line that goes slack. [1]"""
 
 LEAST_SHARE = 0.03
-"""Least tension over the break strength with which a line was found to keep its strength. [1]"""
+"""Least tension over the break strength at which a line was found to keep its strength. [1]"""
 
 _HOW_FLAGGED = "--extrapolate flag gives the number, where there is one, and flags it."
 
@@ -71,9 +71,9 @@ _SLACK = 1e-9
 class _CycleLoads:
     """Ends of a cycle of tension; arrays have the shape (...) of the points.
 
-    ``is_slack`` where the minimum is zero; ``is_above_rule`` where the peak is above the share
-    that the source allows. Shares are of the rated break strength, ``own`` ones of the strength
-    that the line has in its condition; NaN where that is not known.
+    ``is_slack`` where the minimum is zero; ``is_above_rule`` where the peak exceeds the share
+    that the source allows. Shares are of the rated break strength; ``own`` shares are of the
+    strength of the line in its condition. NaN where not known.
     """
 
     peak_tension: Floats
@@ -98,9 +98,9 @@ def cycle_loads(
     Notes
     -----
     Source: [1]_, sec. 3.4, 5.0: at most 60 % of the break strength where a line is always loaded,
-    30 % where it goes slack.  Between 3 % and 62 % (sec. 5.0) it kept its strength, from zero to
-    above 30 % it failed; nothing was tested with less than 3 %, and the lower share is taken there.
-    Of a line that lost strength the share is that of what it has left.
+    30 % where it goes slack.  Between 3 % and 62 % (sec. 5.0) it kept its strength; from zero to
+    above 30 % it failed.  Nothing was tested with less than 3 %, so the lower share is used there.
+    For a line that lost strength, shares are of its residual strength.
 
     Examples
     --------
@@ -149,13 +149,13 @@ def cycle_loads(
 def _loads_of_line(
     line: LineSource, given: Mapping[str, Floats], shape: tuple[int, ...], *, branch: str = ""
 ) -> _CycleLoads:
-    """Ends of the tension at the points of a look-up.
+    """Peak and minimum tension at the points of a look-up.
 
     Notes
     -----
-    The rule of [1]_, sec. 3.4, 5.0 is of nylon and polyester, where zero tension lowers what a line
-    stands; a tether of rubber must not go slack at all, since it tangles and is cut ([2]_).  Beyond
-    a curve that is given by points the tension is not known, and no rule can be checked.
+    The rule of [1]_, sec. 3.4, 5.0 is for nylon and polyester, whose strength in cycles is lower
+    with zero tension; a rubber tether must not go slack at all, since it tangles and is cut ([2]_).
+    Beyond a curve given by points the tension is unknown, and no rule can be checked.
 
     Examples
     --------
@@ -180,7 +180,7 @@ def _loads_of_line(
         loads = _unknown_at(loads, unknown)
     if line.is_tether:
         _refuse_slack(line, loads)
-        # the shares of the rule are of fibres
+        # the shares of the rule are for fibres
         loads = replace(loads, is_above_rule=np.zeros(shape, dtype=bool))
     return loads
 
@@ -227,7 +227,7 @@ def _refuse_slack(line: LineSource, loads: _CycleLoads) -> None:
 
 
 def _at(flags: Bools) -> str:
-    """At how many points something is so; nothing where it is so everywhere."""
+    """Number of points at which a flag is set; empty where it is set everywhere."""
     return "" if flags.all() else f"at {int(flags.sum())} of {flags.size} points "
 
 
@@ -244,7 +244,7 @@ def _design_values(
     component: tuple[Component, ...] = (),
     **numbers: Floats,
 ) -> DesignValues:
-    """Put a look-up together.
+    """Assemble the result of a look-up.
 
     Examples
     --------
@@ -299,7 +299,7 @@ def _design_values(
 
 
 def _scatter_note(of: LineSurface | LineCurve | LineLevels, words: tuple[str, str]) -> str:
-    """What the intervals hold, and what they do not."""
+    """Scatter that the intervals include or leave out."""
     if isinstance(of, LineSurface) and np.isfinite(of.line_scatter):
         return (
             f"specimens of this kind scatter by about {100 * of.line_scatter:.0f} % "
@@ -310,26 +310,26 @@ def _scatter_note(of: LineSurface | LineCurve | LineLevels, words: tuple[str, st
 
 
 def interval_note(interval_of: str, surface_interval_of: str) -> str:
-    """What an interval is of that holds no scatter between lines, as `DesignValues` names it."""
+    """Note for an interval without scatter between lines, named as in `DesignValues`."""
     told = interval_of or surface_interval_of
     return f"the interval applies to {told}; scatter between specimens is not included"
 
 
 def sigma_from_r2(coefficient: ArrayLike, r2: float, *, n_factors: int = 3) -> float:
-    r"""Scatter of a run about a surface of which only coefficients and r2 are printed.
+    r"""Scatter of a run about a surface for which only coefficients and r2 are printed.
 
     .. math:: s^2 = \frac{(1 - r^2)}{r^2 \, \nu} \sum_i (\hat y_i - \bar{\hat y})^2
 
     Notes
     -----
-    Least squares with a mean leaves the mean of the fitted values that of the runs, so that the
-    explained sum of squares follows from the design, which [1]_, eq. 5, App. C states, and the
-    coefficients.  The rounding of r2 moves it: 0.985 stands for 0.9845 to 0.9855, sigma for +-1.7
-    %.
+    Least squares with a mean term keeps the mean of the fitted values equal to that of the runs,
+    so the explained sum of squares follows from the coefficients and the design, which [1]_, eq. 5,
+    App. C states.  The rounding of r2 matters: 0.985 stands for 0.9845 to 0.9855, sigma for
+    +-1.7 %.
 
     Examples
     --------
-    A slope of 1 alone explains 8 of fifteen runs; with r2 = 0.5 as much is left, over 5:
+    A slope of 1 alone explains 8 of fifteen runs; with r2 = 0.5 the residual is as much, over 5:
 
     >>> round(sigma_from_r2([0, 0, 0, 0, 1, 0, 0, 0, 0, 0], 0.5) ** 2, 12)
     1.6
@@ -357,7 +357,7 @@ def _values_of_curve(
 
     Notes
     -----
-    The interval is Student's, by the effective degrees of freedom of all parts.
+    The interval is Student's t, with the effective degrees of freedom of all parts.
 
     Examples
     --------
@@ -437,7 +437,7 @@ def _values_of_levels(
     shape = columns[0].shape
     found = evaluate_levels(levels, np.stack([one.ravel() for one in columns], axis=1), line.name)
     nothing = np.full(shape, np.nan)
-    # of a test that went slack the valley is noise about zero
+    # the valley of a test that went slack is noise about zero
     ends = dict(whole)
     if "tension_amplitude" in ends:
         ends["tension_amplitude"] = np.minimum(ends["tension_amplitude"], ends["mean_tension"])
@@ -474,13 +474,13 @@ def _values_of_levels(
 
 
 def _unit(name: str) -> str:
-    """Unit as it stands behind a number; a plain number has none."""
+    """Unit as written after a number; empty for a dimensionless number."""
     unit = quantity_of(name).unit
     return "" if unit == "1" else f" {unit}"
 
 
 def _joints(curve: LineCurve, at: Floats) -> list[str]:
-    """Where two pieces meet with two values, and a point is just there."""
+    """Joints of two pieces with different values that coincide with a point."""
     if not curve.value.size:
         return []
     meet = (np.diff(curve.at) == 0) & (np.diff(curve.value) != 0)
@@ -505,12 +505,12 @@ def _values_of_surface(
 
     Notes
     -----
-    See `reduction.lines.line_surface.evaluate_surface` for a run and the surface, and
-    `reduction.lines.line_curve.interval_between_lines` for other lines.
+    For a run and the surface see `reduction.lines.line_surface.evaluate_surface`, for other lines
+    `reduction.lines.line_curve.interval_between_lines`.
 
     Examples
     --------
-    A surface that is its mean, of one line among lines that differ by a tenth:
+    A surface that is constant, of one line among lines that differ by a tenth:
 
     >>> surface = LineSurface(
     ...     "relaxation_time", np.array([1.5]), np.array([[0]]), np.array([0.1]),
@@ -532,7 +532,7 @@ def _values_of_surface(
     at = np.stack([one.ravel() for one in columns], axis=1)
     points = evaluate_surface(surface, at)
     boxes = [(surface.low, surface.high), *surface.alternative_boxes]
-    # the first of all is the surface itself
+    # the first choice is the surface itself
     choices = [
         (low, high, one)
         for low, high in boxes
@@ -566,7 +566,7 @@ def _values_of_surface(
     kind_low, kind_high = between(surface_low, surface_high, is_another=False)
     line_low, line_high = between(low, high, is_another=True)
     has_interval = bool(np.isfinite(surface.sigma))
-    # where other surfaces may be the right one the interval is not of two parts
+    # where alternative surfaces may be right, the interval cannot be split into two parts
     is_apart = bool(surface.component) and not others
 
     def part(values: Floats) -> Floats:
@@ -638,16 +638,16 @@ def look_up(
     line : LineSource
         Published, or from a campaign.
     quantity : str
-        One of its quantities.
+        Quantity of the line.
     branch : {"ascending", "descending"}, optional
-        Of a quantity that differs by it; needed where both are there.
+        Branch, for a quantity that differs by branch; needed where both exist.
     extrapolate : {"refuse", "flag"}
-        What to do outside the tested range.
+        Action for points outside the tested range.
     **levels : array_like, shape (...)
-        By name: the factors of the surface (``frequency``, ``mean_tension``,
-        ``tension_amplitude``), or the variable of the curve (``mean_tension``, ``tension``,
-        ``strain``), or levels of single tests, of which those that all tests have alike may be
-        left out. They are broadcast together. [SI]
+        Levels by name: the factors of the surface (``frequency``, ``mean_tension``,
+        ``tension_amplitude``), the variable of the curve (``mean_tension``, ``tension``,
+        ``strain``), or levels of single tests; levels equal in all tests may be left out. They are
+        broadcast together. [SI]
 
     Returns
     -------
@@ -657,9 +657,9 @@ def look_up(
     Raises
     ------
     SettingsError
-        If the line has no such quantity, a level is missing or not of it, is no finite number or
-        does not broadcast, a frequency is not positive, or a branch is asked for where there is
-        none.
+        If the line has no such quantity, a level is missing, not a factor of the quantity, not
+        finite or does not broadcast, a frequency is not positive, or a branch is given for a
+        quantity without branches.
     DataError
         If a point is outside the tested range and ``extrapolate`` is "refuse", an amplitude is
         above its mean tension, or a tether goes slack.
@@ -716,7 +716,7 @@ def look_up(
 
 
 def _warned(line: LineSource, found: DesignValues, given: dict[str, Floats]) -> DesignValues:
-    """The values with what other numbers of the line say against them."""
+    """The values with warnings from other numbers of the line."""
     told = consistency_warnings(line, found.quantity, given)
     return replace(found, warnings=tuple(dict.fromkeys((*line.warnings, *found.warnings, *told))))
 
@@ -762,7 +762,7 @@ def _dashpot(
     extrapolate: Literal["refuse", "flag"],
     levels: Mapping[str, ArrayLike],
 ) -> DesignValues:
-    """N = K_1 tau: what both share by its sign, what is of each alone as independent."""
+    """N = K_1 tau: shared errors enter with their sign, the others as independent."""
     spring, time = (
         look_up(line, name, branch=None, extrapolate=extrapolate, **levels)
         for name in ("dissipation_spring_constant", "relaxation_time")
@@ -791,7 +791,7 @@ def _dashpot(
         high=value + half("high"),
         surface_low=value - half("surface_low"),
         surface_high=value + half("surface_high"),
-        # of two surfaces together: to be read from the intervals
+        # combined from two surfaces: to be read from the intervals
         random_standard_uncertainty=np.empty(0),
         random_degrees_of_freedom=np.empty(0),
         run_standard_uncertainty=np.empty(0),
@@ -812,7 +812,7 @@ def _dashpot(
 def _of_branch(line: LineSource, curves: list[LineCurve], branch: Branch | None) -> LineCurve:
     if branch is not None and not any(one.branch for one in curves):
         raise _no_branch(curves[0].quantity, line, branch)
-    # where one branch alone is known it need not be asked for
+    # where only one branch is known it need not be named
     found = [one for one in curves if branch is None or one.branch == branch]
     if len(found) == 1:
         return found[0]
@@ -825,7 +825,7 @@ def _of_branch(line: LineSource, curves: list[LineCurve], branch: Branch | None)
 
 
 def _own_parts(spring: DesignValues, time: DesignValues) -> dict[str, Floats]:
-    """What the scatter of K_1 and of tau adds to N, a row each; empty where one is not so known."""
+    """Contributions of the scatter of K_1 and tau to N, one row each; empty where not known."""
     if not (is_even(spring) and is_even(time)):
         return {}
     by = (time.value, spring.value)

@@ -21,7 +21,7 @@ from reduction.quantities.digits import plain_number
 from reduction.record.errors import DataError, ReductionError, SettingsError
 
 JUST_OUTSIDE = 0.1
-"""Share of half the tested range by which a line may be outside, and is ranked and flagged. [1]"""
+"""How far a line may be outside to be ranked and flagged, over half the tested range. [1]"""
 
 _INCH = 0.0254
 
@@ -30,7 +30,7 @@ _CLOSE = 1e-6
 
 @dataclass(frozen=True)
 class _LevelOutside:
-    """A level that was not tested, and the end of the tested range that it is beyond, in SI."""
+    """A level that was not tested, and the nearest end of the tested range, in SI."""
 
     name: str
     value: float
@@ -40,9 +40,9 @@ class _LevelOutside:
 
 @dataclass(frozen=True)
 class _RankedLine:
-    """A line at its place.
+    """A line with its rank.
 
-    ``ties`` name the lines whose 95 % intervals overlap its own, of the lines that were tested;
+    ``ties`` name the lines whose 95 % intervals overlap its own, for the tested lines;
     ``kind_ties`` those with overlapping intervals of another line of each kind, None where that is
     not known.
     """
@@ -56,9 +56,9 @@ class _RankedLine:
 
 @dataclass(frozen=True)
 class _LineRanking:
-    """Lines from the least value to the greatest, and those that have no place, with the reason.
+    """Lines from the least value to the greatest, and those without a rank, with the reason.
 
-    ``errata`` are those of sentences of a report that order some of these lines.
+    ``errata`` concern sentences of a report that order some of these lines.
     """
 
     ranked: tuple[_RankedLine, ...]
@@ -79,21 +79,21 @@ def rank_lines(
     Parameters
     ----------
     lines : sequence of LineSource
-        That have the quantity.
+        Lines that have the quantity.
     quantity : str
-        One that all of them have.
+        Quantity of all lines.
     levels : sequence of mapping of str to float, length n_lines
-        The same load of each; shares of a break strength differ. [SI]
+        The same load for each; shares of a break strength differ. [SI]
     branch : {"ascending", "descending"}, optional
-        As `look_up`.
+        As in `look_up`.
     extrapolate : {"refuse", "flag"}
-        Whether a line that is farther outside than `JUST_OUTSIDE` has a place.
+        Whether a line that is farther outside than `JUST_OUTSIDE` gets a rank.
 
     Returns
     -------
     ranking : _LineRanking
-        A line is left out where it was not tested, or where the load is above what its source
-        allows: no choice.
+        A line is left out where it was not tested, or where the load exceeds the limit of its
+        source.
 
     Raises
     ------
@@ -102,8 +102,8 @@ def rank_lines(
 
     Notes
     -----
-    Figure 4 of [1]_ as numbers.  Two lines tie where their intervals have a value in common, which
-    is more cautious than the interval of their difference.
+    Figure 4 of [1]_ as numbers.  Two lines tie where their intervals overlap, which is more
+    cautious than the interval of their difference.
     """
     found: list[tuple[LineSource, DesignValues, tuple[_LevelOutside, ...]]] = []
     left_out: list[tuple[str, str]] = []
@@ -151,7 +151,7 @@ def _reason(error: ReductionError) -> str:
 
 
 def _outside(line: LineSource, quantity: str, at: Mapping[str, float]) -> tuple[_LevelOutside, ...]:
-    """Levels just outside the box of a surface; none where one is farther off than that."""
+    """Levels just outside the box of a surface; none where one of them is farther outside."""
     surface = line.surfaces.get(quantity)
     if surface is None:
         return ()
@@ -195,7 +195,7 @@ def _ties(
 
 
 def _told_otherwise(lines: Sequence[LineSource], quantity: str) -> tuple[Erratum, ...]:
-    """Errata of sentences of [1]_ that put two or more of these lines in an order."""
+    """Errata of sentences of [1]_ that order two or more of these lines."""
     named: dict[str, set[str]] = {}
     for cell in cells_of("CG-D-39-80"):
         if not (cell.erratum and cell.column.startswith(f"{quantity} at ")):
@@ -208,7 +208,7 @@ def _told_otherwise(lines: Sequence[LineSource], quantity: str) -> tuple[Erratum
 
 
 def _is_row(row: str, line: LineSource) -> bool:
-    """Whether a row of the report, ``nylon | double braid | 3/4 in | new``, is of a line."""
+    """Whether a row of the report, ``nylon | double braid | 3/4 in | new``, is for a line."""
     words = row.split(" | ")
     if len(words) != 4 or [words[0], words[1], words[3]] != [
         line.material, line.construction, line.condition,
@@ -219,7 +219,7 @@ def _is_row(row: str, line: LineSource) -> bool:
 
 
 def outside_words(found: _LevelOutside, unit: str, factor: float) -> str:
-    """A level that was not tested, in words.
+    """An untested level, in words.
 
     Examples
     --------

@@ -1,16 +1,16 @@
-r"""Search of lines by material, construction, diameter; two lines at the same points.
+r"""Search for lines by material, construction, diameter; comparison of two lines.
 
-**Two lines at the same points: difference, ratio, and whether it is more than their intervals.**
-The limits of a difference follow from those of the two values, each side on its own, less what
-errors that are known by name add to each; of those the difference alone counts, so that one load
-cell under both moves them together:
+**Difference and ratio of two lines at the same points, and whether they exceed their intervals.**
+The limits of a difference follow from those of the two values, for each side separately, without
+the errors that are known by name.  Of these only the difference of the contributions counts, since
+one load cell under both moves them together:
 
 .. math:: L = d - \sqrt{(b - l_b)^2 + (u_a - a)^2 + 1.96^2 \textstyle\sum_k (c_{bk} - c_{ak})^2},
           \qquad U = d + \sqrt{(u_b - b)^2 + (a - l_a)^2 +
           1.96^2 \textstyle\sum_k (c_{bk} - c_{ak})^2}, \qquad d = b - a
 
-Where the parts of both are known and neither bends, as of a curve or of a surface of a campaign, it
-is Student's t of the degrees of freedom of all parts together.
+Where the parts of both are known and both intervals are symmetric, as for a curve or a surface of a
+campaign, the interval is Student's t with the degrees of freedom of all parts together.
 
 References
 ----------
@@ -58,12 +58,12 @@ def find_lines(
     diameter: float | None = None,
     tolerance: float = DIAMETER_TOLERANCE,
 ) -> list[LineSource]:
-    """Lines of which all that is asked for holds.
+    """Lines that meet all criteria.
 
     Notes
     -----
     Sizes are nominal ([1]_, Table 2).  Sizes in inches are 1/16 in or more apart: the default joins
-    names of one size in two systems, and parts two sizes up to 2 in.
+    names of one size in two systems, and separates two sizes up to 2 in.
 
     Examples
     --------
@@ -112,7 +112,7 @@ def _is_size(diameter: float, wanted: float, tolerance: float) -> bool:
 
 
 def _there_is(lines: Sequence[LineSource]) -> str:
-    """What could have been asked for."""
+    """Choices that exist."""
     parts = []
     for name in ("material", "construction", "condition"):
         texts = dict.fromkeys(getattr(one, name) for one in lines if getattr(one, name))
@@ -125,38 +125,38 @@ def _there_is(lines: Sequence[LineSource]) -> str:
 
 
 SAME_TEMPERATURE = 2.0
-"""Difference of two temperatures that are one: what a room holds. [K]"""
+"""Greatest difference of two equal temperatures: the variation in a room. [K]"""
 
 
 def in_conditions(
     line: LineSource, quantity: str, asked: Mapping[str, str], *, is_flagged: bool = False
 ) -> LineSource:
-    """A line as far as it was tested in the conditions that are asked for.
+    """The part of a line that was tested in the requested conditions.
 
-    Of tests at single levels those that were made so remain.
+    Of tests at single levels, those under these conditions remain.
 
     Parameters
     ----------
     line : LineSource
-        As found.
+        Line as found.
     quantity : str
-        That is wanted: a slow pull and the cycles of one line may have been tested apart.
+        Requested quantity: slow pull and cycles of one line may have had different conditions.
     asked : mapping of str to str
         ``medium``, by its words, and ``temperature``, with a unit, within `SAME_TEMPERATURE`.
     is_flagged : bool
-        Keep what was tested in other conditions, with a warning.
+        Keep tests in other conditions, with a warning.
 
     Returns
     -------
     line : LineSource
-        The line itself where nothing is asked.
+        The line itself where no condition is given.
 
     Raises
     ------
     DataError
         If nothing was tested so, or nothing is stated, and ``is_flagged`` is false.
     SettingsError
-        If a temperature is none.
+        If a temperature is invalid.
 
     Examples
     --------
@@ -202,7 +202,7 @@ def _only(levels: LineLevels, rows: list[int]) -> LineLevels:
 
 
 def _is_condition(own: Mapping[str, str], asked: Mapping[str, str]) -> bool:
-    """Whether every test of a line was made so."""
+    """Whether every test of a line was made under these conditions."""
     media = own.get("medium", "").split(_AND)
     if not all(_has_words(one, asked["medium"]) for one in media if "medium" in asked):
         return False
@@ -214,7 +214,7 @@ def _is_condition(own: Mapping[str, str], asked: Mapping[str, str]) -> bool:
             parse_quantity(one, "temperature") for one in own.get("temperature", "").split(_AND)
         ]
     except SettingsError:
-        return False  # not stated, or in words
+        return False  # not stated, or stated in words
     return all(abs(one - wanted) <= SAME_TEMPERATURE + _ROUNDING for one in known)
 
 
@@ -222,7 +222,7 @@ _AND = "; "
 
 
 def joined_conditions(every: Iterable[Mapping[str, str]]) -> dict[str, str]:
-    """Conditions of several tests, those that differ beside each other.
+    """Conditions of several tests; those that differ are listed together.
 
     Examples
     --------
@@ -237,7 +237,7 @@ def joined_conditions(every: Iterable[Mapping[str, str]]) -> dict[str, str]:
 
 
 def conditions_of(line: LineSource, quantity: str) -> dict[str, str]:
-    """In which conditions a quantity of a line was tested."""
+    """Conditions in which a quantity of a line was tested."""
     levels = next((one for one in line.levels if one.quantity == quantity), None)
     return joined_conditions(levels.conditions if levels else (line.conditions,))
 
@@ -246,7 +246,7 @@ _RANDOM_OF: dict[tuple[End, End], str] = {
     ("surface_low", "surface_high"): "random_standard_uncertainty",
     ("low", "high"): "run_standard_uncertainty",
 }
-"""What is of a value alone in an interval, where that is known."""
+"""Part of an interval that is not shared with other values, where known."""
 
 
 @dataclass(frozen=True)
@@ -257,9 +257,9 @@ class LineDifference:
     Parameters
     ----------
     quantity, unit : str
-        Of both, SI.
+        Of both lines, in SI.
     first, second : DesignValues
-        As they were looked up.
+        Values as looked up.
     difference : ndarray
         The second less the first. [unit]
     ratio : ndarray
@@ -267,18 +267,18 @@ class LineDifference:
     surface_low, surface_high : ndarray
         95 % interval of the difference of the two surfaces; NaN where one has none. [unit]
     low, high : ndarray
-        The same of one more run of the same specimens. [unit]
+        The same for one more run of the same specimens. [unit]
     kind_low, kind_high : ndarray
-        The same of the means of all lines of the two kinds, with the scatter between lines. [unit]
+        The same for the means of all lines of the two kinds, with the scatter between lines. [unit]
     line_low, line_high : ndarray
-        The same of another line of each kind. [unit]
+        The same for another line of each kind. [unit]
     is_known, is_test_known, is_kind_known, is_line_known : ndarray of bool
         Both lines have that interval.
     is_different, is_test_different, is_kind_different, is_line_different : ndarray of bool
-        Zero is not in the interval of the surfaces, of one more run, of the kinds, or of another
+        Zero is outside the interval of the surfaces, of one more run, of the kinds, or of another
         line of each.
     notes : tuple of str
-        How what both share was taken.
+        Treatment of shared errors.
     """
 
     quantity: str
@@ -316,13 +316,13 @@ def compare_values(first: DesignValues, second: DesignValues) -> LineDifference:
 
     Notes
     -----
-    Limits by [2]_, which needs no more than the two intervals and holds where they are not
-    symmetric: a surface brought back from a logarithm, or an open coefficient.  For two normal
-    values of the same degrees of freedom it is Student's t of those times the root of the summed
-    variances, which is never below 95 %.  What is said of two surfaces is said of the lines that
-    were tested; that lines of the two kinds differ is said by the intervals of the kinds alone,
-    which hold how lines of one kind differ among each other ([1]_, sec. 4.4.1: K_ap of new ones by
-    about 10 %, after years in the sea by 50 %).
+    Limits by [2]_, which needs only the two intervals and holds where they are not symmetric: a
+    surface transformed back from a logarithm, or an open coefficient.  For two normal values with
+    the same degrees of freedom the half width is Student's t of these times the root of the summed
+    variances, which never covers less than 95 %.  A difference of two surfaces is one of the tested
+    lines; only the intervals of the kinds show whether the kinds differ, since they include the
+    scatter within a kind ([1]_, sec. 4.4.1: K_ap of new lines by about 10 %, after years in the sea
+    by 50 %).
 
     Examples
     --------
@@ -388,14 +388,14 @@ def _known(low: Floats, high: Floats) -> Bools:
 
 
 def _apart(low: Floats, high: Floats) -> Bools:
-    """Zero is not between; NaN is neither above nor below."""
+    """Whether zero is outside; NaN is neither above nor below."""
     return np.asarray((low > 0) | (high < 0))
 
 
 def _limits(
     first: DesignValues, second: DesignValues, rows: Floats, of: Floats, ends: tuple[End, End]
 ) -> tuple[Floats, Floats]:
-    """Ends of an interval of the difference: what both share by its difference, the rest apart."""
+    """Ends of an interval of the difference: shared errors by their difference, the rest apart."""
     difference = np.asarray(second.value - first.value)
     if ends in _RANDOM_OF and is_even(first) and is_even(second):
         own = [getattr(one, _RANDOM_OF[ends]) for one in (first, second)]
@@ -415,7 +415,7 @@ def _root(*parts: Floats) -> Floats:
 
 
 def _notes(first: DesignValues, second: DesignValues) -> tuple[str, ...]:
-    """Say how what both share was taken, or that it is not known."""
+    """Describe the treatment of shared errors, or say that they are not known."""
     without = [one for one in (first, second) if not one.component]
     if len(without) == 2:
         return (

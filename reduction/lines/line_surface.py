@@ -1,11 +1,11 @@
-r"""A quadratic surface at points, with its intervals, in one pass over blocks of points.
+r"""Values and intervals of a quadratic surface at points, computed in blocks of points.
 
 .. math:: \hat y = x^T b, \qquad
           \hat y \pm t_{\nu_{eff}} \sqrt{s^2 (1 + h) + \textstyle\sum_k (x^T c_k)^2}, \qquad
           h = x^T C x
 
-with the contribution c_k of each error that the runs share, and the degrees of freedom of Welch and
-Satterthwaite; of the surface itself with h in place of 1 + h.
+with the contribution c_k of each error that the runs share, and Welch-Satterthwaite degrees of
+freedom; for the surface itself with h in place of 1 + h.
 
 References
 ----------
@@ -45,12 +45,12 @@ _BLOCK = 16_384
 class SurfacePoints:
     """A surface at points; arrays have the shape (n_points,).
 
-    ``low`` and ``high`` hold one more run there with 95 %, ``surface_low`` and
-    ``surface_high`` the surface itself; NaN where sigma is not known. [unit of the quantity]
-    ``contribution``, of shape (n_components, n_points), is what each error that the runs share adds
-    to the value; ``random`` and ``run_random`` are one standard uncertainty of what is of the
-    surface alone, and of one more run beside that. [unit of the quantity]  ``random_freedom`` are
-    the degrees of freedom of the first. [1]
+    ``low`` and ``high`` are the 95 % interval of one more run there, ``surface_low`` and
+    ``surface_high`` that of the surface itself; NaN where sigma is not known. [unit of the
+    quantity]  ``contribution``, shape (n_components, n_points), holds the signed contribution of
+    each shared error of the runs to the value; ``random`` and ``run_random`` are the standard
+    uncertainties of the surface alone and of one more run, without the shared part. [unit of the
+    quantity]  ``random_freedom`` are the degrees of freedom of the first. [1]
     """
 
     value: Floats
@@ -71,13 +71,13 @@ def evaluate_surface(surface: LineSurface, points: ArrayLike) -> SurfacePoints:
 
     Notes
     -----
-    Source: [1]_, eq. 5 with the coding of App. C.  A transformed quantity is brought back: value
-    and intervals are of its median.  The factor of an interval is that of [2]_, as of every other
-    number.
+    Source: [1]_, eq. 5 with the coding of App. C.  A transformed quantity is transformed back:
+    value and intervals are those of its median.  The factor of an interval is that of [2]_, as for
+    every other number.
 
     Examples
     --------
-    The centre of a surface is its first coefficient:
+    The value at the centre of a surface is its first coefficient:
 
     >>> from reduction.experiments.designs import quadratic_exponents
     >>> exponents = quadratic_exponents(3)
@@ -102,12 +102,12 @@ def evaluate_surface(surface: LineSurface, points: ArrayLike) -> SurfacePoints:
     inside = np.empty(size, dtype=bool)
     sigma = surface.sigma if surface.degrees_of_freedom > 0 else float("nan")
     few = np.array([one.degrees_of_freedom for one in surface.component])
-    # a level in round shares of a strength may lie beyond the one that is printed in whole units
+    # a level in round shares of a strength may lie beyond the one printed in whole units
     rounded = surface.rounding if surface.rounding.size else np.zeros(surface.low.size)
     allowed = 2 * rounded / (surface.high - surface.low)
 
     def with_missed(scatter: Floats, missed: Floats) -> tuple[Floats, Floats]:
-        """Scatter with what a quadratic may miss, and the degrees of freedom of both."""
+        """Scatter including the lack of fit of a quadratic, and the degrees of freedom of both."""
         freedom = effective_degrees_of_freedom(
             scatter,
             surface.degrees_of_freedom,
@@ -156,7 +156,7 @@ def evaluate_surface(surface: LineSurface, points: ArrayLike) -> SurfacePoints:
 
     run_blocks(fill, [slice(start, start + _BLOCK) for start in range(0, size, _BLOCK)])
     if surface.exponent != 1:
-        # of one standard uncertainty to either side
+        # one standard uncertainty to either side
         scaled = out["value"]
         moved = back_transformed_change(scaled, moved, surface.exponent)
         for name in ("random", "run_random"):

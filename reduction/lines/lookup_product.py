@@ -1,4 +1,4 @@
-"""What a look-up takes, a surface, a curve or tested levels of a line, and what it returns.
+"""Inputs of a look-up (surface, curve or tested levels of a line) and its result.
 
 References
 ----------
@@ -22,7 +22,7 @@ from reduction.record.errors import DataError
 from reduction.record.measurement import Bools, Floats, Integers, read_only_arrays
 
 TENSIONS = ("mean_tension", "tension_amplitude", "tension")
-"""Levels that are shares of a break strength as well."""
+"""Levels that can also be shares of a break strength."""
 
 
 @dataclass(frozen=True)
@@ -33,53 +33,53 @@ class LineSurface:
     Parameters
     ----------
     quantity : str
-        Of the vocabulary.
+        Name in the vocabulary of quantities.
     coefficient : ndarray, shape (n_terms,)
         Coded units, on the scale of ``exponent``. [unit of the quantity]
     exponents : ndarray of int, shape (n_terms, n_factors)
         Power of each factor in each term.
     low, high : ndarray, shape (n_factors,)
-        Levels that are -1 and +1. [SI unit of each factor]
+        Levels coded as -1 and +1. [SI unit of each factor]
     covariance_factor : ndarray, shape (n_terms, n_terms)
         Covariance of the coefficients over sigma squared. [1]
     sigma : float
         Standard deviation of a run about the surface; NaN where not known. [as coefficient]
     degrees_of_freedom : float
-        Of sigma. [1]
+        Degrees of freedom of sigma. [1]
     greatest_leverage : float
-        Of any run: where a point has more, nothing was tested. [1]
+        Greatest leverage of any run: a point with more is untested. [1]
     exponent : float
-        Of Box and Cox; 1 where the quantity was fitted as it is, 0 for its logarithm. [1]
+        Box-Cox exponent; 1 where the quantity was fitted as it is, 0 for its logarithm. [1]
     frequency_column : int or None
-        Factor by which the quantity was multiplied before it was fitted; None for none.
+        Factor by which the quantity was multiplied before the fit; None for none.
     discrepancy : ndarray, shape (n_all, n_all)
-        Moment of what a quadratic may miss, over ``discrepancy_exponents``; empty where the runs
-        are not known. [as coefficient, squared]
+        Second moment of the lack of fit of a quadratic, over ``discrepancy_exponents``; empty where
+        the runs are not known. [as coefficient, squared]
     discrepancy_exponents : ndarray of int, shape (n_all, n_factors)
-        Terms of the surface and those that it does without.
+        Terms of the surface and those that it lacks.
     discrepancy_degrees_of_freedom : float
-        Of the discrepancy. [1]
+        Degrees of freedom of the discrepancy. [1]
     component : tuple of Component, length n_components
-        Errors that the runs share; none where nothing is known of any.
+        Errors that the runs share; empty where none is known.
     contribution : ndarray, shape (n_components, n_terms)
-        What each error that the runs share adds to the coefficients, signed. [as coefficient]
+        Signed contribution of each shared error to the coefficients. [as coefficient]
     alternatives : ndarray, shape (n_alternatives, n_terms)
-        Other coefficients that may be the right ones, where that is open: an interval spans
-        them all. [as coefficient]
+        Other possible coefficients, where the right ones are open: an interval spans them all.
+        [as coefficient]
     alternative_boxes : tuple of (low, high)
-        Other levels that may be the right ones, as ``low`` and ``high``: an interval spans those
-        too. [SI unit of each factor]
+        Other possible levels, as ``low`` and ``high``, where the right ones are open: an interval
+        spans those too. [SI unit of each factor]
     rounding : ndarray, shape (n_factors,)
-        Half the last digit of the levels as printed, within which a point is inside; empty where
+        Half the last digit of the printed levels, within which a point is inside; empty where
         they are exact. [SI unit of each factor]
     line_scatter : float
         Standard deviation between lines of the kind over their mean; NaN where not known. [1]
     n_lines : float
-        That the surface is of; NaN where not known. [1]
+        Number of lines in the surface; NaN where not known. [1]
     errata : tuple of str
-        Ids that touch it.
+        Ids of errata that affect it.
     notes : tuple of str
-        What is open, what fails, what else to know.
+        Open values, failed checks, other remarks.
     """
 
     quantity: str
@@ -107,7 +107,7 @@ class LineSurface:
     notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        """Check that terms and factors pair up, and make the arrays read-only."""
+        """Check that terms and factors match, and make the arrays read-only."""
         n_terms, n_factors = self.exponents.shape
         shapes = {
             "coefficient": (n_terms,),
@@ -147,37 +147,37 @@ class LineCurve:
     Parameters
     ----------
     quantity, variable : str
-        Of the vocabulary: ``quasi_static_spring_constant`` over ``mean_tension``, ``strain`` over
+        By vocabulary: ``quasi_static_spring_constant`` over ``mean_tension``, ``strain`` over
         ``tension``, ``tangent_modulus`` over ``strain``.
     low, high : float
-        Range of the variable that was tested, and in which the curve can be trusted. [SI]
+        Range of the variable that was tested and in which the curve can be trusted. [SI]
     coefficient : ndarray, shape (n_terms,)
-        Of rising powers of the variable; empty where the curve is given by points. [SI]
+        By rising powers of the variable; empty where the curve is given by points. [SI]
     at, value : ndarray, shape (n_points,)
-        Points, rising; straight lines between them. [SI]
+        Points, increasing; straight lines between them. [SI]
     standard_uncertainty : ndarray, shape (n_points,)
-        At the points, of a polynomial too, of all errors; empty where not known. [SI]
+        From all errors, at the points, also for a polynomial; empty where not known. [SI]
     degrees_of_freedom : ndarray, shape (n_points,)
-        Of what is random in it; empty where they are many, or not known. [1]
+        Degrees of freedom of the random part; empty where they are many, or not known. [1]
     spread_of : str
-        What the uncertainty is of, in words: there is none between tests in it.
+        Subject of the uncertainty, in words: it has no scatter between tests.
     component : tuple of Component, length n_components
-        Errors that the curve shares with others; none where nothing is known of any.
+        Errors that the curve shares with others; empty where none is known.
     contribution : ndarray, shape (n_components, n_points)
-        What each of them adds to the value at the points, signed; in the uncertainty too. [SI]
+        Signed contribution of each to the value at the points; in the uncertainty too. [SI]
     gaps : ndarray, shape (n_gaps, 2)
-        Ends between which nothing was measured; they are inside, what is between is not. [SI]
+        Ends of ranges without measurements; the ends are inside, points between them are not. [SI]
     range_note : str
-        Why the range is less than what was tested; empty where it is not.
+        Why the range is smaller than the tested range; empty where it is not.
     branch : {"", "ascending", "descending"}
-        Of a cycle, where the quantity differs.
+        Branch of a cycle, where the quantity differs by branch.
     is_inverse_slope : bool
         The value is the inverse of the slope of the polynomial: K_0 from strain on tension.
     loop_bend : float
-        Of K_0: share of the way from its slope at the mean tension to its chord over the cycle that
-        the loops of the runs go; zero where they are straight, or not known. [1]
+        For K_0: how far the loops of the runs go from its slope at the mean tension to its chord
+        over the cycle, as a share; zero where they are straight, or not known. [1]
     loop_bend_misfit : float
-        What that misses of the K_0 of the runs, as a standard deviation over K_0. [1]
+        Standard deviation of the K_0 of the runs about that, over K_0. [1]
     errata, notes : tuple of str
         As `LineSurface`.
     warnings : tuple of str
@@ -215,27 +215,27 @@ class LineLevels:
     Parameters
     ----------
     quantity : str
-        Of the vocabulary.
+        Name in the vocabulary of quantities.
     variables : tuple of str
         Levels, in the order of the columns of ``at``.
     at : ndarray, shape (n_tests, n_variables)
-        As the tests reached them. [SI]
+        Levels that the tests reached. [SI]
     value : ndarray, shape (n_tests,)
         [SI]
     random_standard_uncertainty, degrees_of_freedom : ndarray, shape (n_tests,)
-        Of what is of each test alone. [SI], [1]
+        Of the part that is independent for each test. [SI], [1]
     tests : tuple of str, length n_tests
-        Where each value is from.
+        Source of each value.
     component : tuple of Component, length n_components
-        Errors that the tests share; none where nothing is known of any.
+        Errors that the tests share; empty where none is known.
     contribution : ndarray, shape (n_components, n_tests)
-        What each of them adds to each value, signed. [SI]
+        Signed contribution of each to each value. [SI]
     conditions : tuple of dict, length n_tests
-        In which each test was made, as `LineSource`.
+        Conditions of each test, as in `LineSource`.
     notes : tuple of str
-        What else to know.
+        Other remarks.
     warnings : tuple of tuple of str, length n_tests
-        What of each test has to be read before its value.
+        Warnings of each test, to be read before its value.
     """
 
     quantity: str
@@ -254,12 +254,12 @@ class LineLevels:
 
 @dataclass(frozen=True)
 class LineSource:
-    """A line or tether of which something is known.
+    """A line or tether with known values.
 
     Parameters
     ----------
     name : str
-        By which it is asked for.
+        Name for the look-up.
     source : str
         Report, or campaign and file.
     material, construction, condition : str
@@ -267,11 +267,11 @@ class LineSource:
     diameter : float
         NaN where not stated. [m]
     rated_break_strength : float
-        That tensions in %RBS are shares of; NaN where not stated. [N]
+        Reference of tensions in %RBS; NaN where not stated. [N]
     factor_names : tuple of str
-        Of the surfaces, in the order of their levels.
+        Factors of the surfaces, in the order of their levels.
     surfaces : dict of str to LineSurface
-        By quantity.
+        Surfaces by quantity.
     curves : tuple of LineCurve
         Quantities over one variable.
     linear_density, wet_linear_density : float
@@ -279,27 +279,28 @@ class LineSource:
     absent : dict of str to str
         Quantities that were not measured, or are lost, with the reason.
     kind : str
-        Of the specimen, as a campaign names it: ``rubber tether``, ``rope`` ...; empty where
-        not stated.
+        Kind of specimen, as in a campaign: ``rubber tether``, ``rope`` ...; empty where not
+        stated.
     tensile_strength : float
-        That the line still has in its condition, by which the rule is judged then; NaN where
-        the rated one counts. [N]
+        Residual strength of the line in its condition, to which the rule then applies; NaN where
+        the rated one applies. [N]
     strength_of : str
-        Of which other line the rated break strength is, in words; empty where it is its own.
+        The other line to which the rated break strength belongs, in words; empty where it is its
+        own.
     slow_pulls : dict of str to LineCurve
-        K_0 over mean tension by each printed way to it, or by each slow pull of an experiment, by
-        its name in words; of a rope with response surfaces alone.
+        K_0 over mean tension from each printed source, or from each slow pull of an experiment, by
+        its name in words; only for a rope with response surfaces.
     by_fundamental : bool
-        Whether K_1 and tau are of the fundamentals of waves that are no sines, whose K_ap and H are
+        Whether K_1 and tau are from the fundamentals of non-sinusoidal waves, while K_ap and H are
         those of the wave: no line has both.
     levels : tuple of LineLevels
-        Quantities that are known at the levels of single tests.
+        Quantities known at the levels of single tests.
     conditions : dict of str to str
-        In which it was tested, as a campaign states them: ``medium``, ``temperature`` ...
+        Conditions of its tests, as a campaign states them: ``medium``, ``temperature`` ...
     specimens : tuple of str
-        That the numbers are of; none of a published line.
+        Specimens of the numbers; none for a published line.
     notes, warnings : tuple of str
-        What holds of all of it, and what of that has to be read before any value.
+        Remarks on all its values, and warnings to be read before any value.
     """
 
     name: str
@@ -328,17 +329,17 @@ class LineSource:
 
     @property
     def is_printed(self) -> bool:
-        """Of its surfaces the coefficients alone are known, and not the runs."""
+        """Only the coefficients of its surfaces are known, not the runs."""
         return not any(one.discrepancy.size for one in self.surfaces.values())
 
     @property
     def is_tether(self) -> bool:
-        """Of rubber, that must not go slack: by its kind, else by its material."""
+        """Rubber that must not go slack: by its kind, else by its material."""
         return self.kind == "rubber tether" if self.kind else "rubber" in self.material.lower()
 
     @property
     def rule(self) -> str:
-        """How high the line may be loaded, or how low."""
+        """Limits of the load on the line."""
         if self.is_tether:
             return _TETHER_RULE
         is_nylon = "nylon" in self.material.lower() or not self.material
@@ -350,7 +351,7 @@ class LineSource:
 
     @property
     def quantities(self) -> tuple[str, ...]:
-        """What can be asked for."""
+        """Quantities that can be looked up."""
         derived = ["dashpot_coefficient"] if self.has_dashpot else []
         of_levels = [one.quantity for one in self.levels]
         of_curves = [one.quantity for one in self.curves]
@@ -370,12 +371,12 @@ class DesignValues:
     Parameters
     ----------
     quantity, unit : str
-        What was asked for, and its SI unit.
+        Quantity of the look-up, and its SI unit.
     value : ndarray
         The median where the surface is of a transform. [unit]
     low, high : ndarray
-        95 % interval of one more run of the same specimens there; NaN where nothing is known of the
-        scatter, as of a curve of one test. [unit]
+        95 % interval of one more run of the same specimens there; NaN where the scatter is not
+        known, as for a curve of one test. [unit]
     surface_low, surface_high : ndarray
         95 % interval of the surface itself, or of the curve of one test: `surface_interval_of`.
         [unit]
@@ -383,45 +384,45 @@ class DesignValues:
         95 % interval of the mean of all specimens of the kind; NaN where the scatter between
         specimens is not known. [unit]
     line_low, line_high : ndarray
-        The same of another specimen of the kind. [unit]
+        The same for another specimen of the kind. [unit]
     is_inside : ndarray of bool
-        Between the levels, or the ends of the range, that were tested.
+        Within the tested levels or range.
     is_untested : ndarray of bool
-        Inside, but farther from the runs than any run is.
+        Inside, but farther from the runs than any run.
     peak_tension, minimum_tension : ndarray
-        Mean tension and amplitude together; the one tension where there is no cycle, as it is
-        on the curve at a strain; NaN where none is known. [N]
+        Mean tension plus and minus amplitude; without a cycle the one tension, from the curve if
+        a strain is given; NaN where not known. [N]
     peak_share, minimum_share : ndarray
-        Of the rated break strength; NaN where that is not known. [1]
+        Relative to the rated break strength; NaN where that is not known. [1]
     own_peak_share, own_minimum_share : ndarray
-        Of the strength that the line has in its condition: the rated one where no other is
-        known. [1]
+        Relative to the strength of the line in its condition, or to the rated one where no other
+        is known. [1]
     is_slack : ndarray of bool
         The minimum is zero.
     is_above_rule : ndarray of bool
-        The peak is above 60 % of the strength that the line has, or above 30 % where the minimum
-        is below 3 % of it.
+        The peak exceeds 60 % of the strength that the line has, or 30 % where the minimum is below
+        3 % of it.
     rule : str
-        How high, or how low, the source lets the line be loaded.
+        Limits of the load on the line in the source.
     source : str
-        Where the numbers are from.
+        Source of the numbers.
     errata, notes : tuple of str
-        What is known against them.
+        Known errors and remarks.
     warnings : tuple of str
-        What has to be read before the values: other numbers of the source contradict them.
+        To be read before the values: other numbers of the source contradict them.
     branch : {"", "ascending", "descending"}
-        Of a cycle, where the quantity differs.
+        Branch of a cycle, where the quantity differs by branch.
     component : tuple of Component, length n_components
-        Errors that the values share with others; none where nothing is known of any.
+        Errors that the values share with others; empty where none is known.
     contribution : ndarray, shape (n_components, ...)
-        What each of them adds to the value, signed; in the intervals too. [unit]
+        Signed contribution of each to the value; in the intervals too. [unit]
     random_standard_uncertainty, random_degrees_of_freedom : ndarray
-        What is of the value alone; empty where that is known as an interval only. [unit], [1]
+        Of the part that is not shared; empty where only its interval is known. [unit], [1]
     run_standard_uncertainty : ndarray
-        The same of one more run, with those degrees of freedom; empty where ``low`` and ``high``
-        are of none. [unit]
+        The same for one more run, with those degrees of freedom; empty where ``low`` and ``high``
+        do not exist. [unit]
     interval_of, surface_interval_of : str
-        What ``low`` and ``high``, and ``surface_low`` and ``surface_high``, are of, in words;
+        Subject of ``low`` and ``high``, and of ``surface_low`` and ``surface_high``, in words;
         empty where there is no such interval.
     """
 
@@ -462,5 +463,5 @@ class DesignValues:
 
     @property
     def is_below_zero(self) -> Bools:
-        """The value is below zero, which none of the quantities can be."""
+        """Whether the value is negative, which no quantity can be."""
         return np.asarray(self.value < 0)

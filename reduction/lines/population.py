@@ -4,11 +4,11 @@ r"""Specimens of one kind as one line: mean, scatter between specimens, toleranc
           \bar y \pm t_{n-1} s \sqrt{1 + \frac1n}, \qquad
           \bar y - k_1 s - U, \quad \bar y + k_1 s + U, \quad \bar y \mp (k_2 s + U)
 
-of the mean of the kind, of another specimen, and the limits beyond which, with 95 % confidence, at
+for the mean of the kind, for another specimen, and as limits beyond which, with 95 % confidence, at
 most a stated share of the population lies ([1]_, [2]_).  s is the standard deviation of the
-specimens as they were tested, so that what is random in each test is in it.  An error that all
-tests share, as a load cell, moves all specimens together and is not in s: its 95 % half width U is
-added to the limits, and counts in the intervals by Welch and Satterthwaite.
+specimens as tested, so it includes the random error of each test.  An error that all tests share,
+such as that of a load cell, moves all specimens together and is not in s: its 95 % half width U is
+added to the limits, and enters the intervals by the Welch-Satterthwaite formula.
 
 References
 ----------
@@ -38,27 +38,27 @@ from reduction.record.measurement import Floats, read_only_arrays
 CONFIDENCE = 0.95
 
 FEWEST_SPECIMENS = 3
-"""With two the one-sided factor of 95 % is 26 and the two-sided one 37: limits that say nothing."""
+"""With two, the one-sided factor of 95 % is 26 and the two-sided one 37: useless limits."""
 
 _NODES, _FARTHEST = 200, 9.0
 
 
 def tolerance_factors(n: int, share: float, confidence: float = CONFIDENCE) -> tuple[float, float]:
-    r"""One-sided and two-sided factor of a normal tolerance limit.
+    r"""One-sided and two-sided factors of a normal tolerance limit.
 
     Parameters
     ----------
     n : int
-        Specimens, two or more.
+        Number of specimens, two or more.
     share : float
-        Of the population, that is within the limits. [1]
+        Share of the population within the limits. [1]
     confidence : float
-        With which it is. [1]
+        Confidence of the statement. [1]
 
     Returns
     -------
     one_sided, two_sided : float
-        Of the standard deviation of the specimens. [1]
+        Multiples of the standard deviation of the specimens. [1]
 
     Raises
     ------
@@ -90,7 +90,7 @@ def tolerance_factors(n: int, share: float, confidence: float = CONFIDENCE) -> t
     node, weight = np.polynomial.legendre.leggauss(_NODES)
     z, weight = _FARTHEST * (node + 1) / 2, _FARTHEST * weight / 2
     density = 2 * weight * np.exp(-(z**2) / 2) / np.sqrt(2 * np.pi)
-    # the share within r of a mean that is off by z / root n
+    # the share within r of a mean that is off by z / sqrt(n)
     square = chndtrix(share, 1.0, z**2 / n)
 
     def missed(k: float) -> float:
@@ -110,21 +110,21 @@ class PopulationValues:
         Mean of the specimens; ``kind_low`` and ``kind_high`` are of the mean of the kind,
         ``line_low`` and ``line_high`` of another specimen.
     specimens : tuple of str
-        That it is of.
+        Specimens used.
     of_specimens : ndarray, shape (n_specimens, ...)
         The value of each. [unit]
     standard_deviation : ndarray
-        Between them. [unit]
+        Between specimens. [unit]
     share, confidence : float
-        Of the population, and with which confidence. [1]
+        Share of the population, and the confidence. [1]
     one_sided_factor, two_sided_factor : float
-        k. [1]
+        k_1 and k_2. [1]
     lower, upper : ndarray
-        One-sided limits, each by itself. [unit]
+        One-sided limits, each on its own. [unit]
     both_low, both_high : ndarray
         Two-sided limits. [unit]
     shared_half_width : ndarray
-        U of the errors that the tests share, in all limits. [unit]
+        U of the errors that the tests share, included in all limits. [unit]
     """
 
     values: DesignValues
@@ -153,9 +153,9 @@ def specimens_of_kind(
     Parameters
     ----------
     lines : sequence of LineSource
-        That a search left.
+        Result of a search.
     quantity : str
-        That is wanted.
+        Requested quantity.
     name : str, optional
         Test, where one specimen has the quantity in several.
 
@@ -216,11 +216,11 @@ def population_values(
     Parameters
     ----------
     lines : sequence of LineSource
-        As `specimens_of_kind` gives them.
+        As returned by `specimens_of_kind`.
     found : sequence of DesignValues
-        Of each, at the same points.
+        Values of each line, at the same points.
     share : float
-        Of the population that is to be within the limits. [1]
+        Share of the population within the limits. [1]
 
     Returns
     -------
@@ -246,7 +246,7 @@ def population_values(
     mean, scatter = of_specimens.mean(axis=0), of_specimens.std(axis=0, ddof=1)
     shared = shared_of({str(place): value for place, value in enumerate(found)})
     table = np.array([shared.values[str(place)] for place in range(n)])
-    # what is of one specimen alone, as its diameter, is in the scatter
+    # errors of one specimen alone, such as its diameter, are in the scatter
     is_common = (table != 0).any(axis=tuple(range(2, table.ndim))).sum(axis=0) > 1
     rows = table[:, is_common].mean(axis=0)
     component = tuple(

@@ -1,17 +1,17 @@
 """Published lines and tethers as sources of design values.
 
 **Cubics of CG-D-39-80 as curves of a line, over the range in which they can be trusted.** A cubic
-is given up to the end of its range on the page.  Two things show where it is wrong there:
+is printed up to the end of its range.  Two conditions show where it is wrong:
 
-- A line does not shorten under more load.  Where the cubic of strain turns, its range ends; its
-  slope is wrong by as much as it is below zero, and K_0, the inverse of it, is trusted where that
-  is at most a share of the slope.
-- The slope of the cubic of strain is 1/K_0 (sec. 4.4.2): the cubic of K_0 is trusted where it is
-  above zero, and within that share of the slope.
+- A line does not shorten under more load.  Where the strain cubic turns, its range ends; the error
+  of its slope is at least the amount by which the slope is negative there.  K_0, the inverse of the
+  slope, is trusted where that amount is at most a share of the slope.
+- The slope of the strain cubic is 1/K_0 (sec. 4.4.2): the cubic of K_0 is trusted where it is
+  positive and within that share of the slope.
 
 The share is the scatter of new lines, 1.96 times a tenth (sec. 4.4.1).
 
-A published tether is also all its windows, as pieces of a tension-strain curve.
+All windows of a published tether also serve as pieces of a tension-strain curve.
 
 References
 ----------
@@ -58,7 +58,7 @@ from reduction.stages.strain.strain_fit import PooledMarks, fit_to_marks
 from reduction.stages.three_parameter_line.slow_pull import slope_of_cubic
 
 OF_CUBIC = {"quasi_static_strain": "strain"}
-"""Names of cubics that are looked up by another one."""
+"""Names of cubics that are looked up through another one."""
 
 _REST = "quasi_static_spring_constant"
 
@@ -68,7 +68,7 @@ _NODES = 8001
 
 
 def _curves_of_line(line: PublishedLine) -> tuple[tuple[LineCurve, ...], dict[str, str]]:
-    """K_0 and strain of a line, and why one of them is not there."""
+    """K_0 and strain of a line, and why one of them is missing."""
     rest, strain = (
         None if cubic is None else _curve(cubic) for cubic in (line.stiffness, line.load_strain)
     )
@@ -95,13 +95,13 @@ def _curves_of_line(line: PublishedLine) -> tuple[tuple[LineCurve, ...], dict[st
 
 
 def _slow_pulls(line: PublishedLine) -> dict[str, LineCurve]:
-    """K_0 by its own cubic and by the slope of load on strain, of each print where two differ."""
+    """K_0 by its own cubic and by the slope of load on strain, for each print where two differ."""
     found = {}
     for cubic in (line.stiffness, line.load_strain):
         if cubic is None:
             continue
         is_slope = cubic is line.load_strain
-        # the constant of the strain has no slope
+        # the constant of the strain does not affect the slope
         opened = [term for term in cubic.open_terms if term.index or not is_slope]
         label = "slope of load on strain" if is_slope else "cubic of K_0"
         together = f"Table{'s' * (len(cubic.tables) > 1)} {' and '.join(cubic.tables)}"
@@ -119,7 +119,7 @@ def _slow_pulls(line: PublishedLine) -> dict[str, LineCurve]:
 
 @cache
 def _rate_note() -> str:
-    """How much K_0 is of the pull: Table D-1, of one line that is not named."""
+    """Effect of the pull rate on K_0: Table D-1, for one line that is not named."""
     table = table_of("CG-D-39-80", "D-1")
     slow, fast, early = (
         number_of(table[row, _REST].printed) or np.nan
@@ -138,7 +138,7 @@ def _rate_note() -> str:
 
 
 def _curve(cubic: PublishedCubic) -> LineCurve | None:
-    """None where a coefficient or the range is open; a constant that is open moves little."""
+    """Curve, or None where a coefficient or the range is open; an open constant matters little."""
     coefficient, notes = np.array(cubic.coefficient), [cubic.note] if cubic.note else []
     if [term.index for term in cubic.open_terms] == [0]:
         (term,) = cubic.open_terms
@@ -159,7 +159,7 @@ def _curve(cubic: PublishedCubic) -> LineCurve | None:
 
 
 def _of_same_row(line: PublishedLine) -> LineCurve | None:
-    """Strain of the other condition whose K_0 stands in the same row."""
+    """Strain in the other condition, whose K_0 is in the same row."""
     if line.stiffness is None:
         return None
     for other in published_lines():
@@ -171,7 +171,7 @@ def _of_same_row(line: PublishedLine) -> LineCurve | None:
 
 
 def _slope(strain: LineCurve) -> LineCurve:
-    """K_0 from the slope of load on strain, for a line without a cubic of its own."""
+    """K_0 from the slope of load on strain, for a line without a cubic of K_0."""
     curve = LineCurve(
         quantity=_REST,
         variable="mean_tension",
@@ -214,7 +214,7 @@ def _beside_slope(rest: LineCurve, strain: LineCurve | None) -> LineCurve:
 
 
 def _within(curve: LineCurve, at: Floats, is_good: Bools, why: str) -> LineCurve:
-    """The curve over the longest part of its range that is good."""
+    """The curve over the longest good part of its range."""
     if is_good.all():
         return curve
     edges = np.flatnonzero(np.diff(np.concatenate([[0], is_good.astype(int), [0]])))
@@ -244,10 +244,10 @@ _BY_FRACTION = {
 }
 
 TABLE_OF_DATA = {"consolidated": "6", "raw": "5"}
-"""Table of WHOI-2005-10 that has a kind of moduli."""
+"""Table of WHOI-2005-10 with each kind of moduli."""
 
 _FEWEST = 2.0
-"""Lines of a surface, where a table says how many: two to four. [1]"""
+"""Number of lines in a surface, where a table states it as two to four. [1]"""
 
 _DESIGN = box_behnken(3).coded
 
@@ -256,12 +256,12 @@ _EXPONENTS = quadratic_exponents(3)
 
 @cache
 def published_sources() -> dict[str, LineSource]:
-    """Every published line and tether of which something can be looked up, by name.
+    """Every published line and tether with values to look up, by name.
 
     Returns
     -------
     sources : dict of str to LineSource
-        Lines of CG-D-39-80, then tethers of WHOI-2005-10, one a test and after 3,000 cycles.
+        Lines of CG-D-39-80, then tethers of WHOI-2005-10, by test and after 3,000 cycles.
     """
     sources = [_line(one) for one in published_lines()]
     windows = (_tether(*window) for window in tether_windows().values())
@@ -271,7 +271,7 @@ def published_sources() -> dict[str, LineSource]:
 
 @cache
 def tether_windows() -> dict[str, tuple[PublishedTether, str, str]]:
-    """Tether, test and condition of every window of the tethers, by the name of its source."""
+    """Tether, test and condition of every tether window, by the name of its source."""
     return {
         _name_of_window(tether, test, condition): (tether, test, condition)
         for tether in published_tethers()
@@ -321,7 +321,7 @@ def _surface(line: PublishedLine, found: PublishedSurface) -> LineSurface:
     box, *others = found.boxes
     ends = [np.array([one.frequency, one.mean_tension, one.tension_amplitude]).T
             for one in (box, *others)]  # fmt: skip
-    # levels are printed in whole pounds
+    # levels are printed to whole pounds
     rounding = np.array([0.0, 0.5, 0.5]) * POUND
     known = np.array(found.coefficient)
     choices = []
@@ -388,7 +388,7 @@ def _surface(line: PublishedLine, found: PublishedSurface) -> LineSurface:
 
 
 def _tether(tether: PublishedTether, test: str, condition: str) -> LineSource | None:
-    """Moduli of one test, of which a raw row stands for a consolidated one that is open."""
+    """Moduli of one test; where a consolidated row is open, a raw row is used."""
     for data in ("consolidated", "raw"):
         found = [
             one
@@ -411,7 +411,7 @@ def source_of_segments(
     data: str,
     found: list[TetherSegment],
 ) -> LineSource:
-    """One window of a tether out of one table: ``raw`` is Table 5, ``consolidated`` Table 6."""
+    """One window of a tether from one table: ``raw`` is Table 5, ``consolidated`` Table 6."""
     rows = sorted(found, key=lambda one: one.strain_low)
     ends = np.array([[one.strain_low, one.strain_high] for one in rows]).ravel()
     moduli = np.repeat([one.modulus for one in rows], 2)
@@ -457,18 +457,18 @@ def source_of_segments(
 
 
 _TO_THE_POUND = scale_to_si("lbf", "force")[0] / np.sqrt(12)
-"""Standard uncertainty of a load that is printed to the pound. [N]"""
+"""Standard uncertainty of a load printed to the pound. [N]"""
 
 
 @cache
 def published_piece_sources() -> dict[str, PieceSource]:
-    """Published tethers by name, each with a piece of every test that is tabulated.
+    """Published tethers by name, each with a piece for every tabulated test.
 
     Notes
     -----
-    Loads at the ends of the segments as printed and corrected, straight lines between them, as
-    a look-up has them: Table 6 of [4]_, and Table 5 where a row of Table 6 is open.  Splices by
-    the marks of Table 3 as a constant ratio of strains.
+    Loads at the ends of the segments, as printed and corrected, with straight lines between them as
+    in a look-up: Table 6 of [4]_, and Table 5 where a row of Table 6 is open.  Splices have a
+    constant ratio of strains, from the marks of Table 3.
 
     Examples
     --------
@@ -515,7 +515,7 @@ def published_piece_sources() -> dict[str, PieceSource]:
 
 
 def _piece(test: str, curve: LineCurve) -> CurvePiece:
-    """Ends of the segments, a joint once: where its two loads differ, their mean."""
+    """Ends of the segments, each joint once: where its two loads differ, their mean."""
     strain, place = np.unique(curve.at, return_inverse=True)
     tension = np.bincount(place, curve.value) / np.bincount(place)
     return CurvePiece(

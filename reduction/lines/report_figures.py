@@ -1,6 +1,6 @@
-r"""Figures of the five reports in numbers: curves as corrected, printed points, own lines beside.
+r"""Data of the figures in the five reports: corrected curves, printed points and own lines.
 
-Which figures there are, and why one is not drawn, is in ``published/data/figures.csv``.
+The list of figures, with the reason where one is not drawn, is in ``published/data/figures.csv``.
 
 References
 ----------
@@ -74,7 +74,7 @@ _ROUNDING = 1e-12
 
 @dataclass(frozen=True)
 class FigureRow:
-    """A numbered figure: what it shows, and from what it is drawn, or why it is not."""
+    """A numbered figure: its subject, and the data it is drawn from, or why it is not drawn."""
 
     report: str
     figure: str
@@ -84,13 +84,13 @@ class FigureRow:
 
     @property
     def is_drawn(self) -> bool:
-        """Whether its numbers are printed, or follow."""
+        """Whether its numbers are printed or can be derived."""
         return self.drawn == "yes"
 
 
 @dataclass(frozen=True)
 class Axis:
-    """Words and SI unit of an axis; angles are in radians."""
+    """Label and SI unit of an axis; angles are in radians."""
 
     words: str
     unit: str
@@ -100,12 +100,12 @@ class Axis:
 
 @dataclass(frozen=True)
 class Series:
-    """Numbers that are drawn in one colour, in SI.
+    """Numbers drawn in one colour, in SI.
 
-    ``z`` is the value of a surface, or at the corners of a cube, over ``x`` and ``y``; ``w`` is the
-    frequency of the corners.  Of printed points ``computed`` is the curve there, NaN where there is
-    none, ``half`` the error of reading, and ``errata`` names what is known against each.
-    ``colour`` counts lines, ``dash`` what is drawn of each.
+    ``z`` is the value of a surface, or of the corners of a cube, over ``x`` and ``y``; ``w`` is the
+    frequency of the corners.  For printed points ``computed`` is the value of the curve there (NaN
+    without one), ``half`` the reading error, and ``errata`` names the known errors of each.
+    ``colour`` numbers the lines, ``dash`` the series of each line.
     """
 
     name: str
@@ -126,7 +126,7 @@ class Series:
 class ReportFigure:
     """One figure in numbers.
 
-    ``is_flipped`` where the value is drawn across, ``is_synthetic`` where own lines are.
+    ``is_flipped`` where the value is on the horizontal axis, ``is_synthetic`` where own lines are.
     """
 
     row: FigureRow
@@ -154,9 +154,9 @@ def figure_in_numbers(row: FigureRow, own: Sequence[LineSource] = ()) -> ReportF
     Parameters
     ----------
     row : FigureRow
-        One that is drawn.
+        A figure that is drawn.
     own : sequence of LineSource
-        Of a processed campaign.
+        Lines of a processed campaign.
 
     Examples
     --------
@@ -188,7 +188,7 @@ def _level(line: LineSource, quantity: str, name: str, coded: ArrayLike) -> Floa
 
 
 def _is_near(line: LineSource, quantity: str, amplitude: float) -> bool:
-    """Whether an amplitude was tested, or so nearly that a ranking takes it."""
+    """Whether an amplitude was tested, or is near enough for a ranking."""
     low, high = _level(line, quantity, "tension_amplitude", [-1.0, 1.0])
     return bool(max(low - amplitude, amplitude - high) <= JUST_OUTSIDE * (high - low) / 2)
 
@@ -212,12 +212,12 @@ class _Curves:
     at: float = 0.0
 
     def __call__(self, row: FigureRow, own: Sequence[LineSource]) -> ReportFigure:
-        """Draw it."""
+        """Draw the figure."""
         lines = [published_sources()[name] for name in self.lines]
         series = [one for place, line in enumerate(lines) for one in self._of(line, place)]
         if self.claim:
             series.append(self._printed(lines))
-        # where an experiment has a surface its single tests are in that
+        # where an experiment has a surface its single tests are in the surface
         has_surface = any(quantity in line.surfaces for line in own for quantity in self.quantities)
         for place, line in enumerate(own, start=len(lines)):
             tests = () if has_surface else self._levels(line, place)
@@ -271,7 +271,7 @@ class _Curves:
                              errata=("",) * at.size, colour=colour)  # fmt: skip
 
     def _printed(self, lines: Sequence[LineSource]) -> Series:
-        """What sentences of the text give; of a quantity of which nothing is drawn, nothing."""
+        """Points from sentences of the text, for the quantity and lines that are drawn."""
         (quantity,) = self.quantities
         scale = scale_to_si("%", "strain")[0] if quantity == "strain" else 1e4 * POUND
         found = []
@@ -295,14 +295,14 @@ class _Curves:
 
 
 def _points(name: str, rows: Sequence[tuple[float, float, float, float, str]]) -> Series:
-    """Printed points: place, value, curve there, error of reading, erratum."""
+    """Printed points: place, value, value of the curve, reading error, erratum."""
     numbers = np.array([row[:4] for row in rows]).reshape(-1, 4).T
     return Series(name, "points", numbers[0], numbers[1], computed=numbers[2], half=numbers[3],
                   errata=tuple(row[4] for row in rows), colour=-1)  # fmt: skip
 
 
 def _fault(cell: Cell) -> str:
-    """Erratum that puts another number in place of the printed one, or leaves it open."""
+    """Erratum that replaces the printed number, or leaves it open."""
     return cell.erratum if cell.confidence else ""
 
 
@@ -313,7 +313,7 @@ def _words(quantity: str) -> str:
 
 
 def _row_of(line: LineSource) -> str:
-    """Words of the tables for a line, such as ``nylon | double braid | 3/4 in | new``."""
+    """Key of a line in the tables, such as ``nylon | double braid | 3/4 in | new``."""
     sizes = {0.5: "1/2", 0.75: "3/4", 1.0: "1", 1.25: "1 1/4"}
     size = sizes.get(round(line.diameter / _INCH, 4), "")
     return f"{line.material} | {line.construction} | {size} in | {line.condition}"
@@ -321,7 +321,7 @@ def _row_of(line: LineSource) -> str:
 
 @dataclass(frozen=True)
 class _Surfaces:
-    """A quantity over mean tension and amplitude at one frequency, with K_0 where it is wanted."""
+    """A quantity over mean tension and amplitude at one frequency, with K_0 where requested."""
 
     quantity: str
     lines: tuple[str, ...]
@@ -329,7 +329,7 @@ class _Surfaces:
     with_rest: bool = False
 
     def __call__(self, row: FigureRow, own: Sequence[LineSource]) -> ReportFigure:
-        """Draw it."""
+        """Draw the figure."""
         published = [published_sources()[name] for name in self.lines]
         having = [line for line in own if self.quantity in line.surfaces]
         series = []
@@ -385,7 +385,7 @@ class _Segments:
     with_weights: bool = False
 
     def __call__(self, row: FigureRow, own: Sequence[LineSource]) -> ReportFigure:
-        """Draw it."""
+        """Draw the figure."""
         items: dict[tuple[str, str, str], dict[str, ReproducedItem]] = {}
         for item in whoi_2005_10.items():
             words = item.cell.row.split(" ")
@@ -394,7 +394,7 @@ class _Segments:
                 items.setdefault(key, {})[f"{item.cell.row}|{item.cell.column}"] = item
         series: list[Series] = []
         for (table, test, tether), cells in items.items():
-            # of loads the raw segments are the finer ones; the summary has them alone as well
+            # the raw segments of loads are finer; the summary contains these segments too
             is_wanted = table == "5" or not (self.is_load or len(self.tests) > 1)
             if tether in self.tethers and is_wanted:
                 series += self._of(table, test, tether, cells)
@@ -421,7 +421,7 @@ class _Segments:
             low, high = (_used(ends[f"strain_{end}"]) for end in ("low", "high"))
             modulus = ends["modulus"]
             loads = [ends[f"tension_{end}"] for end in ("low", "high")]
-            # where nothing says what is right there is no curve
+            # without a known correct value there is no curve
             is_open = any(
                 one.verdict == "open" or np.isnan(one.recomputed)
                 for one in (loads if self.is_load else [modulus])
@@ -457,7 +457,7 @@ _ENDS = ("strain_low", "strain_high", "tension_low", "tension_high", "modulus")
 
 
 def _used(item: ReproducedItem) -> float:
-    """Number of a cell as corrected, or as printed where it stands or is open."""
+    """Number of a cell as corrected, or as printed where it is right or open."""
     value = item.cell.value
     return float(number_of(item.cell.printed) or np.nan) if value is None else value
 
@@ -465,7 +465,7 @@ def _used(item: ReproducedItem) -> float:
 def _printed_load(
     strain: ReproducedItem, load: ReproducedItem
 ) -> tuple[float, float, float, float, str]:
-    """A point as the page has it: both of its numbers may be wrong."""
+    """A point as printed: both of its numbers may be wrong."""
     errata = filter(None, (_fault(one.cell) for one in (strain, load)))
     x, y = (float(number_of(one.cell.printed) or np.nan) for one in (strain, load))
     if x > 10 * _used(strain):  # a decimal comma
@@ -485,7 +485,7 @@ def _of_weights() -> Iterator[Series]:
 
 def _strength(row: FigureRow, own: Sequence[LineSource]) -> ReportFigure:
     """Figure 15 of [1]_."""
-    del own  # breaks of own lines are no lines
+    del own  # breaks of own lines are not lines
     years, mean, scatter, counts = map(np.array, strength_over_years(Pages(cells_of(_CG))))
     line = fit_exposure_trend(years, mean, scatter, counts)
     at = np.linspace(0.0, 5.0, 11)
@@ -522,7 +522,7 @@ def _abrasion(row: FigureRow, own: Sequence[LineSource]) -> ReportFigure:
 
 
 def _dissipation(row: FigureRow, own: Sequence[LineSource]) -> ReportFigure:
-    """Figure A-1 of [1]_: both over their greatest value, and where H is a tenth of it."""
+    """Figure A-1 of [1]_: both relative to their greatest value, and where H is a tenth of it."""
     del own
     x = np.geomspace(0.01, 100.0, 401)
     series = []
@@ -532,7 +532,7 @@ def _dissipation(row: FigureRow, own: Sequence[LineSource]) -> ReportFigure:
             "relaxation_time": 1.0, "frequency": x / (2 * np.pi),
         }  # fmt: skip
         energy = hysteresis_energy(tension_amplitude=1.0, **line)
-        # u / (1 + u^2) of u = (1 + K_1/K_0) x is greatest at 1, and a tenth of that beyond at
+        # u / (1 + u^2) with u = (1 + K_1/K_0) x is greatest at 1, and a tenth of that above it at
         tenth = (10 + np.sqrt(99.0)) / (1 + ratio)
         top = float(hysteresis_energy(
             tension_amplitude=1.0, **line | {"frequency": 1 / (2 * np.pi * (1 + ratio))}
@@ -559,7 +559,7 @@ def _cords(row: FigureRow, own: Sequence[LineSource]) -> ReportFigure:
         Series(f"{np.degrees(one):.4g}°", "curve", strain, cord, colour=place)
         for place, (one, cord) in enumerate(zip(angle, chart.cord_strain, strict=True))
     ]
-    # cords pick up where they are as long as at rest again
+    # cords carry load again where they have their rest length again
     slack = chart.pick_up_strain[2:]
     found = [(float(at), 0.0, 0.0, 1e-9, "") for at in slack]
     axes = Axis("hose strain", "1"), Axis("cord strain", "1")

@@ -31,14 +31,14 @@ def surface_table(
     path : pathlib.Path
         ``surfaces.nc``.
     specimen : str, optional
-        One experiment, by its name; all unless said.
+        Name of one experiment; default all.
     units : {"si", "us"}
-        Of coefficients; surfaces of a logarithm stay in SI, since their constant hangs on the unit.
+        Unit of coefficients; surfaces of a logarithm stay in SI: their constant depends on it.
 
     Returns
     -------
     table : ValueTable
-        Shape (n_experiments * n_responses * n_terms,); a response that is not fitted has no row.
+        Shape (n_experiments * n_responses * n_terms,); a response without a fit has no row.
 
     Raises
     ------
@@ -48,8 +48,8 @@ def surface_table(
     Notes
     -----
     A response is :math:`\sum_i B_i X_i` with the term :math:`X_i` of the levels: coded, -1 at the
-    lowest and 1 at the highest, or engineering, as they are.  The covariance is of the coded
-    coefficients of one response, of the scatter and of what the runs share,
+    lowest and 1 at the highest, or in engineering units.  The covariance is that of the coded
+    coefficients of one response, from the scatter and from errors that the runs share,
 
     .. math:: C = \sigma^2 (X^T X)^{-1} + \sum_k c_k c_k^T
     """
@@ -93,7 +93,7 @@ def surface_table(
 
 
 def _doubts_of_runs(path: Path, specimen: str | None) -> tuple[str, ...]:
-    """Why runs of the experiments have the status `check`, as far as their archives lie beside."""
+    """Why runs of the experiments have the status `check`, where their archives exist."""
     lines = [one for one in lines_of_archive(path) if specimen in (None, one.name)]
     return tuple(f"DOUBTFUL: {text}" for line in lines for text in line.warnings)
 
@@ -104,7 +104,7 @@ _PRINTED = (
     ("dissipation_spring_constant", "lb/in/in x 10^4", "N", 1e4),
     ("relaxation_time", "s", "s", 1.0),
 )
-"""Responses in the order of the report, as it prints their unit, and by which power of ten."""
+"""Responses in the order of the report, with its printed unit and power of ten."""
 
 _FACTORS = (
     "MEAN", "f^2", "T_m^2", "dT^2", "f", "T_m", "dT", "f, T_m", "f, dT", "T_m, dT",
@@ -119,14 +119,14 @@ def printed_table(path: Path, *, specimen: str | None = None) -> ValueTable:
     """Surfaces of an archive in the columns of Tables 3, 11, 14 and 17 of CG-D-39-80.
 
     One block of rows per response: the factors B1 to B10 in coded levels, three decimals, then r2,
-    F, and the range of each level; one column per experiment.  Pounds, whatever units are asked.
+    F, and the range of each level; one column per experiment.  Always in pounds.
 
     Parameters
     ----------
     path : pathlib.Path
         ``surfaces.nc``.
     specimen : str, optional
-        One experiment, by its name; all unless said.
+        Name of one experiment; default all.
 
     Returns
     -------
@@ -136,12 +136,12 @@ def printed_table(path: Path, *, specimen: str | None = None) -> ValueTable:
     Raises
     ------
     DataError
-        If no experiment has the factors of the report, or none is of that name.
+        If no experiment has the factors of the report, or there is none of that name.
 
     Notes
     -----
-    F-STAT is the ratio that the report prints, with the sum of squares of ten terms, the mean
-    counted twice, and F-CRIT its 3.48 (CG-14 of docs/errata.md); those of the regression stand in
+    F-STAT is the ratio that the report prints, with the sum of squares of ten terms (which counts
+    the mean twice), and F-CRIT its 3.48 (CG-14 of docs/errata.md); those of the regression are in
     the archive.
     """
     with reading(path) as archive:
@@ -212,7 +212,7 @@ def _printed_cells(
 
 
 def _three(value: float) -> str:
-    """Three decimals without a nought before the point, as the report has them.
+    """Three decimals without a zero before the point, as in the report.
 
     Examples
     --------
@@ -254,7 +254,7 @@ _READ_AS = {
     "box_cox_": "(1 + {exponent:.6g} sum)^(1 / {exponent:.6g})",
     "": "sum",
 }
-"""What a response is, by the scale of its surface."""
+"""Description of a response, by the scale of its surface."""
 
 
 def _rows(
@@ -320,7 +320,7 @@ def _shown(unit: str, units: UnitSystem) -> tuple[str, float]:
 
 
 def _power(term: str, name: str) -> int:
-    """Power of a level in a term.
+    """Exponent of a level in a term.
 
     Examples
     --------
@@ -333,7 +333,7 @@ def _power(term: str, name: str) -> int:
 
 
 def _over(unit: str, factors: list[str], powers: np.ndarray) -> str:
-    """Unit of a coefficient of levels.
+    """Unit of a coefficient over levels.
 
     Examples
     --------

@@ -1,10 +1,10 @@
-r"""Two published tethers out of one table, with strain by their marks.
+r"""Comparison of two published tethers from one table, with strain from their marks.
 
-Moduli of the tethers stand in two tables: of the logs as they are, and of what was read off
-smoothed curves.  The two differ by up to a fifth for one tether in one test, which is more than the
-tethers differ: a ratio is of one table or of nothing.  Strain in both tables is by a constant share
-of the position ([1]_, eq. 2).  The marks of Table 3 give the free length itself, in test T-1 alone;
-over the stretched marks it is a straight line of the position, so that
+Moduli of the tethers are in two tables: from the raw logs, and from smoothed curves.  For one
+tether in one test the two differ by up to a fifth, which is more than the tethers differ: a ratio
+has to be formed within one table.  Strain in both tables is from a free length that is a constant
+share of the position ([1]_, eq. 2).  The marks of Table 3 give the free length itself, in test T-1
+only; over the stretched marks it is linear in the position, so that
 
 .. math:: \varepsilon = \frac{b\,p + a}{L_0} - 1, \qquad
           p = \frac{(1 + \varepsilon_c) L_0}{f}, \qquad E = E_c \frac{f}{b}
@@ -47,9 +47,9 @@ class _ComparedTethers:
     Parameters
     ----------
     first, second : LineSource
-        With strain by the marks where the test has them.
+        With strain from the marks where the test has them.
     notes : tuple of str
-        Which table and which correction; what another table would say.
+        Table and correction used; result of another table.
     """
 
     first: LineSource
@@ -68,11 +68,11 @@ class _MarkedLine:
 
     @property
     def ratio(self) -> float:
-        """Modulus by the constant share over that by the marks."""
+        """Modulus with the constant share over modulus from the marks."""
         return self.slope / self.fraction
 
     def strain(self, by_fraction: Floats) -> Floats:
-        """Strain by the marks."""
+        """Strain from the marks."""
         position = (1 + by_fraction) * self.relaxed / self.fraction
         return (self.slope * position + self.constant) / self.relaxed - 1
 
@@ -82,7 +82,7 @@ def _marked_line(tether: PublishedTether) -> _MarkedLine:
 
     Examples
     --------
-    Slopes of strain over position, by the share and by the marks, 1.145 and 1.163 apart:
+    Slopes of strain over position, with the share and from the marks, 1.145 and 1.163 apart:
 
     >>> from reduction.published.published_lines import published_tethers
     >>> [round(_marked_line(one).ratio, 3) for one in published_tethers()]
@@ -100,17 +100,17 @@ def _marked_line(tether: PublishedTether) -> _MarkedLine:
 
 
 def compared_tethers(first: LineSource, second: LineSource) -> _ComparedTethers | None:
-    """Two published windows out of one table.
+    """Two published windows from one table.
 
     Parameters
     ----------
     first, second : LineSource
-        That are to be compared.
+        Windows to compare.
 
     Returns
     -------
     pair : _ComparedTethers or None
-        None where one of them is no published tether, or both are and no table has both whole.
+        None where one of them is not a published tether, or no table has both complete.
 
     Examples
     --------
@@ -166,7 +166,7 @@ def _pair(first: str, second: str, data: str) -> _ComparedTethers:
 
 
 def _by_marks(tether: PublishedTether, source: LineSource) -> LineSource:
-    """A window with strain by the marks."""
+    """A window with strain from the marks."""
     line = _marked_line(tether)
 
     def of(curve: LineCurve) -> LineCurve:
@@ -190,7 +190,7 @@ def _chord(source: LineSource, low: float, high: float) -> float:
 
 
 def _over_common_strain(first: LineSource, second: LineSource, table: str) -> list[str]:
-    """The two over the strains that both windows have: their pieces end at other strains."""
+    """Both windows over their common strains: their pieces end at different strains."""
     low = max(one.curves[0].low for one in (first, second))
     high = min(one.curves[0].high for one in (first, second))
     if not low < high:
@@ -205,7 +205,7 @@ def _over_common_strain(first: LineSource, second: LineSource, table: str) -> li
 
 @cache
 def _other_table(first: str, second: str, data: str) -> tuple[str, ...]:
-    """What the other table says where a row of it is open: moduli by its own loads and strains."""
+    """Result of the other table where a row of it is open: moduli from its loads and strains."""
     (other,) = (one for one in _TABLES if one != data)
     if not all(len(_rows(name, other)) == 1 for name in (first, second)):
         return ()
@@ -224,7 +224,7 @@ def _other_table(first: str, second: str, data: str) -> tuple[str, ...]:
 
 
 def _printed_chord(tether: PublishedTether, segment: TetherSegment) -> float:
-    """Modulus by the loads and strains of a row as they are printed. [Pa]."""
+    """Modulus from the printed loads and strains of a row. [Pa]."""
     named = segment.name
     cells = {
         cell.column.removeprefix("segment_"): number_of(cell.printed) or float("nan")

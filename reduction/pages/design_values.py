@@ -44,13 +44,13 @@ _NUMBERS = (
 
 
 def _json_text(data: Any) -> str:
-    """JSON that ends no element of a page, whatever stands in it."""
+    """JSON that cannot end an element of a page, whatever its content."""
     text = json.dumps(data, separators=(",", ":"), allow_nan=False)
     return text.replace("&", "\\u0026").replace("<", "\\u003c").replace(">", "\\u003e")
 
 
 def _numbers(values: ArrayLike) -> Any:
-    """Numbers for JSON, nested as they are: null is NaN, the text inf is infinite.
+    """Numbers for JSON with their nesting: null is NaN, the text inf is infinite.
 
     Examples
     --------
@@ -66,7 +66,7 @@ def _numbers(values: ArrayLike) -> Any:
 
 
 def _line_data(line: LineSource) -> dict[str, Any]:
-    """All that a look-up needs of a line.
+    """All data of a line that a look-up needs.
 
     Examples
     --------
@@ -87,7 +87,7 @@ def _line_data(line: LineSource) -> dict[str, Any]:
             "notes": list(line.notes),
             "conditions": dict(line.conditions),
             "rule": line.rule,
-            # by which the page solves K_1 and tau of sines
+            # from which the page solves K_1 and tau for sinusoids
             "slow_pulls": {}
             if line.by_fundamental
             else {of: _curve(one) for of, one in line.slow_pulls.items()},
@@ -101,7 +101,7 @@ def _line_data(line: LineSource) -> dict[str, Any]:
 
 
 def _refits(line: LineSource) -> dict[str, Any]:
-    """What does not depend on the levels: columns that do not follow from the others, and z."""
+    """Results independent of the levels: inconsistent columns, and z."""
     refits = refitted_surfaces(line)
     return {
         "column_warnings": {
@@ -168,7 +168,7 @@ def _levels(levels: LineLevels) -> dict[str, Any]:
 
 
 def _components(component: tuple[Component, ...]) -> list[list[Any]]:
-    """Of each shared error what tells it from others, and its degrees of freedom."""
+    """Identity and degrees of freedom of each shared error."""
     return [[one.source, one.of, one.number, _numbers(one.degrees_of_freedom)] for one in component]
 
 
@@ -214,7 +214,7 @@ def _pages(report: ReportId, table: str) -> str:
 
 
 def _errata_notes(lines: Iterable[LineSource]) -> dict[str, list[str]]:
-    """Place, print and correction, and evidence of every erratum that touches a line, by its id."""
+    """Place, printed and correct text, and evidence of every erratum of a line, by its id."""
     touching: set[str] = set()
     for line in lines:
         touching.update(*(one.errata for one in line.surfaces.values()))
@@ -235,15 +235,15 @@ def _errata_notes(lines: Iterable[LineSource]) -> dict[str, list[str]]:
 _SURFACES = "surfaces"
 
 _STATUS = "status.csv"
-"""That every run leaves beside its archives."""
+"""File that every run leaves beside its archives."""
 
-# what a file that was damaged, or made by hand, may end in
+# exceptions from a damaged or hand-made file
 _FAULTS = (ReductionError, OSError, RuntimeError, KeyError, IndexError, ValueError, TypeError)
 
 
 @dataclass(frozen=True)
 class _CampaignLines:
-    """A campaign as the page keeps it."""
+    """A campaign in the form stored on the page."""
 
     name: str
     files: dict[str, dict[str, Any]] = field(default_factory=dict)
@@ -252,14 +252,14 @@ class _CampaignLines:
 
     @property
     def names(self) -> list[str]:
-        """Of the lines of all files, as a look-up in the folder calls them."""
+        """Names of the lines of all files, as in a look-up in the folder."""
         return unique_names(
             [(stem, line["name"]) for stem, one in self.files.items() for line in one["lines"]]
         )
 
 
 def _state_of(processed: Path) -> str:
-    """Digest of which archives there are and when each was written; it changes with any of them."""
+    """Digest of the archives and their times; it changes with any of them."""
     text = "\n".join(
         f"{path.parent.name}/{path.name} {_stamp(path)}"
         for folder in _folders(processed)
@@ -275,7 +275,7 @@ def _read_campaigns(
     room: int,
     opener: Opener = reading,
 ) -> list[_CampaignLines]:
-    """Lines of every campaign below a folder, as far as a page has room."""
+    """Lines of every campaign below a folder, as far as they fit on a page."""
     found = [
         _Reading(folder, (known or {}).get(folder.name, {}), opener)
         for folder in _folders(processed)
@@ -286,7 +286,7 @@ def _read_campaigns(
             for path in one.paths:
                 if (path.stem == _SURFACES) != is_surfaces:
                     continue
-                # what comes behind the first that has no room is not read to see how large it is
+                # archives after the first that does not fit are not read, not even for their size
                 room -= one.read(path) if room > 0 else one.leave(path)
                 if room < 0:
                     one.leave(path)
@@ -294,7 +294,7 @@ def _read_campaigns(
 
 
 class _Reading:
-    """A campaign while its archives are read."""
+    """A campaign whose archives are being read."""
 
     def __init__(self, folder: Path, known: Mapping[str, Any], opener: Opener) -> None:
         self.paths = archives_of_lines(folder)
@@ -307,8 +307,8 @@ class _Reading:
         self._left: set[Path] = set()
 
     def read(self, path: Path) -> int:
-        """Read an archive, or take it from what is known; the room that it takes. [bytes]."""
-        # surfaces have what the tests beside them say of their specimens
+        """Read an archive, or take it from the known ones; return its size on the page. [bytes]."""
+        # surfaces include properties of their specimens from the tests beside them
         rests_on = self.paths if path.stem == _SURFACES else (path,)
         state = sha256(" ".join(map(self._digest, rests_on)).encode()).hexdigest()
         before = self._known.get(path.stem)
@@ -324,32 +324,32 @@ class _Reading:
         return len(_json_text(self._files[path]))
 
     def _digest(self, path: Path) -> str:
-        """Of all bytes: by times and numbers of files the page would not be the same elsewhere."""
+        """Digest of all bytes: times and file numbers would make the page depend on its place."""
         if path not in self._digests:
             self._digests[path] = ""
-            if not path.is_file():  # a pipe would be waited for
+            if not path.is_file():  # reading a pipe would block
                 return ""
             try:
                 with path.open("rb") as file:
                     self._digests[path] = file_digest(file, "sha256").hexdigest()
             except OSError:
-                pass  # without it the archive is read, which tells why
+                pass  # the archive is then read, which reports the reason
         return self._digests[path]
 
     def leave(self, path: Path) -> int:
-        """Leave an archive out; it takes no room."""
+        """Leave an archive out; it takes no space."""
         self._files.pop(path, None)
         self._left.add(path)
         return 0
 
     @property
     def campaign(self) -> _CampaignLines:
-        """What was read, in the order of the folder."""
+        """The lines read, in the order of the folder."""
         files = {path.stem: self._files[path] for path in self.paths if path in self._files}
         lines = [line for one in files.values() for line in one["lines"]]
         for line in lines:
             if line["surfaces"]:
-                # those of its runs, as a look-up in the folder has it
+                # properties of its runs, as in a look-up in the folder
                 line["conditions"] = joined_conditions(
                     one["conditions"]
                     for one in lines
@@ -360,7 +360,7 @@ class _Reading:
 
 def _folders(processed: Path) -> list[Path]:
     try:
-        # a folder that may not be read is no empty one, as `Path.glob` has it
+        # an unreadable folder is not an empty one, as it is for `Path.glob`
         found = sorted(processed.iterdir())
     except FileNotFoundError:
         return []
@@ -368,7 +368,7 @@ def _folders(processed: Path) -> list[Path]:
 
 
 def _stamp(path: Path) -> str:
-    """Time, size and number of a file; zeros where it was taken away meanwhile."""
+    """Time, size and number of a file; zeros where it was removed meanwhile."""
     try:
         found = path.stat()
     except OSError:
@@ -382,17 +382,17 @@ def _lines(path: Path, opener: Opener) -> list[dict[str, Any]]:
 
 
 MOST_BYTES = 2_500_000
-"""Of the lines of campaigns on one page; of the rest it says how many archives there are."""
+"""Size limit for the lines of campaigns on one page; the rest is given as a count of archives."""
 
 _REPORT = "index.html"
 
 _FORMAT = 5
-"""Of what one page keeps for the next."""
+"""Format version of the data that one page keeps for the next."""
 
 _TIMES = 3
 
 _SHARES = np.append(1e-12, np.arange(1, 33) / 32)
-"""Inverse degrees of freedom at which the page has the factor of an interval; the first is none."""
+"""Inverse degrees of freedom with tabulated interval factors on the page; the first is zero."""
 
 _SCRIPTS = (
     "format.js", "student.js", "surface.js", "curve.js", "loads.js", "lookup.js", "consistent.js",
@@ -428,7 +428,7 @@ def write_design_page(
     unreadable: Callable[[Path, str], None] | None = None,
     opener: Opener = reading,
 ) -> Path:
-    """Write the page of a folder of products, or write it again."""
+    """Write or rewrite the page of a folder of products."""
     path = reports / DESIGN_PAGE_NAME
     known = _files_on(path)
     for _ in range(_TIMES):
@@ -443,7 +443,7 @@ def write_design_page(
         )
         if _state_of(processed) == state:
             break
-        # another run ended meanwhile, and the page that it wrote may just have been replaced
+        # another run ended meanwhile, and its page may just have been replaced
         known = {one.name: one.files for one in campaigns}
     return path
 
@@ -479,7 +479,7 @@ def _render_design_page(
 
 
 def _reports_beside(reports: Path, campaigns: Sequence[_CampaignLines]) -> dict[str, str]:
-    """Address of each campaign's report that is there, as a link takes it."""
+    """Address of each existing campaign report, as used in a link."""
     return {
         one.name: f"{quote(one.name)}/{_REPORT}"
         for one in campaigns
@@ -488,7 +488,7 @@ def _reports_beside(reports: Path, campaigns: Sequence[_CampaignLines]) -> dict[
 
 
 def _constants() -> dict[str, Any]:
-    """What does not depend on any campaign."""
+    """Data that do not depend on any campaign."""
     lines = tuple(published_sources().values())
     published = [_line_data(line) | {"printed": _printed_at(line)} for line in lines]
     known = {name: quantity(name) for name in (*_OF_LINES, *_LEVELS)}
@@ -518,7 +518,7 @@ def _constants() -> dict[str, Any]:
 
 
 def _files_on(path: Path) -> dict[str, dict[str, Any]]:
-    """What the page that is there keeps of campaigns; nothing of one of another version."""
+    """Campaign data kept by the existing page; none if it is from another version."""
     try:
         found = _DATA.search(path.read_text(encoding="utf-8"))
         data = json.loads(found[1]) if found is not None else {}
@@ -526,5 +526,5 @@ def _files_on(path: Path) -> dict[str, dict[str, Any]]:
             return {}
         return {one["name"]: one["files"] for one in data["campaigns"]}
     except (OSError, ValueError, KeyError, TypeError):
-        # no page, or one that is not ours: everything is read
+        # no page, or one from elsewhere: everything is read
         return {}

@@ -1,8 +1,8 @@
-"""One campaign that is being explored: its logs, its text, a change of its settings.
+"""One campaign in the explorer: its logs, its text, a change of its settings.
 
-Everything is made by the functions of `reduction run`: a text that campaign.toml may hold is
-loaded, the log is surveyed with it, and the test is reduced to the dataset that its archive
-would be written from.  Nothing is written but campaign.toml, and that on request.
+All results come from the functions of `reduction run`: a valid text of campaign.toml is loaded, the
+log is surveyed with it, and the test is reduced to the dataset from which its archive would be
+written.  The only file written is campaign.toml, and only on request.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ _CYCLIC = ("cyclic", "fatigue", "snap", "bedding-in")
 
 @dataclass(frozen=True)
 class _Slider:
-    """Ends and step of a slider, in the unit that is written behind its number."""
+    """Ends and step of a slider, in the displayed unit."""
 
     low: float
     high: float
@@ -74,7 +74,7 @@ class Setting:
     """One key of ``[tests.ID]``.
 
     ``key`` is ``GROUP.NAME`` below ``reduction``, or a key of the test itself; ``choices`` are
-    the words that it may have. It is offered for the ``kinds`` of test; for all where empty.
+    the allowed words. It is offered for the ``kinds`` of test; for all where empty.
     """
 
     key: str
@@ -178,7 +178,7 @@ def _setting_of(key: str) -> Setting | None:
 
 
 def settings_of_kind(kind: str) -> list[Setting]:
-    """Settings that steer a kind of test; of weights hung by hand there is none."""
+    """Settings that affect a kind of test; there are none for weights hung by hand."""
     if kind == "stepwise":
         return []
     return [one for one in SETTINGS if not one.kinds or kind in one.kinds]
@@ -189,11 +189,11 @@ Keys = tuple[str | int, ...]
 Value = bool | int | float | str | list[Any] | dict[str, Any]
 
 _NAMED = 2
-"""Keys of a header that is added where a table is not there, as in ``[tests.T-1]``."""
+"""Keys of a header that is added where a table does not exist, as in ``[tests.T-1]``."""
 
 
 def _edited(text: str, changes: Mapping[Keys, Value | None]) -> str:
-    r"""Return a TOML text with some keys set, or left out where the value is None.
+    r"""Return a TOML text with some keys set, or removed where the value is None.
 
     Examples
     --------
@@ -226,7 +226,7 @@ def _edited(text: str, changes: Mapping[Keys, Value | None]) -> str:
 
 
 def _value_at(document: object, path: Keys) -> Any:
-    """What stands at a path of a document; None where nothing does."""
+    """Value at a path of a document; None where there is none."""
     for key in path:
         if isinstance(document, dict) and isinstance(key, str):
             document = document.get(key)
@@ -238,7 +238,7 @@ def _value_at(document: object, path: Keys) -> Any:
 
 
 def _leaves(document: Any, left_out: Keys, at: Keys = ()) -> Iterator[tuple[Keys, Any]]:
-    """Every value but one by its path; tables that hold nothing say nothing."""
+    """Every value by its path, except one; empty tables are skipped."""
     if at == left_out:
         return
     if isinstance(document, dict | list):
@@ -250,7 +250,7 @@ def _leaves(document: Any, left_out: Keys, at: Keys = ()) -> Iterator[tuple[Keys
 
 
 def _with(text: str, path: Keys, value: Value | None) -> str:
-    """The text with one key set, or left out."""
+    """The text with one key set or removed."""
     document = tomlkit.parse(text)
     end_of_line = "\r\n" if "\r\n" in text else "\n"
     holder: Any = document
@@ -263,7 +263,7 @@ def _with(text: str, path: Keys, value: Value | None) -> str:
             home, keys = holder, path[depth:]
     key = path[depth]
     if isinstance(holder, InlineTable):
-        # of a table on one line the whole is written again
+        # a table on one line is rewritten as a whole
         whole: dict[str, Any] = holder.unwrap()
         for name in reversed(path[depth + 1 :]):
             value = {str(name): value}
@@ -278,7 +278,7 @@ def _with(text: str, path: Keys, value: Value | None) -> str:
         lines = f"[{_dotted(path[:_NAMED])}]", _line(path[_NAMED:], value), ""
         return f"{text}{gap}{end_of_line.join(lines)}"
     else:
-        # below the last key of its table, which is above the comment of the next table
+        # below the last key of its table, and above the comment of the next table
         before = _last_line(home)
         before.trail = before.trail or end_of_line
         before.trail += f"{before.indent}{_line(keys, value)}{end_of_line}"
@@ -286,7 +286,7 @@ def _with(text: str, path: Keys, value: Value | None) -> str:
 
 
 def _last_line(table: Any) -> Any:
-    """What stands about the last key of a table; about its header where it has no key."""
+    """Text around the last key of a table, or around its header where it has no key."""
     body = table.body if isinstance(table, Container) else table.value.body
     for key, item in reversed(body):
         if key is not None and (key.is_dotted() or not isinstance(item, Table | AoT)):
@@ -303,7 +303,7 @@ def _line(keys: Keys, value: Value) -> str:
 
 
 def _item(value: Value) -> Item:
-    """A value as it is written on one line."""
+    """A value as written on one line."""
     if isinstance(value, dict) and value:
         inside = ", ".join(_line((key,), one) for key, one in value.items())
         return tomlkit.value(f"{{ {inside} }}")
@@ -321,7 +321,7 @@ _STEP_ENDS = ("from", "to")
 
 @dataclass(frozen=True)
 class Written:
-    """What campaign.toml says of a setting, and where; nothing where it is silent."""
+    """Text of a setting in campaign.toml, and its place; empty where it is not set."""
 
     place: Place
     text: str = ""
@@ -329,7 +329,7 @@ class Written:
 
 @dataclass(frozen=True)
 class CampaignText:
-    """A campaign.toml as it stood when it was read; a byte-order mark before its text is kept."""
+    """A campaign.toml as read; a byte-order mark before its text is kept."""
 
     path: Path
     text: str
@@ -337,7 +337,7 @@ class CampaignText:
 
     @classmethod
     def read(cls, path: Path) -> CampaignText:
-        """Read it; `SettingsError` where that is not possible."""
+        """Read the file; `SettingsError` where that is not possible."""
         try:
             whole = path.read_bytes()
             mark = codecs.BOM_UTF8 if whole.startswith(codecs.BOM_UTF8) else b""
@@ -351,11 +351,11 @@ class CampaignText:
 
     @cached_property
     def document(self) -> dict[str, Any]:
-        """As TOML gives it."""
+        """The parsed TOML."""
         return tomllib.loads(self.text)
 
     def as_bytes(self) -> bytes:
-        """Return what the file holds."""
+        """Return the content of the file."""
         return self.mark + self.text.encode("utf-8")
 
     @cached_property
@@ -365,7 +365,7 @@ class CampaignText:
 
     @cached_property
     def in_table(self) -> dict[str, set[str]]:
-        """Keys of each test that stand in the table of tests, where there is one."""
+        """Keys of each test in the table of tests, where there is one."""
         tests = self.document.get("tests")
         name = tests if isinstance(tests, str) else _value_at(self.document, ("campaign", "tests"))
         if not name:
@@ -379,12 +379,12 @@ class CampaignText:
         return tuple(self.path.parent / one for one in dict.fromkeys(_texts(self.document)))
 
     def written(self, test: str, setting: Setting) -> Written:
-        """What stands of a setting of a test."""
+        """Text of a setting of a test, and its place."""
         if setting.path[0] in self.in_table.get(test, ()):
             return Written("table")
         own = ("tests", test, *setting.path)
         if setting.key == "strain.method":
-            # a table of a test is taken whole: what it leaves out is not in the defaults
+            # the table of a test replaces the defaults as a whole
             is_own = _value_at(self.document, own[:-1]) is not None
         else:
             is_own = _value_at(self.document, own) is not None
@@ -407,7 +407,7 @@ class CampaignText:
         }
 
     def changed(self, test: str, changes: Mapping[str, str], *, control: str) -> CampaignText:
-        """Return what the file would say with settings of one test changed."""
+        """Return the text of the file with changed settings of one test."""
         paths: dict[Keys, Value | None] = {}
         for key, text in changes.items():
             paths |= self._change(test, key, text.strip(), control)
@@ -415,7 +415,7 @@ class CampaignText:
             return self
         table = self.document.get("tests")
         if isinstance(table, str):
-            # beside [tests.ID] the table of tests is named in [campaign]
+            # besides [tests.ID], the table of tests is named in [campaign]
             paths = {("tests",): None, ("campaign", "tests"): table, **paths}
         return replace(self, text=_edited(self.text, paths))
 
@@ -441,7 +441,7 @@ class CampaignText:
         return {path: _as_value(setting, text, control) if text else None}
 
     def _strain_change(self, test: str, method: str) -> dict[Keys, Value | None]:
-        """A test that has a strain method of its own names the marks again."""
+        """A test with its own strain method has to name the marks again."""
         own = _value_at(self.document, ("tests", test, "strain"))
         default = _value_at(self.document, ("defaults", "strain")) or {}
         rest = {key: value for key, value in (own or default).items() if key != "method"}
@@ -451,11 +451,11 @@ class CampaignText:
             return {} if wanted == default else {table: wanted}
         if wanted:
             return {(*table, "method"): method or None}
-        # an empty table of its own keeps the method of the defaults away
+        # an empty table prevents the default method
         return {table: {} if default.get("method") else None}
 
     def difference(self, other: CampaignText) -> str:
-        """What another text would change, as a unified diff."""
+        """Difference to another text, as a unified diff."""
         name = self.path.name
         lines = difflib.unified_diff(
             self.text.splitlines(), other.text.splitlines(), name, f"{name} (changed)", lineterm=""
@@ -463,8 +463,8 @@ class CampaignText:
         return "\n".join(lines)
 
     def replace_with(self, other: CampaignText) -> None:
-        """Put another text in the place of this one, whole or not at all."""
-        # a link is followed: what it leads to is replaced, and the link stays
+        """Replace the file by another text, completely or not at all."""
+        # a link is followed: its target is replaced, and the link is kept
         target = self.path.resolve()
         if CampaignText.read(target).digest != self.digest:
             raise SettingsError(
@@ -474,7 +474,7 @@ class CampaignText:
             )
         try:
             if not target.stat().st_mode & _WRITABLE:
-                # to be renamed over needs no leave of the file itself
+                # renaming over a file needs no permission for the file itself
                 raise PermissionError(errno.EACCES, "it is read-only")
             with atomic_file(target) as part:
                 part.write_bytes(other.as_bytes())
@@ -490,7 +490,7 @@ class CampaignText:
 
 
 def _texts(value: object) -> Iterator[str]:
-    """Every text of a document that is short enough for the name of a file."""
+    """Every text of a document that is short enough to be a file name."""
     if isinstance(value, dict):
         value = list(value.values())
     if isinstance(value, list):
@@ -501,14 +501,14 @@ def _texts(value: object) -> Iterator[str]:
 
 
 def _as_text(value: object) -> str:
-    """A value as a person writes it into a field; entries of a list parted by commas."""
+    """A value as a person enters it in a field; entries of a list separated by commas."""
     if isinstance(value, list):
         return ", ".join(map(_as_text, value))
     return str(value)
 
 
 def _as_value(setting: Setting, text: str, control: str) -> Value:
-    """A text of a field as campaign.toml has it; what it means is checked there."""
+    """Text of a field in the form of campaign.toml, where its meaning is checked."""
     if setting.choices:
         return text
     group, _, name = setting.key.partition(".")
@@ -525,7 +525,7 @@ def _as_value(setting: Setting, text: str, control: str) -> Value:
 
 
 def _number(text: str) -> Value:
-    """A number where the text is one, else the text: a value with its unit."""
+    """A number where the text is one, else the text, for example a value with its unit."""
     for kind in (int, float):
         try:
             return kind(text)
@@ -539,7 +539,7 @@ COMMAND = "reduction run campaign.toml"
 
 @dataclass(frozen=True)
 class _Made:
-    """What a text makes of one test."""
+    """Results of a text for one test."""
 
     survey: Survey
     dataset: xr.Dataset | None
@@ -550,7 +550,7 @@ class _Made:
 
 
 class Session:
-    """A campaign that is being explored; to be used by one thread at a time.
+    """A campaign in the explorer; to be used by one thread at a time.
 
     Parameters
     ----------
@@ -559,7 +559,7 @@ class Session:
     processed : pathlib.Path
         Folder of its archives.
     progress : Progress, optional
-        Told of each log of the first pass.
+        Called for each log of the first pass.
 
     Raises
     ------
@@ -573,19 +573,19 @@ class Session:
         self.read_again(progress)
 
     def read_again(self, progress: Progress | None = None) -> None:
-        """Take campaign.toml, and what is found in its logs, as they are now."""
+        """Read campaign.toml and its logs as they are now."""
         text = CampaignText.read(self.path)
         campaign = load_campaign(self.path, text=text.text)
         inputs = _inputs(text, campaign)
         stamps = tuple(map(_stamp, inputs))
         now = find_reduction_inputs(campaign, progress=progress or Silent())
-        # all of it, or what was there before
+        # replace all of it, or keep the previous state
         self.text, self.campaign, self.surveys = text, campaign, now.first.surveys
         self._inputs, self._stamps, self._settings = inputs, stamps, _settings(now)
 
     @property
     def is_changed_on_disk(self) -> bool:
-        """Whether campaign.toml, or a file that it names, is another than the one that was read."""
+        """Whether campaign.toml, or a file that it names, differs from the one that was read."""
         is_same = CampaignText.read(self.path).digest == self.text.digest
         return not is_same or tuple(map(_stamp, self._inputs)) != self._stamps
 
@@ -597,13 +597,13 @@ class Session:
         raise SettingsError("the campaign has no such test", found=repr(test))
 
     def changed(self, test: str, changes: Mapping[str, str]) -> CampaignText:
-        """What campaign.toml would say; `SettingsError` where a change cannot be written."""
+        """Text of campaign.toml after a change; `SettingsError` where it cannot be written."""
         plan = self.survey(test).plan
         control = changes.get("control") or plan.control
         return self.text.changed(plan.log, changes, control=control)
 
     def made(self, test: str, text: CampaignText) -> _Made:
-        """Reduce a test as a text says."""
+        """Reduce a test with the settings of a text."""
         begun = time.perf_counter()
         if self.is_changed_on_disk:
             raise SettingsError(
@@ -617,12 +617,12 @@ class Session:
         if error is None:
             try:
                 basis = now.basis(survey)
-                # what a changed text gives has no archive yet
+                # the result of a changed text has no archive yet
                 is_same = text.digest == self.text.digest
                 is_standing = is_same and self._is_standing(survey, basis)
                 dataset, _ = dataset_of(campaign, survey, basis, command=COMMAND)
             except Exception as failure:
-                # one text of many that are tried, even where the failure is a defect here
+                # one of many texts that are tried, even where the failure is a defect here
                 error = as_reduction_error(failure)
         settings = _settings(now)
         others = (one.plan.id for one in now.first.surveys if one.plan.id != test)
@@ -649,7 +649,7 @@ class Session:
         return found is not None
 
     def save(self, text: CampaignText) -> None:
-        """Put a text in the place of campaign.toml, and go on from it."""
+        """Replace campaign.toml by a text, and continue from it."""
         load_campaign(self.path, text=text.text)
         self.text.replace_with(text)
         self.read_again()
@@ -662,15 +662,15 @@ def _settings(now: ReductionInputs) -> dict[str, str]:
 
 
 def _inputs(text: CampaignText, campaign: Campaign) -> tuple[Path, ...]:
-    """Every file that a campaign may be read from: those that its text and its tests name."""
+    """Every file that a campaign may read: those that its text and its tests name."""
     own = {campaign.folder / name for plan in campaign.tests.values() for name, _ in plan.files}
     return tuple(sorted({*text.named, *own, *campaign.copies.values()}))
 
 
 def _stamp(path: Path) -> tuple[int, ...]:
-    """Whatever changes with a file; of one that is not there the reader says so."""
+    """Values that change with a file; for a missing file the reader reports the error."""
     try:
         found = os.stat(path)
-    except (OSError, ValueError):  # the latter of a name that no file can have
+    except (OSError, ValueError):  # the latter for a name that no file can have
         return ()
     return found.st_size, found.st_mtime_ns, found.st_ino

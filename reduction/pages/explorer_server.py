@@ -1,7 +1,7 @@
-"""The explorer's server on this machine alone, and what its page is told.
+"""The server of the explorer, on this machine only, and the documents for its page.
 
-A request has to come from a page of this server, by its own name.  How much of it is read and
-how long it may take to arrive is bounded, so that one who dawdles does not hold the others up.
+A request has to come from a page of this server, with its own name.  Size and duration of a request
+are limited, so that a slow client does not delay the others.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ from reduction.report.test_section import make_section
 from reduction.report.test_view import TestView
 from reduction.report.text_style import number_text
 
-# where the archive says what was found for a number that nobody stated
+# name in the archive of the value found where none was stated
 _FOUND = {
     "phases.position_tolerance": ("standstill_position_tolerance",),
     "phases.tension_tolerance": ("hold_tension_tolerance",),
@@ -88,7 +88,7 @@ def _change_document(
         "test": test,
         "settings": settings + _step_settings(survey, text),
         "error": made.error,
-        # names out of files are escaped in it, and no script of it runs
+        # names from files are escaped in it, and none of its scripts run
         "section": "" if view is None else render_section(make_section(view), is_folded=False).html,
         "diff": session.text.difference(text),
         "before": session.text.digest,
@@ -103,7 +103,7 @@ def _change_document(
 def _save_document(
     session: Session, *, test: str, changes: Mapping[str, str], before: str, after: str
 ) -> dict[str, Any]:
-    """Write what was shown; ``before`` and ``after`` are the digests that came with the diff."""
+    """Write the change shown; ``before`` and ``after`` are the digests sent with the diff."""
     text = session.changed(test, changes)
     if (session.text.digest, text.digest) != (before, after):
         raise SettingsError(
@@ -115,7 +115,7 @@ def _save_document(
 
 
 def _step_settings(survey: Survey, text: CampaignText) -> list[dict[str, Any]]:
-    """Both ends of a step, which are no setting of a reduction."""
+    """Both ends of a step, which are not settings of a reduction."""
     if not survey.plan.step_place:
         return []
     ends = text.step_ends(survey.plan.log, survey.plan.step_place - 1)
@@ -151,20 +151,20 @@ def _setting(
 
 
 def _place(setting: Setting, survey: Survey, written: Written) -> str:
-    """Where the value in force comes from; what nobody stated is a default, or was found."""
+    """Origin of the value in force; one that was not stated is a default, or was found."""
     if written.place != "nowhere" and (written.text or written.place == "table"):
         return written.place
     return "found" if _stated(setting, survey) is None else "default"
 
 
 def _stated(setting: Setting, survey: Survey) -> Any:
-    """Value of a setting of a plan, in SI; None where it is to be found."""
+    """Planned value of a setting, in SI; None where it is to be found."""
     group, _, name = setting.key.rpartition(".")
     return getattr(getattr(survey.plan.settings, group or "cycles"), name)
 
 
 def _in_force(setting: Setting, survey: Survey, view: TestView | None) -> Any:
-    """Value of a setting, in SI; what was found in the record where nobody stated it."""
+    """Value of a setting, in SI; the value found in the record where none was stated."""
     value = _stated(setting, survey)
     if value is not None or view is None:
         return value
@@ -178,7 +178,7 @@ def _in_force(setting: Setting, survey: Survey, view: TestView | None) -> Any:
 
 
 def _shown(setting: Setting, survey: Survey, value: Any, units: UnitSystem) -> str:
-    """A value as a person would write it, in the units that are shown."""
+    """A value as a person would write it, in display units."""
     if value is None:
         return ""
     if isinstance(value, str):
@@ -203,7 +203,7 @@ def _quantity(value: float, dimension: str | None, units: UnitSystem) -> str:
 
 
 def _slider(setting: Setting, survey: Survey, in_force: Any) -> dict[str, Any] | None:
-    """Ends, step and place of a slider; wide enough for the value in force."""
+    """Ends, step and position of a slider; wide enough for the value in force."""
     slider = setting.slider
     if slider is None:
         return None
@@ -228,18 +228,18 @@ def _slider(setting: Setting, survey: Survey, in_force: Any) -> dict[str, Any] |
 HOST = "127.0.0.1"
 
 MOST_BYTES = 64_000
-"""Longest body of a request. [1]"""
+"""Greatest size of the body of a request. [1]"""
 
 PATIENCE = 10.0
-"""How long a part of a request may take to arrive, and an answer to be taken. [s]"""
+"""Time limit for the arrival of a part of a request, and for the receipt of an answer. [s]"""
 
 DEADLINE = 30.0
-"""How long a whole request may take to arrive; each connection is of one. [s]"""
+"""Time limit for the arrival of a whole request; each connection has one request. [s]"""
 
 MOST_AT_ONCE = 24
 
 _TO_LEAVE = 1.0
-"""How long a connection that is cut off may take to leave its place. [s]"""
+"""Time limit for a connection that was cut off to free its place. [s]"""
 
 _MOST_CHANGES = 40
 
@@ -253,7 +253,7 @@ _SCRIPT, _STYLE = "text/javascript; charset=utf-8", "text/css; charset=utf-8"
 
 _HEADERS = {
     "Cache-Control": "no-store",
-    # plotly puts its style sheet into the page, so that styles have to be allowed in it
+    # plotly inserts its style sheet into the page, so styles have to be allowed in it
     "Content-Security-Policy": (
         "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; "
         "img-src data: blob:; connect-src 'self'; base-uri 'none'; form-action 'none'; "
@@ -266,13 +266,13 @@ _HEADERS = {
     "X-Content-Type-Options": "nosniff",
     "X-Frame-Options": "DENY",
 }
-"""Of every answer: nothing is kept, framed, guessed or told to others."""
+"""Headers of every answer: no caching, framing, type guessing or referrer."""
 
 Reply = tuple[int, str, bytes]
 
 
-class _Refused(Exception):  # noqa: N818 - it is an answer, and no error of this program
-    """A request that is not answered: status and words."""
+class _Refused(Exception):  # noqa: N818 - it is an answer, not an error of this program
+    """A refused request: status and words."""
 
 
 class ExploreServer(ThreadingHTTPServer):
@@ -281,24 +281,24 @@ class ExploreServer(ThreadingHTTPServer):
     Parameters
     ----------
     session : Session
-        The campaign; one request at a time is at work on it.
+        The campaign; it handles one request at a time.
     units : UnitSystem
-        What a reader is shown.
+        Display units.
     port : int
-        0 for a free one.
+        0 for a free port.
     told_of_defect : callable, optional
-        Told of what is a defect of this program, of which a page learns no more than that.
+        Called for a defect of this program; the page learns only that there was one.
 
     Raises
     ------
     SettingsError
-        If the port cannot be had.
+        If the port is not available.
     """
 
     daemon_threads = True
     block_on_close = False
     allow_reuse_address = False
-    # connections beyond five that come at once would wait a second or more to be tried again
+    # more than five simultaneous connections would wait a second or more for a retry
     request_queue_size = MOST_AT_ONCE
 
     def __init__(
@@ -320,7 +320,7 @@ class ExploreServer(ThreadingHTTPServer):
         self.told_of_defect = told_of_defect
         self.working = threading.Lock()
         self._places = threading.BoundedSemaphore(MOST_AT_ONCE)
-        # oldest first, those that are at work left out: what waits for its other end
+        # oldest first, without those at work: connections that wait for their client
         self._waiting: dict[socket.socket, None] = {}
         self._waiting_lock = threading.Lock()
         ours, report = (
@@ -341,7 +341,7 @@ class ExploreServer(ThreadingHTTPServer):
             session.read_again()
             return _campaign_document(session, units)
 
-        # what gives the document that is asked for, and the names that it needs of a request
+        # function for each requested document, and the fields that it needs from a request
         self.documents: dict[str, tuple[Callable[..., dict[str, Any]], tuple[str, ...]]] = {
             "/api/campaign": (partial(_campaign_document, session, units), ()),
             "/api/reload": (again, ()),
@@ -361,8 +361,8 @@ class ExploreServer(ThreadingHTTPServer):
         self.server_name, self.server_port = HOST, self.server_address[1]
 
     def process_request(self, request: Any, client_address: Any) -> None:
-        """Give a request a thread; of too many the one that dawdles longest makes room."""
-        # a request holds a place and is counted as waiting in one step, or in neither
+        """Give a request a thread; if there are too many, the slowest connection is closed."""
+        # a request takes a place and is counted as waiting in one step, or does neither
         with self._waiting_lock:
             taken = self._places.acquire(blocking=False)
             oldest = None if taken else next(iter(self._waiting), None)
@@ -380,7 +380,7 @@ class ExploreServer(ThreadingHTTPServer):
         super().process_request(request, client_address)
 
     def process_request_thread(self, request: Any, client_address: Any) -> None:
-        """Answer, and make room for the next."""
+        """Answer, and free the place."""
         try:
             super().process_request_thread(request, client_address)
         finally:
@@ -388,21 +388,21 @@ class ExploreServer(ThreadingHTTPServer):
             self._places.release()
 
     def is_at_work(self, request: Any) -> None:
-        """A request is here as a whole: nobody takes its place."""
+        """Mark a request that has arrived completely: its connection is not closed for others."""
         with self._waiting_lock:
             self._waiting.pop(request, None)
 
     def handle_error(self, request: Any, client_address: Any) -> None:
-        """A connection that broke is nobody's business; requests answer their own faults."""
+        """Ignore broken connections; requests answer their own errors."""
 
 
 def _cut_off(request: socket.socket) -> None:
-    with suppress(OSError):  # it ended by itself
+    with suppress(OSError):  # it was already closed
         request.shutdown(socket.SHUT_RDWR)
 
 
 class _Handler(BaseHTTPRequestHandler):
-    """One connection, of one request."""
+    """One connection with one request."""
 
     server: ExploreServer
     protocol_version = "HTTP/1.1"
@@ -419,7 +419,7 @@ class _Handler(BaseHTTPRequestHandler):
         super().finish()
 
     def do_GET(self) -> None:
-        """The page for one who knows the token; style and scripts hold nothing of a campaign."""
+        """The page for a client with the token; style and scripts contain no campaign data."""
         self._answer(self._got)
 
     def do_POST(self) -> None:
@@ -434,21 +434,21 @@ class _Handler(BaseHTTPRequestHandler):
             reply = _as_json(status, {"error": text})
         except ReductionError as error:
             reply = _as_json(HTTPStatus.UNPROCESSABLE_ENTITY, {"error": str(error)})
-        except OSError:  # who asked is gone, or dawdles
+        except OSError:  # the client has gone, or is too slow
             raise
         except Exception as error:
-            # a stranger learns no more of a defect here than that it is one; the terminal does
+            # the page learns only that there was a defect; the terminal gets the details
             self.server.told_of_defect(error)
             said = f"internal error, a defect of this program: {type(error).__name__}"
             reply = _as_json(HTTPStatus.INTERNAL_SERVER_ERROR, {"error": said})
         self._send(*reply)
 
     def _address(self) -> tuple[str, str]:
-        """Path and query, of a request that comes from where it should."""
+        """Path and query of a request with a permitted origin."""
         known = {f"{name}:{self.server.server_port}" for name in _NAMES}
         hosts = self.headers.get_all("Host") or []
         if len(hosts) != 1 or hosts[0].lower() not in known:
-            # a name of somebody else's that was made to lead here
+            # a foreign host name that resolves to this machine
             raise _Refused(HTTPStatus.FORBIDDEN, "this server answers to its own address alone")
         origin = self.headers.get("Origin", f"http://{hosts[0]}").lower()
         site = self.headers.get("Sec-Fetch-Site", "none")
@@ -463,7 +463,7 @@ class _Handler(BaseHTTPRequestHandler):
         return parts.path, parts.query
 
     def _needs_token(self, given: list[str]) -> None:
-        # in a time that does not tell how much of it was right
+        # compared in constant time
         own = self.server.token.encode()
         if len(given) != 1 or not hmac.compare_digest(given[0].encode("utf-8", "replace"), own):
             raise _Refused(
@@ -478,7 +478,7 @@ class _Handler(BaseHTTPRequestHandler):
             raise _nothing_at(path in self.server.documents)
         try:
             given = parse_qs(query, max_num_fields=4).get("token", [])
-        except ValueError:  # more fields than that
+        except ValueError:  # too many fields
             given = []
         self._needs_token(given)
         return HTTPStatus.OK, _PAGE, self.server.page
@@ -493,14 +493,14 @@ class _Handler(BaseHTTPRequestHandler):
         missing = [name for name in names if name not in asked]
         if missing:
             raise _Refused(HTTPStatus.BAD_REQUEST, f"the request has no {missing[0]}")
-        # it is here as a whole: the work on it takes as long as it takes
+        # the request has arrived completely: processing has no time limit
         self._deadline.cancel()
         self.server.is_at_work(self.connection)
         with self.server.working:
             return _as_json(HTTPStatus.OK, make(**{name: asked[name] for name in names}))
 
     def _body(self) -> bytes:
-        """The body of a request, which states what it is and how long."""
+        """The body of a request that states its type and length."""
         kind = self.headers.get("Content-Type", "").partition(";")[0].strip().lower()
         length = self.headers.get("Content-Length", "")
         if kind != "application/json":
@@ -515,7 +515,7 @@ class _Handler(BaseHTTPRequestHandler):
         return body
 
     def _send(self, status: int, kind: str, body: bytes) -> None:
-        self.request_version = self.protocol_version  # what is no request has headers too
+        self.request_version = self.protocol_version  # answers to invalid requests have headers too
         self.send_response_only(status)
         for name, value in _HEADERS.items():
             self.send_header(name, value)
@@ -528,12 +528,12 @@ class _Handler(BaseHTTPRequestHandler):
             self.wfile.write(body)
 
     def send_error(self, code: int, message: str | None = None, explain: str | None = None) -> None:
-        """Refuse what could not be read as a request, in the form of all refusals."""
-        del message, explain  # may repeat what a stranger sent
+        """Refuse an invalid request, in the form of all refusals."""
+        del message, explain  # may repeat text of the client
         self._send(*_as_json(code, {"error": HTTPStatus(code).phrase.lower()}))
 
     def log_message(self, format: str, *args: Any) -> None:
-        """Nothing: an address with its token is not for a terminal."""
+        """Log nothing, since an address with its token does not belong on a terminal."""
 
 
 def _nothing_at(is_known: bool) -> _Refused:
@@ -543,13 +543,13 @@ def _nothing_at(is_known: bool) -> _Refused:
 
 
 def _read(body: bytes) -> dict[str, Any]:
-    """A document of a request: short texts, and changes by key that are short texts."""
+    """Document of a request: short texts, and changes as short texts by key."""
     try:
         asked: dict[str, Any] = json.loads(body)
         changes = asked.get("changes", {})
         texts = [*changes, *changes.values()]
         texts += [value for name, value in asked.items() if name != "changes"]
-        # a half of a character that UTF-16 writes as two can stand in JSON and in no file
+        # an unpaired surrogate of UTF-16 is valid in JSON, but in no file
         is_short = all(len(text.encode("utf-8")) <= _LONGEST for text in texts)
     except (ValueError, RecursionError, AttributeError, TypeError):
         is_short = False
@@ -559,5 +559,5 @@ def _read(body: bytes) -> dict[str, Any]:
 
 
 def _as_json(status: int, document: dict[str, Any]) -> Reply:
-    """A document as it is sent; a number that is not finite would be no JSON."""
+    """Document in the form sent; a number that is not finite would be invalid JSON."""
     return status, _JSON, json.dumps(document, allow_nan=False).encode("utf-8")

@@ -46,15 +46,15 @@ _STYLE = {
 _DIGITS = 9
 
 _MOST_OWN = 6
-"""Own series that are told apart; of more the table has the names."""
+"""Greatest number of own series that can be told apart; for more the table has the names."""
 
 _MANY, _LONG = 12, 40
-"""Lines of a legend that take three columns, and letters of a name that allow but two."""
+"""Legend lines from which three columns are used, and name length that allows only two."""
 
 
 @dataclass(frozen=True)
 class _FigureFiles:
-    """What was written of one figure, and how it is spoken of on a page."""
+    """Files of one figure, and its description on a page."""
 
     row: FigureRow
     slug: str
@@ -64,7 +64,7 @@ class _FigureFiles:
 
 
 def units_of_report(report: str, asked: str | None) -> UnitSystem:
-    """Units that are asked for, else those of the report."""
+    """Requested units, else those of the report."""
     if asked is None:
         return "si" if report in _IN_SI else "us"
     return "us" if asked == "us" else "si"
@@ -134,7 +134,7 @@ def write_page(
 
 @dataclass(frozen=True)
 class _Scale:
-    """An axis as it is drawn."""
+    """An axis as drawn."""
 
     label: str
     factor: float
@@ -211,7 +211,7 @@ def _draw_lines(axes: Any, figure: ReportFigure, scales: Sequence[_Scale]) -> No
         at = [scale.factor * values for scale, values in zip(scales, (one.x, one.y), strict=True)]
         name, colour = _name(one), _colour(one)
         if not np.isfinite(one.y).any():
-            name += " (no curve)"  # its printed points alone are drawn
+            name += " (no curve)"  # only its printed points are drawn
         if one.is_own and own > _MOST_OWN:
             name, colour = f"own: {own} series, see the table", "#00000080"
         look: dict[str, Any] = {"color": colour, "label": None if name in named else name}
@@ -222,7 +222,7 @@ def _draw_lines(axes: Any, figure: ReportFigure, scales: Sequence[_Scale]) -> No
             continue
         has_erratum = np.array([bool(erratum) for erratum in one.errata], dtype=bool)
         errata = ", ".join(dict.fromkeys(" ".join(one.errata).split()))
-        # printed points lie on their curves: the legend tells once what they are
+        # printed points lie on their curves: the legend explains them once
         usual = name if one.is_own or one.colour < 0 else "printed"
         for chosen, fill, name in (
             (~has_erratum, colour, usual), (has_erratum, "none", f"printed, {errata}"),
@@ -233,7 +233,7 @@ def _draw_lines(axes: Any, figure: ReportFigure, scales: Sequence[_Scale]) -> No
                 axes.errorbar(
                     *(values[chosen] for values in at[::turn]), **bar, **look, linestyle="none",
                     marker="s" if one.dash else "o", markersize=5.0, capsize=2.0,
-                    zorder=3.0,  # own lines do not hide what is printed
+                    zorder=3.0,  # own lines must not hide printed ones
                 )  # fmt: skip
                 named.add(name)
     axes.set(xlabel=first.label, ylabel=second.label)
@@ -249,7 +249,7 @@ def _draw_lines(axes: Any, figure: ReportFigure, scales: Sequence[_Scale]) -> No
 
 
 def _legend(axes: Any) -> None:
-    """Name what is drawn, below it."""
+    """Place the legend below the drawing."""
     names = axes.get_legend_handles_labels()[1]
     are_short = max(map(len, names)) < _LONG
     axes.figure.legend(
@@ -283,7 +283,7 @@ def _draw_cube(drawn: Any, figure: ReportFigure, scales: Sequence[_Scale]) -> No
         x, y, value, w = _scaled(one, scales)
         for first, last in combinations(range(8), 2):
             ends = [first, last]
-            # corners are numbered by bits: an edge is between two that differ in one
+            # corners are numbered by bits: an edge joins two that differ in one bit
             if (first ^ last).bit_count() == 1:
                 space.plot(x[ends], y[ends], w[ends], color=_colour(one), linewidth=1.2)
         for at in range(value.size):

@@ -1,37 +1,37 @@
-r"""Helical armour: design, forces by each theory, layers together.
+r"""Helical armour: design, forces by each theory, several layers.
 
-**What an armour prediction takes and gives.** Angles are from the axis of the cable.  Of a wire,
-the tangent, the inward normal and the binormal are its axes; curvature is about the binormal,
-torsion about the tangent.
+**Input and output of an armour prediction.** Angles are measured from the axis of the cable.  The
+axes of a wire are its tangent, inward normal and binormal; curvature is about the binormal, torsion
+about the tangent.
 
-**The theories of small, intermediate and large winding angles.** All three are of the first order
-in the strain.  That of intermediate angles is the first term of the rod
-below; that of small angles is the same but for the change of angle, which
-it takes from a cosine; that of large angles is a close-coiled spring that has no core.
+**Theories of small, intermediate and large winding angles.** All three are of first order in the
+strain.  The theory of intermediate angles is the first term of the rod below; that of small angles
+is the same except for the change of angle, which it takes from a cosine; that of large angles is a
+close-coiled spring without a core.
 
-**A wire on a rigid core without approximation of its geometry: two laws of its moments.** Neither
-core nor cable turns, so that the helix of the wire centre follows
+**Exact geometry of a wire on a rigid core, with two laws of its moments.** Neither core nor cable
+turns, so the helix of the wire centre follows
 
 .. math:: (1+\zeta)\cos\bar\alpha = (1+\varepsilon)\cos\alpha,\qquad
    (1+\zeta)\sin\bar\alpha = \sin\alpha
 
-``exact`` is the rod whose first order are the theories of small and intermediate angles: moments
-go with the change of curvature and torsion *per current length*, the axial force with the strain
-alone.  These do not derive from an energy: with :math:`U = \tfrac12(EA\zeta^2 + EI\Delta\kappa^2
-+ GJ\Delta\tau^2)` per rest length of wire, virtual work gives
+``exact`` is the rod from which the theories of small and intermediate angles follow to first order:
+moments depend on the change of curvature and torsion *per current length*, the axial force on the
+strain alone.  These do not derive from an energy: with :math:`U = \tfrac12(EA\zeta^2 +
+EI\Delta\kappa^2 + GJ\Delta\tau^2)` per rest length of wire, virtual work gives
 
 .. math:: \frac{1}{\cos\alpha}\frac{dU}{d\varepsilon} - (T\cos\bar\alpha + N'\sin\bar\alpha)
    = -\cos\bar\alpha\,(G'\bar\kappa' + H\bar\tau)
 
 a share of order :math:`(R_2/r)^2/4` at any strain, since a curvature per current length changes
-when the wire is merely stretched.
+even if the wire is only stretched.
 
-``conjugate`` is the rod that has an energy and that agrees with three-dimensional elasticity.  A
-curved bar bends as a sheaf of fibres: those on the inside of the helix are shorter at rest and
-are strained more by the same displacement, so that bending does go with the curvature per current
-length, and costs an axial force.  Torsion is the turn of one section against another over the
-length of wire that lay between them at rest: for a straight round wire any other measure would
-depend on how its axes were drawn.
+``conjugate`` is the rod that derives from an energy and agrees with three-dimensional elasticity.
+A curved bar bends as a bundle of fibres: those on the inside of the helix are shorter at rest and
+are strained more by the same displacement.  So bending does depend on the curvature per current
+length, and causes an axial force.  Torsion is the rotation between two sections over the length of
+wire between them at rest: for a straight round wire, any other measure would depend on the choice
+of its axes.
 
 .. math:: W = \tfrac12 EA\zeta^2 + \tfrac12 EI\chi^2 + \tfrac12 GJ\vartheta^2,\quad
    \chi = (1+\zeta)(\bar\kappa' - \kappa'),\quad \vartheta = (1+\zeta)\bar\tau - \tau
@@ -40,8 +40,8 @@ depend on how its axes were drawn.
    T\cos\bar\alpha + N'\sin\bar\alpha = \frac{1}{\cos\alpha}\frac{dW}{d\varepsilon}
 
 Its torsion moment is :math:`GJ\varepsilon\sin^3\alpha\cos\alpha/r` to the first order: it does not
-vanish at 45 deg and does not change sign.  The bending moment is that of ``exact``; it is known to
-nu/2 of itself, since thinning of the wire moves its fibres by as much as bending does.
+vanish at 45 deg and does not change sign.  The bending moment is that of ``exact``; its relative
+uncertainty is nu/2, since thinning of the wire moves its fibres by as much as bending does.
 
 **Tension and torque of an armour layer for a small strain and twist of the cable.** From the same
 energy, with the core twisted by :math:`\theta` per length:
@@ -52,9 +52,9 @@ energy, with the core twisted by :math:`\theta` per length:
    -2\sin^2\alpha\cos^2\alpha/r & 2\sin\alpha\cos^3\alpha \\
    \sin^3\alpha\cos\alpha/r & \cos^4\alpha \end{pmatrix}
 
-**Several armour layers on each other: what the cable carries.** Each layer lies on a core of its
-own that does not give and does not turn, so that all have the strain of the cable and squeeze what
-is inside them.  The torque that they leave unbalanced is what the terminations have to hold.
+**Load on a cable with several armour layers.** Each layer lies on its own core, which is rigid and
+does not turn, so that all layers have the strain of the cable and squeeze what is inside them.  The
+terminations have to hold the torque that the layers leave unbalanced.
 
 References
 ----------
@@ -90,7 +90,7 @@ ARMOUR_THEORIES: tuple[ArmourTheory, ...] = (
     "exact",
     "conjugate",
 )
-"""In the order of tables: three of the report, the rod they simplify, the rod of an energy."""
+"""In the order of tables: three of the report, the rod they simplify, the rod with an energy."""
 
 
 @dataclass(frozen=True)
@@ -103,17 +103,17 @@ class ArmourDesign:
     Parameters
     ----------
     winding_angle : float or ndarray, shape (...)
-        Of the wires at rest, from the axis. [rad]
+        Angle of the wires at rest, from the axis. [rad]
     wire_radius : float or ndarray, shape (...)
-        Of one wire. [m]
+        Radius of one wire. [m]
     core_radius : float or ndarray, shape (...)
-        Of what the wires lie on; the helix of their centres has this and a wire radius. [m]
+        Radius under the wires; the helix radius of their centres is this plus a wire radius. [m]
     elastic_modulus : float or ndarray, shape (...)
         Young's modulus of the wires. [Pa]
     poisson_ratio : float or ndarray, shape (...)
-        Of the wires. [1]
+        Poisson's ratio of the wires. [1]
     n_wires : int or ndarray, shape (...)
-        Side by side in the layer. [1]
+        Number of wires in the layer. [1]
     """
 
     winding_angle: float | Floats
@@ -137,12 +137,12 @@ class ArmourDesign:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Of the designs together; () for one."""
+        """Common shape of the designs; () for one."""
         return np.broadcast_shapes(*(np.shape(getattr(self, item.name)) for item in fields(self)))
 
     @property
     def helix_radius(self) -> Floats:
-        """From the axis to the centre of a wire, shape (...). [m]."""
+        """Distance from the axis to the centre of a wire, shape (...). [m]."""
         return np.asarray(np.asarray(self.core_radius, dtype=np.float64) + self.wire_radius)
 
     @property
@@ -152,7 +152,7 @@ class ArmourDesign:
 
     @property
     def axial_stiffness(self) -> Floats:
-        """E A of one wire along itself, shape (...). [N]."""
+        """E A of one wire along its own axis, shape (...). [N]."""
         return np.asarray(self.elastic_modulus * self.wire_area)
 
     @property
@@ -202,7 +202,7 @@ class _ArmourResponse:
 
 @dataclass(frozen=True)
 class _Wire:
-    """Numbers of a design with an axis of strain behind them, shape (..., 1)."""
+    """Parameters of a design with an additional axis for strain, shape (..., 1)."""
 
     angle: Floats
     sine: Floats
@@ -216,7 +216,7 @@ class _Wire:
 
     @classmethod
     def of(cls, design: ArmourDesign) -> _Wire:
-        """Spread a design."""
+        """Expand a design."""
         angle = _behind(design.winding_angle)
         return cls(
             angle=angle,
@@ -237,7 +237,7 @@ def _behind(value: ArrayLike) -> Floats:
 
 @dataclass(frozen=True)
 class _Deformed:
-    """How a wire is deformed: strains, and the helix on which its forces are in balance."""
+    """Deformation of a wire: strains, and the helix on which its forces are in equilibrium."""
 
     wire_strain: Floats
     angle_change: Floats
@@ -249,7 +249,7 @@ class _Deformed:
 def _respond(
     wire: _Wire, theory: ArmourTheory, strain: Floats, is_as: _Deformed, axial_force: Floats
 ) -> _ArmourResponse:
-    """Give forces, moments and stresses of a deformed wire.
+    """Compute forces, moments and stresses of a deformed wire.
 
     Equations 4 (torsion with the torsional stiffness), 6, 17-19 of the module's reference.
     """
@@ -285,11 +285,11 @@ def _respond(
     return _ArmourResponse(theory=theory, strain=strain, **spread)
 
 
-_STEPS = 40  # each doubles the digits once it is near; the slowest start needs about ten
+_STEPS = 40  # each doubles the digits near the solution; the slowest start needs about ten
 
 
 def _fill_factor(design: ArmourDesign) -> Floats:
-    r"""Share of the circumference that the wires take, on the unrolled cylinder of their centres.
+    r"""Share of the circumference filled by the wires, on the unrolled cylinder of their centres.
 
     .. math:: n R_2 / (\pi r \cos\alpha)
 
@@ -308,20 +308,20 @@ def _fill_factor(design: ArmourDesign) -> Floats:
 
 
 def _wire_gap(design: ArmourDesign) -> Floats:
-    r"""Room between neighbouring wires at rest, by the least distance of their centre lines.
+    r"""Gap between neighbouring wires at rest, from the least distance of their centre lines.
 
     .. math:: \min_\psi r\sqrt{2(1 - \cos\psi) + \cot^2\!\alpha\,(2\pi/n - \psi)^2} - 2 R_2
 
     Notes
     -----
     The angle of the nearest point is the root of :math:`\sin\psi = \cot^2\!\alpha(2\pi/n - \psi)`.
-    The difference of the two sides is concave up to half a turn and below zero at first, so
-    that Newton's steps from zero go up to the first root and never past it.  Geometry of [1]_, sec.
+    The difference of the two sides is concave up to half a turn and negative at first, so
+    Newton steps from zero approach the first root and never pass it.  Geometry of [1]_, sec.
     2, Figure 2.
 
     Examples
     --------
-    All but straight wires as thick as their core: six would just fit, as in a strand of seven
+    Nearly straight wires as thick as their core: six would just fit, as in a strand of seven
 
     >>> design = ArmourDesign(1e-9, 1.0, 1.0, 210e9, n_wires=np.array([5, 7]))
     >>> print(_wire_gap(design).round(3))
@@ -354,7 +354,7 @@ def _predict_intermediate(design: ArmourDesign, strain: Floats) -> _ArmourRespon
     Source: [1]_, eq. (10)-(19).  The change of angle is current minus rest, as the text defines
     it; (9)-(15) use the opposite.  As printed, the torsion moment of (4) has the bending
     stiffness, 1 + nu times too much, and that of (16) and (19) has :math:`2\sin^2\alpha` where
-    (15) gives :math:`1 - 2\cos^2\alpha`.  As computed: (15) with the torsional stiffness,
+    (15) gives :math:`1 - 2\cos^2\alpha`.  Computed here: (15) with the torsional stiffness,
 
     .. math:: N' = H\sin^2\alpha/r - G'\sin\alpha\cos\alpha/r
 
@@ -390,7 +390,7 @@ def _predict_small(design: ArmourDesign, strain: Floats) -> _ArmourResponse:
     Source: [1]_, eq. (20)-(22), for 0-20 deg.  (20) is (12), so the axial force is that of
     intermediate angles.  (21) is :math:`(1+\varepsilon)/(1+\zeta)` to the first order.  As
     printed, the bending and torsion moments of (22) have the opposite sign to (16), and the
-    torsion moment lacks one wire radius; as computed, (14) and (15) with this change of angle.
+    torsion moment lacks one wire radius; computed here: (14) and (15) with this change of angle.
 
     Examples
     --------
@@ -422,9 +422,9 @@ def _predict_large(design: ArmourDesign, strain: Floats) -> _ArmourResponse:
     -----
     Source: [1]_, eq. (23)-(29), for 70-90 deg.  (25) has the pitch :math:`2\pi r/\tan\alpha`,
     not the printed :math:`2\pi r\tan\alpha`; (26) leaves out the sine of the torsion moment.
-    Shear force and bending moment are not printed: they are the statics of a spring whose ends
-    are free to turn, and meet (6) without core.  This is another body than a wire on a rigid
-    core, not an approximation of it: its axial force is
+    Shear force and bending moment are not printed: they follow from the statics of a spring with
+    ends that are free to turn, and satisfy (6) without core.  This is a different body from a wire
+    on a rigid core, not an approximation of it: its axial force is
     :math:`(R_2/r)^2 / (4(1+\nu)\sin\alpha)` of that, 1.8 % at 5 deg and 0.16 % at 80 deg.
 
     Examples
@@ -450,7 +450,7 @@ def _predict_large(design: ArmourDesign, strain: Floats) -> _ArmourResponse:
 
 
 def _deform(wire: _Wire, strain: Floats, *, torsion_per_rest_length: bool) -> _Deformed:
-    """Deform the helix; every difference is a product, so that small strains lose no digits."""
+    """Deform the helix; every difference is a product, so small strains lose no digits."""
     stretch = cord_stretch_ratio(1 + strain, wire.angle, core="rigid")
     change = -np.arcsin(strain * wire.sine * wire.cosine / stretch)
     wire_strain = strain * (2 + strain) * wire.cosine**2 / (1 + stretch)
@@ -474,8 +474,8 @@ def _predict_exact(design: ArmourDesign, strain: Floats) -> _ArmourResponse:
 
     Notes
     -----
-    Source: [1]_, eq. (2)-(8) before they are made linear, after [2]_; the printed torsion moment
-    of (4) has the bending stiffness.
+    Source: [1]_, eq. (2)-(8) before linearisation, after [2]_; the printed torsion moment of (4)
+    has the bending stiffness.
 
     Examples
     --------
@@ -490,18 +490,18 @@ def _predict_exact(design: ArmourDesign, strain: Floats) -> _ArmourResponse:
 
 
 def _predict_conjugate(design: ArmourDesign, strain: Floats) -> _ArmourResponse:
-    r"""Response of a wire whose tension is the derivative of its energy.
+    r"""Response of a wire with the tension that is the derivative of its energy.
 
     .. math:: T = EA\zeta - \kappa' G',\quad G' = EI(1+\zeta)(\bar\kappa' - \kappa'),\quad
        H = GJ((1+\zeta)\bar\tau - \tau)
 
     Notes
     -----
-    Derived in the module's text, balance of forces and moments by [1]_, eq. (6).
+    Derived in the module docstring; balance of forces and moments by [1]_, eq. (6).
 
     Examples
     --------
-    The torsion moment at 45 deg, which [1]_, sec. 3.1 makes zero, to the first order GJ strain / (4
+    The torsion moment at 45 deg, zero in [1]_, sec. 3.1, is to first order GJ strain / (4
     r):
 
     >>> design = ArmourDesign(np.radians(45.0), 2.5e-3, 25e-3, 210e9)
@@ -536,7 +536,7 @@ def predict_armour(
     design : ArmourDesign
         Shape (...).
     strain : array_like, shape (n_strain,)
-        Of the cable along its axis; a number stands for one. [1]
+        Axial strain of the cable; a number is a series of one. [1]
     theory : {"small", "intermediate", "large", "exact", "conjugate"}
         Three theories of the report; ``exact`` is the rod that the first two simplify,
         ``conjugate`` the one whose forces derive from an energy.
@@ -553,10 +553,10 @@ def predict_armour(
 
     Notes
     -----
-    Source: [1]_.  The material is elastic at any stress: `reduction.prediction.armour` says
-    where a wire yields.  The core is rigid; where it gives, or the wire thins on it, the wire is
-    strained less (`reduction.prediction.armour._thinning_loss`).  A strain below zero is
-    computed, and flagged: wires under compression leave the core.
+    Source: [1]_.  The material is elastic at any stress; `reduction.prediction.armour` also
+    computes where a wire yields.  The core is rigid; where it gives, or the wire thins on it, the
+    wire is strained less (`reduction.prediction.armour._thinning_loss`).  A negative strain is
+    computed and flagged: wires under compression lift off the core.
 
     Examples
     --------
@@ -588,7 +588,7 @@ def predict_armour(
 
 
 ARMOUR_QUANTITIES = ("axial_force", "shear_force", "bending_moment", "torsion_moment")
-"""The stresses go with the axial force and the moments, and have their errors."""
+"""The stresses are proportional to the axial force and the moments, and have their errors."""
 
 Reference = Literal["exact", "conjugate"]
 
@@ -609,17 +609,17 @@ class _TheoryErrors:
 def theory_errors(
     design: ArmourDesign, strain: ArrayLike, *, reference: Reference = "exact"
 ) -> _TheoryErrors:
-    r"""Error of the theories of small, intermediate and large angles, quantity by quantity.
+    r"""Error of the theories of small, intermediate and large angles, for each quantity.
 
     Parameters
     ----------
     design : ArmourDesign
         Shape (...).
     strain : array_like, shape (n_strain,)
-        Of the cable. [1]
+        Strain of the cable. [1]
     reference : {"exact", "conjugate"}
-        The rod with the moments of the report, which the theories simplify; or the rod with an
-        energy, which shows what those moments leave out.
+        The rod with the moments of the report, which the theories simplify, or the rod with an
+        energy, which shows the effects that those moments leave out.
 
     Returns
     -------
@@ -629,14 +629,14 @@ def theory_errors(
     Raises
     ------
     SettingsError
-        If the reference is neither, or by the strain.
+        If the reference is neither, or the strain is invalid.
 
     Notes
     -----
     The torsion moment of ``exact`` passes zero near 45 deg, where [1]_, sec. 5.3, finds an error
-    of 100 % of a moment that is nothing.  Its error is therefore relative to
-    :math:`GJ\sqrt{\Delta\kappa'^2 + \Delta\tau^2}`; of the others, to their own value, which has
-    no zero.
+    of 100 % of a moment that vanishes.  Its error is therefore relative to
+    :math:`GJ\sqrt{\Delta\kappa'^2 + \Delta\tau^2}`; errors of the others are relative to their own
+    values, which have no zero.
 
     Examples
     --------
@@ -670,7 +670,7 @@ def _table(response: _ArmourResponse) -> Floats:
 @dataclass(frozen=True)
 @read_only_arrays
 class _AnglesOfUse:
-    """Where each theory holds."""
+    """Angles at which each theory holds."""
 
     theory: tuple[ArmourTheory, ...]
     quantity: tuple[str, ...]
@@ -684,11 +684,11 @@ class _AnglesOfUse:
 def _angles_of_use(
     design: ArmourDesign, strain: float, *, tolerance: float, reference: Reference = "exact"
 ) -> _AnglesOfUse:
-    """Winding angles at which each theory is within a tolerance, and the statement of it.
+    """Winding angles at which each theory is within a tolerance, with a statement in words.
 
     Notes
     -----
-    [1]_, sec. 3.2, gives 0-20 and 70-90 deg to the theories of small and large angles without a
+    [1]_, sec. 3.2, gives 0-20 and 70-90 deg for the theories of small and large angles, without a
     tolerance.
 
     Examples
@@ -744,17 +744,17 @@ def _degrees(ends: Floats) -> str:
 
 
 def _thinning_loss(design: ArmourDesign) -> Floats:
-    r"""Share of its strain that a wire loses because it thins and sinks towards the core.
+    r"""Share of its strain that a wire loses because it thins and moves towards the core.
 
     .. math:: \frac{\nu (R_2/r)\sin^2\alpha}{1 + \nu (R_2/r)\sin^2\alpha}
 
     Notes
     -----
-    The centre of a wire that rests on the core comes :math:`\nu\zeta R_2` closer to the axis.
-    To the first order this shortens the helix by :math:`\nu\zeta (R_2/r)\sin^2\alpha`.  It is
-    more than what separates the theories at 0.1 % of strain, and about what [1]_, sec. 5.3,
-    finds its theory above its numerical results ("because the Poisson effect was considered").
-    The pressing of wire and core into each other comes on top, and is not in it.
+    The centre of a wire that rests on the core moves :math:`\nu\zeta R_2` closer to the axis.
+    To first order this shortens the helix by :math:`\nu\zeta (R_2/r)\sin^2\alpha`.  The effect is
+    larger than the difference between the theories at 0.1 % of strain, and about as large as the
+    excess of the theory in [1]_, sec. 5.3, over its numerical results ("because the Poisson effect
+    was considered").  Indentation of wire and core is an additional effect, not included.
 
     Examples
     --------
@@ -772,8 +772,8 @@ def _thinning_loss(design: ArmourDesign) -> Floats:
 class _LayerStiffness:
     """Stiffness of layers at rest; arrays have the shape (...) of the designs.
 
-    ``torque_per_strain`` is also the tension per twist.  It is that of right-handed wires; of
-    left-handed ones it has the other sign.
+    ``torque_per_strain`` is also the tension per twist, for right-handed wires; for left-handed
+    wires the sign is opposite.
     """
 
     tension_per_strain: Floats
@@ -782,7 +782,7 @@ class _LayerStiffness:
 
     @property
     def free_tension_per_strain(self) -> Floats:
-        """Where the cable turns as it likes, shape (...). [N]."""
+        """Stiffness of a cable that is free to turn, shape (...). [N]."""
         lost = self.torque_per_strain**2 / self.torque_per_twist
         return np.asarray(self.tension_per_strain - lost)
 
@@ -793,12 +793,12 @@ def _layer_stiffness(design: ArmourDesign) -> _LayerStiffness:
     Notes
     -----
     The layer stiffness of [1]_, sec. 5.3, is that of the axial stress alone, n E A cos^3.  A
-    single layer that may turn has next to none: the wires turn out of the load, and only their
-    bending and torsion is left.
+    single layer that is free to turn has almost none: it unwinds under the load, and only the
+    bending and torsion of the wires remain.
 
     Examples
     --------
-    30 wires at 20 deg, of their 124 MN together: held, and free to turn
+    30 wires at 20 deg, with EA of 124 MN in total: held, and free to turn
 
     >>> design = ArmourDesign(np.radians(20.0), 2.5e-3, 25e-3, 210e9, n_wires=30)
     >>> stiffness = _layer_stiffness(design)
@@ -829,7 +829,7 @@ YieldCriterion = Literal["axial", "normal", "von-mises"]
 
 _YIELD_STEPS = 100
 
-_CLOSE = 1e-10  # of the yield stress; strains of the cable are differences from one
+_CLOSE = 1e-10  # relative to the yield stress; strains of the cable are differences from one
 
 
 def _wire_stress(response: _ArmourResponse, *, criterion: YieldCriterion = "von-mises") -> Floats:
@@ -841,8 +841,8 @@ def _wire_stress(response: _ArmourResponse, *, criterion: YieldCriterion = "von-
     Notes
     -----
     Source: [1]_, sec. 5.3 adds axial and bending stress.  The three meet at one point of the
-    surface of the wire, where the shear force has no stress.  Neither the stress of laying the
-    wires nor that of contact is in it.
+    surface of the wire, where the stress from the shear force is zero.  The stresses from laying
+    the wires and from contact are not included.
 
     Examples
     --------
@@ -873,14 +873,14 @@ def _yield_strain(
 
     Notes
     -----
-    Strain of the wire and strain of the cable are one in closed form
-    (`reduction.prediction.hose_geometry`),
-    and the stress is all but proportional to the strain of the wire: it is scaled until the
-    stress is the yield stress to 1e-10.  [1]_, sec. 5.3, takes the axial stress alone.
+    Strain of the wire and strain of the cable are related in closed form
+    (`reduction.prediction.hose_geometry`), and the stress is nearly proportional to the strain of
+    the wire: it is scaled until the stress equals the yield stress to 1e-10.  [1]_, sec. 5.3, uses
+    the axial stress alone.
 
     Examples
     --------
-    Steel of 800 MPa at 20 and 80 deg: the steeper the wires, the more the cable may stretch
+    Steel of 800 MPa at 20 and 80 deg: with steeper wires the cable may stretch more
 
     >>> design = ArmourDesign(np.radians([20.0, 80.0]), 2.5e-3, 25e-3, 210e9)
     >>> strain = _yield_strain(design, 800e6, criterion="axial", theory="exact")
@@ -916,15 +916,15 @@ def _yield_strain(
 
 
 def layer_strength(design: ArmourDesign, yield_stress: ArrayLike) -> Floats:
-    r"""Tension of the cable that a layer carries where its axial stress is the yield stress.
+    r"""Tension of the cable at which the axial stress of a layer equals the yield stress.
 
     .. math:: F = n \sigma_y A \cos\alpha
 
     Notes
     -----
-    Source: [1]_, sec. 5.3, which divides by the cosine where the component along the axis is
-    to be multiplied by it: at 20 deg 13 % too much, at 80 deg 33 times.  The angle is that at
-    rest, and bending, torsion and shear are left out; `_yield_strain` has them.
+    Source: [1]_, sec. 5.3, which divides by the cosine instead of multiplying by it for the axial
+    component: 13 % too much at 20 deg, 33 times at 80 deg.  The angle is that at rest, and bending,
+    torsion and shear are left out; `_yield_strain` includes them.
 
     Examples
     --------
@@ -947,7 +947,7 @@ def _known(criterion: str) -> None:
 
 Lay = Literal["right", "left"]
 
-_TOUCH = 1e-9  # of a wire radius: layers and wires that just touch have rounding between them
+_TOUCH = 1e-9  # in wire radii: layers and wires that just touch differ by rounding
 
 
 @dataclass(frozen=True)
@@ -958,11 +958,11 @@ class ArmourLayers:
     Parameters
     ----------
     design : ArmourDesign
-        Numbers of shape (n_layers,), or floats that all layers share.
+        Arrays of shape (n_layers,), or floats common to all layers.
     lay : tuple of {"right", "left"}, length n_layers
         Hand of each layer.
     yield_stress : ndarray, shape (n_layers,)
-        Of the wires; NaN where none is stated. [Pa]
+        Yield stress of the wires; NaN where none is stated. [Pa]
     """
 
     design: ArmourDesign
@@ -970,7 +970,7 @@ class ArmourLayers:
     yield_stress: Floats
 
     def __post_init__(self) -> None:
-        """Check that the layers pair up, that each has room, and that its wires have."""
+        """Check that the layers match, that each has room, and that its wires have room."""
         count = len(self.lay)
         for name, shape in (
             ("the armour", self.design.shape),
@@ -1033,7 +1033,7 @@ def _first(bad: Bools) -> int:
 @dataclass(frozen=True)
 @read_only_arrays
 class _LayersResponse:
-    """Response of the cable at each strain; a layer has the shape (n_layers, n_strain)."""
+    """Response of the cable at each strain; shape by layer (n_layers, n_strain)."""
 
     wire: _ArmourResponse
     layer_tension: Floats
@@ -1050,7 +1050,7 @@ class _LayersResponse:
 def _predict_layers(
     layers: ArmourLayers, strain: ArrayLike, *, theory: ArmourTheory = "conjugate"
 ) -> _LayersResponse:
-    r"""Tension, torque, pressure and stress of a cable that is stretched and cannot turn.
+    r"""Tension, torque, pressure and stress of a cable that is stretched and held against turning.
 
     .. math:: F = \sum n (T\cos\bar\alpha + N'\sin\bar\alpha),\quad
        M = \sum \pm n (r(T\sin\bar\alpha - N'\cos\bar\alpha) + H\cos\bar\alpha + G'\sin\bar\alpha),
@@ -1059,8 +1059,8 @@ def _predict_layers(
     Notes
     -----
     Source: [1]_, eq. (6) for the line load, Figure 2 for the sum; the torque is that of the
-    forces and moments of (6) about the axis.  Lines of contact are smeared out to a pressure.
-    Friction between layers and the load of the core itself are not in it.
+    forces and moments of (6) about the axis.  Line contacts are averaged to a pressure.
+    Friction between layers and the load of the core itself are left out.
 
     Examples
     --------
@@ -1109,7 +1109,7 @@ def _cable_stiffness(layers: ArmourLayers) -> tuple[float, float]:
 
     Notes
     -----
-    Layers add their stiffness against strain and twist, not their stiffness when free.  After
+    Layers add in stiffness against strain and twist, not in stiffness when free.  After
     [1]_, sec. 5.3, with the energy of `reduction.prediction.armour`.
 
     Examples
@@ -1141,7 +1141,7 @@ class _CableStrength:
 def _cable_strength(
     layers: ArmourLayers, *, criterion: YieldCriterion = "von-mises"
 ) -> _CableStrength:
-    """Where the first wire of the cable yields, and what the cable carries there.
+    """Strain at which the first wire of the cable yields, and the load of the cable there.
 
     Notes
     -----
@@ -1186,10 +1186,10 @@ _ANGLES = np.radians(np.arange(5.0, 85.5, 0.5))
 class PredictedArmour:
     """An armour at one strain.
 
-    ``responses`` are of one wire of each layer by theory, shape (n_layers, 1); ``use`` is
-    of each layer, at the ``tolerance`` [1]; ``axial_stiffness`` is of the cable held from
-    turning, and free to [N]; ``_thinning_loss`` is the share of its strain that a wire of each
-    layer loses as it thins, which no theory has in it [1].
+    ``responses`` are those of one wire of each layer by theory, shape (n_layers, 1); ``use`` holds
+    the angles of use of each layer, at the ``tolerance`` [1]; ``axial_stiffness`` is that of the
+    cable held against turning, and free to turn [N]; ``_thinning_loss`` is the share of its strain
+    that a wire of each layer loses as it thins, which no theory includes [1].
     """
 
     layer_names: tuple[str, ...]

@@ -1,8 +1,8 @@
 r"""Measured minus predicted: over strain, at events, in energy, with a verdict.
 
-**What a comparison of a measured hose curve with its prediction takes and gives.** A *comparison
-error* is predicted less measured, E = S - D in the words of [1]_: positive where the hose is softer
-than predicted.
+**Input and output of a comparison of a measured hose curve with its prediction.** A *comparison
+error* is predicted less measured, E = S - D in the notation of [1]_: positive where the hose is
+softer than predicted.
 
 **Comparison error against the uncertainty of measurement and prediction together**:
 
@@ -51,7 +51,7 @@ class _Difference:
     """Comparison error of one curve; ``difference`` has the shape (n_strain,), NaN outside.
 
     ``relative_rms`` is the RMS of the comparison error over the RMS of the measured tension at
-    the same strains; the worst point is that of the greatest absolute difference.
+    the same strains; the worst point has the greatest absolute difference.
     """
 
     curve: CurveName
@@ -67,14 +67,14 @@ class _Difference:
 
 @dataclass(frozen=True)
 class EventDifference:
-    """Comparison error at what happens to the cords, at the judged curve.
+    """Comparison error at the events of the cords, on the judged curve.
 
     ``tension_difference`` [N] is that at the predicted strain of the event; ``measured_strain``
     [1] is where the test had the *predicted tension* of the event, and ``strain_difference`` the
-    predicted strain less that.  It is no place of the event in the test: another prediction has
-    another one; where the cords of the test pick up is `Comparison.measured_pick_up_strain`.
-    The standard uncertainties are of the differences, both sides in them.  NaN where the test did
-    not go that far.
+    predicted strain less that strain.  This is not the place of the event in the test, since it
+    depends on the prediction; for the cords of the test see `Comparison.measured_pick_up_strain`.
+    The standard uncertainties are those of the differences, with both sides included.  NaN where
+    the test did not go that far.
     """
 
     name: str
@@ -110,11 +110,11 @@ class _EnergyDifference:
 @dataclass(frozen=True)
 @read_only_arrays
 class _CycleDifference:
-    """Comparison error cycle by cycle, at the judged curve of each; shape (n_cycle,). [N].
+    """Comparison error of each cycle, on its judged curve; shape (n_cycle,). [N].
 
     ``bias_per_decade`` is the slope of the bias over log10 of the cycle number, over all
-    cycles, break-in too, with its standard uncertainty from the scatter about that line; the
-    bias is taken at the strains that every cycle in it visited. [N]
+    cycles, including break-in, with its standard uncertainty from the scatter about that line; the
+    bias is taken at the strains that every cycle in it reached. [N]
     """
 
     cycle_number: Integers
@@ -127,10 +127,10 @@ class _CycleDifference:
 @dataclass(frozen=True)
 @read_only_arrays
 class _Validation:
-    """Comparison error against what measurement and prediction are uncertain by.
+    """Comparison error against the uncertainties of measurement and prediction.
 
     Arrays have the shape (n_strain,), NaN where nothing was compared. [N]  ``median_limit`` and
-    ``uncertainty_share`` are of the strains at which a load is predicted.
+    ``uncertainty_share`` refer to the strains with a predicted load.
     """
 
     input_standard_uncertainty: Floats
@@ -154,26 +154,26 @@ class _Validation:
 @dataclass(frozen=True)
 @read_only_arrays
 class Identifiability:
-    """Whether the curve can tell the fitted numbers apart.
+    """Whether the curve can separate the fitted parameters.
 
     Parameters
     ----------
     least_change : float
-        RMS change of the curve over its own RMS along the direction that it sees least, for a
-        step of one plausible error; what shared errors can imitate taken off. [1]
+        RMS change of the curve over its own RMS, for a step of one plausible error along the
+        direction of least response, without the part that shared errors can imitate. [1]
     needed_change : float
-        Below this it cannot be told from an error of the model. [1]
+        A smaller change cannot be separated from an error of the model. [1]
     direction : ndarray, shape (n_parameter,)
-        That direction, in units of each number. [SI]
+        That direction, in units of each parameter. [SI]
     collinearity : float
         1 over the least singular value of the sensitivities scaled to unit length. [1]
     is_identified : bool
-        Whether the least change is the greater one.
+        Whether the least change exceeds the needed change.
     words : str
-        Which numbers trade against which; empty where they are told apart.
+        Parameters that compensate each other; empty where all are identified.
     open_covariance : ndarray, shape (n_parameter, n_parameter)
-        What an error of the model that the curve cannot show may move the numbers by, along the
-        directions that are not seen; zero where all are. [SI]
+        Covariance due to an error of the model that the curve cannot show, along the unidentified
+        directions; zero where all are identified. [SI]
     """
 
     least_change: float
@@ -188,35 +188,35 @@ class Identifiability:
 @dataclass(frozen=True)
 @read_only_arrays
 class HoseCalibration:
-    """Numbers of a hose fitted to a measured curve; arrays have the shape (n_parameter,).
+    """Parameters of a hose fitted to a measured curve; arrays have the shape (n_parameter,).
 
     Parameters
     ----------
     parameter : tuple of str
-        Names, of `reduction.prediction.hose_product.HOSE_PARAMETERS`.
+        Names from `reduction.prediction.hose_product.HOSE_PARAMETERS`.
     start, value : ndarray
-        Before and after, in the unit of each. [SI]
+        Before and after the fit, in the unit of each. [SI]
     value_standard_uncertainty, low, high : ndarray
-        Of the value, and its 95 % interval (not cut at the bounds); NaN where it would be wider on
-        either side than all that was allowed. [SI]
+        Of the value, and its 95 % interval (not cut at the bounds); NaN where the interval would
+        exceed the allowed range on either side. [SI]
     lower_bound, upper_bound : ndarray
-        What the fit was kept between. [SI]
+        Bounds of the fit. [SI]
     is_at_bound : ndarray of bool
-        Where it was stopped.
+        Whether the fit stopped at a bound.
     correlation : ndarray, shape (n_parameter, n_parameter)
-        Of the fitted values. [1]
+        Correlation of the fitted values. [1]
     design : HoseDesign
         The hose with the fitted values.
     before, after : Difference
-        Judged curve against the prediction, start and fitted.
+        Judged curve against the prediction, with the start and the fitted values.
     model_error : float
-        Standard deviation that has to be added to type A for the residuals to be explained. [N]
+        Standard deviation to be added to type A for the residuals to be explained. [N]
     effective_points : float
-        Strains over the autocorrelation length of the residuals. [1]
+        Number of strains over the autocorrelation length of the residuals. [1]
     shared_error : tuple of str
-        Errors that were fitted beside the numbers, each within its standard uncertainty.
+        Errors fitted together with the parameters, each within its standard uncertainty.
     shared_error_value : ndarray, shape (n_shared,)
-        What was found for them, in units of it. [1]
+        Their fitted values, in standard uncertainties. [1]
     """
 
     parameter: tuple[str, ...]
@@ -242,10 +242,10 @@ class HoseCalibration:
 
 @dataclass(frozen=True)
 class PressureComparison:
-    """Measured fill pressure beside its prediction; `MeasuredCurve` holds pascals for newtons.
+    """Measured fill pressure and its prediction; `MeasuredCurve` holds pascals for newtons.
 
-    ``calibration`` is of the numbers that move the pressure, fitted to it alone; ``parameter``
-    are those that the comparison calibrates.
+    ``calibration`` fits the parameters that affect the pressure to it alone; ``parameter`` names
+    those that the comparison calibrates.
     """
 
     measured: MeasuredCurve
@@ -262,17 +262,17 @@ class PressureComparison:
 
     @property
     def fill_pressure_rms(self) -> float:
-        """Of predicted less measured. [Pa]."""
+        """RMS of predicted less measured. [Pa]."""
         return self.difference.rms
 
     @property
     def fill_pressure_parameter_value(self) -> list[float]:
-        """Of each number that is calibrated; NaN of one that the pressure does not show."""
+        """Value of each calibrated parameter; NaN if it does not affect the pressure."""
         return self._of_parameters("value")
 
     @property
     def fill_pressure_parameter_value_standard_uncertainty(self) -> list[float]:
-        """Of each of these."""
+        """Standard uncertainty of each of these."""
         return self._of_parameters("value_standard_uncertainty")
 
     def _of_parameters(self, what: str) -> list[float]:
@@ -285,10 +285,10 @@ class PressureComparison:
 class Comparison:
     """A measured curve beside its prediction on the same axis of strain.
 
-    ``differences`` has one entry a curve that was measured, by name; ``judged`` is the one
-    that events, validation and calibration are of.  ``measured_pick_up_strain`` [1] is where that
-    curve bends upward by itself, with its standard uncertainty; NaN where it does not show it, and
-    a note says why.
+    ``differences`` has one entry per measured curve, by name; ``judged`` is the one used for
+    events, validation and calibration.  ``measured_pick_up_strain`` [1] is where that curve itself
+    bends upward, with its standard uncertainty; NaN where it does not show a bend, and a note says
+    why.
     """
 
     measured: MeasuredCurve
@@ -307,19 +307,19 @@ class Comparison:
 
 
 def autocorrelation_length(residual: ArrayLike) -> float:
-    r"""Number of neighbouring points that err together.
+    r"""Autocorrelation length of residuals, in points.
 
     .. math:: \tau = 1 + 2 \sum_k \rho_k
 
     Notes
     -----
-    The sum ends before the first pair of lags whose correlations add up to less than nothing
+    The sum ends before the first pair of lags with a negative sum of correlations
     [2]_.  The variance of a mean of such residuals is that of n / tau points [3]_.
 
     Examples
     --------
-    Signs that change every ten points: the correlation falls to zero within five, and points
-    err about seven at a time.
+    Signs that change every ten points: the correlation falls to zero within five, and the
+    correlation length is about seven points.
 
     >>> wave = np.tile(np.repeat([1.0, -1.0], 10), 10)
     >>> print(5 < autocorrelation_length(wave) < 10)
@@ -346,9 +346,9 @@ def difference_of(
     Notes
     -----
     Positive where the prediction is above the test ([1]_, sec. 1-5). The relative RMS is the RMS of
-    the error over the RMS of the measured tension, both at the same strains; unlike a mean of
-    relative errors it is not ruled by the start of the curve, where tension goes to zero, and it is
-    1 for a prediction of nothing.  Strains count alike: the axis is equally spaced.
+    the error over the RMS of the measured tension, both at the same strains.  Unlike a mean of
+    relative errors it is not dominated by the start of the curve, where tension tends to zero, and
+    it is 1 for a prediction of zero.  Strains count alike: the axis is equally spaced.
 
     Examples
     --------
@@ -417,7 +417,7 @@ def energy_difference(predicted: ArrayLike, measured: MeasuredCurve) -> _EnergyD
 
     Notes
     -----
-    Trapezoid.  What a cyclic test takes up and does not give back is the loop; an elastic
+    Trapezoidal rule.  The energy that a cyclic test does not return is the loop; an elastic
     prediction has none, and lies below the ascending branch by about half of it even where the
     midline agrees.
 
@@ -460,8 +460,8 @@ def cycle_differences(predicted: ArrayLike, measured: MeasuredCurve) -> _CycleDi
 
     Notes
     -----
-    The bias of a cycle is that of the mean curve less what the cycle lies above it, so that a
-    cycle that did not go as far has no bias of its own making.  A hose that softens from cycle
+    The bias of a cycle is that of the mean curve less the deviation of the cycle from it, so that
+    a cycle with a shorter range does not get a bias from that.  A hose that softens from cycle
     to cycle has a bias that rises.
 
     Examples
@@ -508,17 +508,17 @@ def _slope(x: Floats, y: Floats) -> tuple[float, float]:
     return slope, float(np.sqrt(spread / (x @ x)))
 
 
-_MARGIN = 5  # bins on either side of a bend, for the curve to be known there
+_MARGIN = 5  # bins needed on either side of a bend
 
 _CANDIDATES = 41
 
-_ENDS = (1.0, 0.8, 0.65, 0.5)  # of the strains: a pull to the break bends in other ways as well
+_ENDS = (1.0, 0.8, 0.65, 0.5)  # shares of the strains: near break a pull bends in other ways too
 
-_LEAST_RATIO = 5.0  # of the change of slope to its standard uncertainty
+_LEAST_RATIO = 5.0  # change of slope over its standard uncertainty
 
-_LEAST_SHARE = 0.1  # of the change of slope to the mean slope: less is no cord
+_LEAST_SHARE = 0.1  # change of slope over the mean slope: cords cause more
 
-_ORDER = 3  # of the curve on either side
+_ORDER = 3  # of the polynomial on either side
 
 _TINY = 1e-9  # N: points without scatter
 
@@ -548,11 +548,11 @@ class _Fitted(NamedTuple):
     squares: Floats
     residual: Floats
     jump: Floats
-    variance: Floats  # of the jump, for noise as it is stated
+    variance: Floats  # of the jump, for the stated noise
 
 
 def measured_pick_up(measured: MeasuredCurve) -> PickUp:
-    r"""Find the strain at which a measured curve bends, whatever was predicted.
+    r"""Find the strain at which a measured curve bends, independently of the prediction.
 
     .. math:: D(\varepsilon) = \sum_{k=0}^{3} b_k \varepsilon^k
               + \sum_{k=1}^{m} c_k (\varepsilon - \varepsilon_p)_+^k
@@ -560,15 +560,15 @@ def measured_pick_up(measured: MeasuredCurve) -> PickUp:
     Notes
     -----
     Below the bend the rubber alone carries, above it the cords as well ([4]_, sec. 1.2): the curve
-    has no jump and its slope has one, :math:`c_1`.  Every place of the bend is tried [5]_, read as
-    the samples were, in the part of the curve from its beginning that shows it best.  Its
-    uncertainty is the width over which the sum of squares stays within one variance of the
-    residuals, times the length over which these err together; and the difference to a curve of the
-    second degree above the bend over half as far, since neither is that of the cords.  An error of
-    the strain moves the bend as it is.
+    is continuous and its slope has a jump, :math:`c_1`.  Every place of the bend is tried [5]_,
+    evaluated as the samples were, in the initial part of the curve that shows it best.  Its
+    uncertainty combines the width over which the sum of squares stays within one variance of the
+    residuals, times their autocorrelation length, and the difference to a curve of second degree
+    above the bend over half as far, since neither is that of the cords.  An error of the strain
+    moves the bend by the same amount.
 
-    It is a bend that is found, not a law of a hose: it answers to a hose that was not built as
-    drawn, and is not as fine as a calibrated wrap angle.
+    The result is a bend, not a law of a hose: it reveals a hose that was not built as drawn, and is
+    less precise than a calibrated wrap angle.
 
     Examples
     --------
@@ -614,7 +614,7 @@ def _nothing(reason: str) -> PickUp:
 
 
 def _window(measured: MeasuredCurve, place: Integers) -> Integers:
-    """Strains from the first one on among which a bend stands out most."""
+    """Initial range of strains in which a bend stands out most."""
     best, kept = -np.inf, place
     for end in _ENDS:
         part = place[: int(end * place.size)]
@@ -652,7 +652,7 @@ def _bend(measured: MeasuredCurve, place: Integers, degree: int) -> _Fit:
     above = squares_at(around, node) - fit.squares
     inside = around[above <= unit]
     uncertainty = float(np.ptp(inside)) / 2 if inside.size > 1 else 0.0
-    if uncertainty < 2 * (around[1] - around[0]):  # narrower than the steps: from its curvature
+    if uncertainty < 2 * (around[1] - around[0]):  # narrower than the steps: use the curvature
         near = np.abs(around - at) <= step
         by_square = (around[near] - at) ** 2
         bend = float(by_square @ above[near] / (by_square @ by_square))
@@ -670,7 +670,7 @@ def _fitted(
     measured: MeasuredCurve, place: Integers, at: Floats, degree: int, axis: Floats
 ) -> _Fitted:
     """Least squares with the bend at each strain, on the nodes of the reading or at the centres."""
-    x, past = axis / axis[-1], np.maximum(axis - at[:, None], 0.0)  # powers that are not alike
+    x, past = axis / axis[-1], np.maximum(axis - at[:, None], 0.0)  # scaled against collinearity
     below = [np.broadcast_to(x**k, past.shape) for k in range(_ORDER + 1)]
     above = [past * (past / axis[-1]) ** k for k in range(degree)]
     curves = np.stack([*below, *above], axis=1)
@@ -702,20 +702,20 @@ def event_differences(
 ) -> tuple[EventDifference, ...]:
     r"""Predicted less measured at each event, in tension and in strain.
 
-    With an error :math:`\delta T` and :math:`\delta\varepsilon` of the predicted event, the
-    difference of tension at its strain errs by :math:`\delta T - D' \delta\varepsilon`, where
-    D' is the slope of the measured curve, and by the error of that curve.
+    With errors :math:`\delta T` and :math:`\delta\varepsilon` of the predicted event, the error of
+    the difference of tension at its strain is :math:`\delta T - D' \delta\varepsilon`, where D' is
+    the slope of the measured curve, plus the error of that curve.
 
     Notes
     -----
     At pick-up the tension is compared, and the strain at which the test had that tension; neither
     is where the cords of the test pick up
-    (`reduction.prediction.comparison_error.measured_pick_up`).  The
-    difference of strain at the working load is what a designer asks for: how much less or more
-    the hose stretches under its safe load.  The judged curve counts up to its last sample, which
-    lies beyond the last bin centre.  Between two strains of the curve the difference is taken as
-    straight, since both curves have the kink; near the break, where one of them has no
-    prediction, the measured curve is.
+    (`reduction.prediction.comparison_error.measured_pick_up`).  The difference of strain at the
+    working load is what a designer needs: how much less or more the hose stretches under its safe
+    load.  The judged curve is used up to its last sample, which lies beyond the last bin centre.
+    Between two strains of the curve the difference is interpolated linearly, since both curves have
+    the kink; near the break, where one of them has no prediction, the measured curve is
+    interpolated.
 
     Examples
     --------
@@ -760,7 +760,7 @@ def event_differences(
 
 
 class _Test(NamedTuple):
-    """Judged curve up to its last sample, the prediction there, and errors, (n_source, n)."""
+    """Judged curve up to its last sample, prediction there, and errors, (n_source, n)."""
 
     strain: Floats
     tension: Floats
@@ -781,7 +781,7 @@ def _compare(
         of_model = error.tension_contribution - _at(at, x, slope) * error.strain_contribution
         return float(np.sqrt(np.sum(of_test**2) + np.sum(of_model**2)))
 
-    # between two strains the difference is straight where both curves have a kink
+    # between two strains the difference is linear where both curves have a kink
     apart = _at(strain, x, predicted - y)
     test = _between(tension - apart, strain, x, y) if np.isfinite(apart) else _at(strain, x, y)
     return EventDifference(
@@ -798,23 +798,23 @@ def _compare(
 
 
 def _between(tension: float, strain: float, x: Floats, y: Floats) -> float:
-    """A tension that is not beyond those of the two strains beside it.
+    """A tension limited to those of the two neighbouring strains.
 
-    A test without the kink of the prediction would get the bow of it the other way round.
+    Without a kink in the test, interpolation would give it the bow of the prediction inverted.
     """
     k = int(np.clip(np.searchsorted(x, strain), 1, max(x.size - 1, 1)))
     return float(np.clip(tension, y[k - 1 : k + 1].min(), y[k - 1 : k + 1].max()))
 
 
 def _at(strain: float, x: Floats, y: Floats) -> float:
-    """Value on the straight line between two points; NaN outside of them."""
+    """Value by linear interpolation; NaN outside the points."""
     if not (x.size and x[0] <= strain <= x[-1]):
         return float("nan")
     return float(np.interp(strain, x, y))
 
 
-# [1] sec. 3.0: angle, stretch, cycle; then by its eq. 8 the stretch of a cord of 9.5 % at a third
-# of its break load, and what a degree of angle is worth
+# [1] sec. 3.0: angle, stretch, cycle; then by its eq. 8 the stretch with a cord strain of 9.5 % at
+# a third of its break load, and the effect of a degree of angle
 _REPORTED = (
     (64.0, 0.79, "115,000th", 1.046, 0.086),
     (68.0, 1.30, "127,000th", 1.461, 0.125),
@@ -826,17 +826,17 @@ _NEAR = 1.0  # degree of wrap angle
 def plausibility_of_working_strain(
     wrap_angle: float, working_strain: float, *, loading: Loading = "static"
 ) -> str:
-    """Say how a stretch at the working load compares with the two hoses that were reported.
+    """Compare a stretch at the working load with the two reported hoses.
 
     Notes
     -----
     [4]_, sec. 3.0 reports a maximum stretch of 79 % at the 115,000th cycle for 64 degrees and 130 %
     at the 127,000th for 68 degrees, "to 1/3rd of its theoretical breaking strength".  These are
-    dynamic, of two hoses whose cord curve and section are not printed, and one cord strain cannot
-    give both (79 % needs 3.3 % in the cord, 130 % needs 5.6 %).  They are a band in which a hose of
-    that angle may lie and no target: a static cord curve with 9.5 % at a third of its break load
-    gives 105 and 146 %.  The band goes from the reported stretch down by one degree of wrap angle,
-    and up to what a static curve adds and one degree more.
+    dynamic, of two hoses whose cord curve and section are not printed, and no single cord strain
+    gives both (79 % needs 3.3 % in the cord, 130 % needs 5.6 %).  They define a band in which a
+    hose of that angle may lie, not a target: a static cord curve with 9.5 % at a third of its break
+    load gives 105 and 146 %.  The band extends down by one degree of wrap angle from the reported
+    stretch, and up to the stretch of a static curve plus one degree.
 
     Examples
     --------
@@ -866,13 +866,13 @@ def plausibility_of_working_strain(
 
 
 LEAST_PROBABILITY = 0.05
-"""Below this the shape of a difference is not one that the stated errors make."""
+"""Below this probability the stated errors do not explain the shape of a difference."""
 
-_SMALLEST = 1e-3  # four thousand draws do not tell smaller ones apart
+_SMALLEST = 1e-3  # four thousand draws do not resolve smaller ones
 
 
 def _probability_words(probability: float) -> str:
-    """A probability in per cent, as far as draws can tell.
+    """A probability in per cent, as far as draws resolve it.
 
     Examples
     --------
@@ -885,12 +885,12 @@ def _probability_words(probability: float) -> str:
 def verdict_words(
     validation: _Validation, *, unit: str = "N", factor: float = 1.0, of: str = "tension"
 ) -> str:
-    """What a comparison says, with forces or pressures in the unit of the reader.
+    """Verdict of a comparison, with forces or pressures in the unit of the reader.
 
     Notes
     -----
-    Agreement is one of every strain by itself; where the shape of the difference is one that the
-    stated errors make in less than 5 % of all cases ([1]_, sec. 1-5 and 6), the sentence says so.
+    Agreement is judged at every strain separately; where the stated errors give the shape of the
+    difference in less than 5 % of all cases ([1]_, sec. 1-5 and 6), the sentence says so.
 
     Examples
     --------
@@ -933,22 +933,22 @@ def verdict_words(
 
 
 N_DRAWS = 4000
-"""Draws of all errors that a verdict rests on: 5 % of them are 200."""
+"""Number of draws of all errors for a verdict: 5 % of them are 200."""
 
 _PROBABILITY = 0.95
 
-_RANK = 1e-10  # eigenvalues of a correlation matrix below this part of the greatest are rounding
+_RANK = 1e-10  # eigenvalues of a correlation matrix below this share of the greatest are rounding
 
 _OUTSIDE = 1e-6
 
-_SEED = 21  # any; that it stays makes answers repeatable
+_SEED = 21  # arbitrary but fixed, so that answers are repeatable
 
 
 @dataclass(frozen=True)
 class _Errors:
-    """At the strains that are compared: own (n,), shared (n_source, n), inputs (n_draws, n).
+    """Errors at the compared strains: own (n,), shared (n_source, n), inputs (n_draws, n).
 
-    ``numerical`` (n_row, n) is of the prediction too: one standard uncertainty a row.
+    ``numerical`` (n_row, n) also belongs to the prediction: one standard uncertainty per row.
     """
 
     own: Floats
@@ -960,7 +960,7 @@ class _Errors:
         return np.asarray(np.sqrt(self.own**2 + np.sum(self.shared**2, axis=0)))
 
     def of_model(self) -> Floats:
-        """Root mean square about the nominal hose: the shift of the mean is in it."""
+        """Root mean square about the nominal hose, so the shift of the mean is included."""
         own = np.sum(self.numerical**2, axis=0)
         if self.inputs.size:
             own = own + np.mean(self.inputs**2, axis=0)
@@ -974,7 +974,7 @@ class _Errors:
         return np.asarray(by_inputs + by_shared + by_curve + np.diag(self.own**2))
 
     def draw(self) -> Floats:
-        """What E may be if the prediction is right, shape (n_draws, n)."""
+        """Possible values of E if the prediction is right, shape (n_draws, n)."""
         n_draws = self.inputs.shape[0] or N_DRAWS
         normal = np.random.default_rng(_SEED).standard_normal
         errors = _product(normal((n_draws, self.shared.shape[0])), self.shared)
@@ -984,7 +984,7 @@ class _Errors:
 
 
 def _product(one: Floats, other: Floats) -> Floats:
-    """Matrix product whose sums are in one order: that of a library depends on its threads."""
+    """Matrix product with a fixed order of summation: that of a library depends on its threads."""
     return np.asarray(np.einsum("ik,kj->ij", one, other, optimize=False))
 
 
@@ -995,7 +995,7 @@ class _Judged(NamedTuple):
     chi_square: float
     freedom: int
     probability: float
-    outside: float  # part of the squared difference that no stated error can make
+    outside: float  # share of the squared difference that no stated error can cause
 
 
 def _judge(error: Floats, errors: _Errors) -> _Judged:
@@ -1033,34 +1033,34 @@ def validate_curve(
     numerical_error: ArrayLike | None = None,
     largest_useful_share: float = 0.3,
 ) -> _Validation:
-    """Whether prediction and test agree within what both are uncertain by.
+    """Test whether prediction and test agree within their uncertainties.
 
     Notes
     -----
-    *Verdict.* With many strains the largest ratio abs(E) / u_val exceeds 2 almost always.  It is
-    held against the 95 % quantile of the largest ratio in draws of all errors together, so that
-    a right prediction is called wrong in 5 % of all cases however many strains there are: 1.96
-    for strains that err as one, 3.3 for fifty that err each for itself.  U is that factor
-    times u_val.  Agreement within U means that an error of the model cannot be seen; it does not
-    mean that there is none ([1]_, sec. 1-5 and 6).
+    *Verdict.* With many strains the largest ratio abs(E) / u_val almost always exceeds 2.  It is
+    compared with the 95 % quantile of the largest ratio in draws of all errors together, so that a
+    right prediction is rejected in 5 % of all cases, whatever the number of strains: 1.96 for fully
+    correlated strains, 3.3 for fifty independent ones.  U is that factor times u_val.  Agreement
+    within U means that an error of the model cannot be seen; it does not mean that there is none
+    ([1]_, sec. 1-5 and 6).
 
-    *Chi square* E' V^-1 E with the full covariance [6]_ sees a wrong shape that stays inside
-    the band, and needs the uncertainties to be right in every direction; it does not make the
-    verdict, which says so where it does not agree.  Its probability is the share of the draws
-    that exceed it, since tension is no linear function of the angle where cords pick up.
-    Directions in which no stated error can move the curve have no inverse and are left out; if
-    the difference lies in one of them, a note says so.
+    *Chi square* E' V^-1 E with the full covariance [6]_ detects a wrong shape inside the band, but
+    requires correct uncertainties in every direction; it does not make the verdict, which says so
+    where the two disagree.  Its probability is the share of the draws that exceed it, since tension
+    is not linear in the angle where cords pick up.  Directions in which no stated error can move
+    the curve have no inverse and are left out; if the difference lies in one of them, a note says
+    so.
 
     The draws are the same every time.
 
-    Nothing is taken for an uncertainty that was not stated: the verdict says which side is
-    missing.  ``numerical_error`` (n_row, n_strain) [N] is what the prediction may be off by since
-    its cord curve is known at its points alone, where that is not in ``input_error``; where nothing
-    else is known, nothing is judged.
+    No value is assumed for an uncertainty that was not stated: the verdict says which side is
+    missing.  ``numerical_error`` (n_row, n_strain) [N] is the error of the prediction because its
+    cord curve is known only at its points, where it is not in ``input_error``; where nothing
+    else is known, no verdict is given.
 
     Examples
     --------
-    A load cell that may be 10 N off, and a prediction 8 N below.
+    A load cell that may be 10 N off, and a prediction 8 N too low.
 
     >>> from reduction.prediction.measured_curve import measured_curve
     >>> from reduction.prediction.measured_curve import constant_errors
@@ -1113,7 +1113,7 @@ def validate_curve(
     total = np.hypot(of_test, of_model)
     factor, largest = judged.factor, judged.ratio
     place = int(np.flatnonzero(there)[judged.place])
-    # of slack cords there is no pressure for U to be a share of
+    # slack cords give no pressure to which U could be relative
     is_loaded = there & (test > 0) & (model > 0)
     limit, share = (
         float(np.median(one)) if is_loaded.any() else float("nan")

@@ -1,11 +1,10 @@
 """Load of one cord against its strain.
 
 **Load on a cord between the measured points: monotone cubics, and their inverse.** Between two
-points the load is a cubic of strain whose slopes at the points are those of Fritsch and Carlson as
-scipy has them (PCHIP), so that it rises wherever the points do and goes through each of them.  A
-cord carries nothing below zero strain, and beyond its last point it is broken: NaN.  The curve is
-that of one slow pull: creep, hysteresis and the stiffening of nylon under fast cycles are not in
-it.
+points the load is a cubic of strain with the Fritsch-Carlson slopes at the points, as in scipy
+(PCHIP), so it rises wherever the points do and passes through each of them.  A cord carries no load
+below zero strain, and is broken (NaN) beyond its last point.  The curve is that of one slow pull:
+creep, hysteresis and the stiffening of nylon under fast cycles are not included.
 
 References
 ----------
@@ -40,9 +39,9 @@ class CordCurve:
     Parameters
     ----------
     strain : ndarray, shape (n_points,)
-        From 0, strictly rising. [1]
+        Begins at 0, strictly increasing. [1]
     load : ndarray, shape (n_points,)
-        From 0, strictly rising. [N]
+        Begins at 0, strictly increasing. [N]
     """
 
     strain: Floats
@@ -73,34 +72,34 @@ class CordCurve:
 
     @property
     def break_strain(self) -> float:
-        """Of the last point. [1]."""
+        """Strain of the last point. [1]."""
         return float(self.strain[-1])
 
     @property
     def break_load(self) -> float:
-        """Of the last point. [N]."""
+        """Load of the last point. [N]."""
         return float(self.load[-1])
 
     @cached_property
     def cubic(self) -> scipy.interpolate.PchipInterpolator:
-        """Load by strain, monotone between the points."""
+        """Load as a function of strain, monotone between the points."""
         return scipy.interpolate.PchipInterpolator(self.strain, self.load)
 
 
 FEW_KNOTS = 32
-"""Up to here a comparison with every knot is quicker than a search."""
+"""Up to this number of knots, comparing with each is faster than a search."""
 
 
 @dataclass(frozen=True)
 class CordPieces:
-    """A cord curve as polynomials, one a column: slack, one between two points each, broken.
+    """A cord curve as polynomials, one per column: slack, one between two points each, broken.
 
     Parameters
     ----------
     knot : ndarray, shape (n_points,)
         Strains of the points. [1]
     origin : ndarray, shape (n_points + 1,)
-        Strain from which the polynomial of a piece counts. [1]
+        Origin of strain for the polynomial of a piece. [1]
     coefficient : ndarray, shape (n_terms, n_points + 1)
         Highest power first; zero where slack, NaN where broken.
     """
@@ -115,7 +114,7 @@ def pieces_of(curve: CordCurve, *, order: Literal[0, 1, -1] = 0) -> CordPieces:
 
     Notes
     -----
-    Source: [2]_, as `scipy.interpolate.PchipInterpolator` has it.
+    Source: [2]_, as in `scipy.interpolate.PchipInterpolator`.
 
     Examples
     --------
@@ -132,7 +131,7 @@ def pieces_of(curve: CordCurve, *, order: Literal[0, 1, -1] = 0) -> CordPieces:
         case _:
             coefficient = cubic.c
     edge = np.ones((len(coefficient), 1))
-    # the strain of a hose at the break of its cords, taken back to the cord, is a rounding off
+    # the strain of a hose at the break of its cords, converted to the cord, is off by rounding
     knot = np.append(curve.strain[:-1], curve.break_strain * (1 + _ROUNDING))
     return CordPieces(
         knot=knot,
@@ -142,11 +141,11 @@ def pieces_of(curve: CordCurve, *, order: Literal[0, 1, -1] = 0) -> CordPieces:
 
 
 def piece_of(pieces: CordPieces, strain: Floats) -> NDArray[np.intp]:
-    """Which polynomial a strain belongs to.
+    """Index of the polynomial for a strain.
 
     Notes
     -----
-    The break strain itself is still borne ([1]_, sec. 1.2.4).
+    The cord still carries load at the break strain ([1]_, sec. 1.2.4).
 
     Examples
     --------
@@ -191,7 +190,7 @@ def evaluate_into(
 
 
 MOST_STEPS = 100
-"""Of the inverse of a cord curve; some six are usual, and halving alone needs fifty-three."""
+"""Greatest number of steps for the inverse; about six are usual, bisection alone needs 53."""
 
 
 def cord_load(curve: CordCurve, strain: ArrayLike) -> Floats:
@@ -202,17 +201,17 @@ def cord_load(curve: CordCurve, strain: ArrayLike) -> Floats:
     curve : CordCurve
         Measured points.
     strain : array_like, shape (...)
-        Of the cord. [1]
+        Strain of the cord. [1]
 
     Returns
     -------
     load : ndarray, shape (...)
-        0 where the strain is not above zero, NaN beyond the last point. [N]
+        0 where the strain is not positive, NaN beyond the last point. [N]
 
     Raises
     ------
     ValueError
-        From numpy, if the strains are no array of numbers.
+        From numpy, if the strains are not an array of numbers.
 
     Notes
     -----
@@ -228,11 +227,11 @@ def cord_load(curve: CordCurve, strain: ArrayLike) -> Floats:
 
 
 def cord_stiffness(curve: CordCurve, strain: ArrayLike) -> Floats:
-    """Slope of the load on one cord over its strain.
+    """Derivative of the load on one cord with respect to its strain.
 
     Notes
     -----
-    Continuous but for the pick-up, where it jumps from zero; its own slope jumps at the points
+    Continuous except at pick-up, where it jumps from zero; its own slope jumps at the points
     ([2]_).
 
     Examples
@@ -245,11 +244,11 @@ def cord_stiffness(curve: CordCurve, strain: ArrayLike) -> Floats:
 
 
 def cord_energy(curve: CordCurve, strain: ArrayLike) -> Floats:
-    """Energy in one cord, a length at rest: the integral of its load over strain.
+    """Energy in one cord per rest length: the integral of its load over strain.
 
     Notes
     -----
-    The quartics that belong to the cubics of [2]_.
+    The quartics that are the integrals of the cubics of [2]_.
 
     Examples
     --------
@@ -261,7 +260,7 @@ def cord_energy(curve: CordCurve, strain: ArrayLike) -> Floats:
 
 
 def cord_strain_at(curve: CordCurve, load: ArrayLike) -> Floats:
-    """Strain at which one cord bears a load: the inverse of `cord_load`.
+    """Strain at which one cord carries a load: the inverse of `cord_load`.
 
     Parameters
     ----------
@@ -273,18 +272,18 @@ def cord_strain_at(curve: CordCurve, load: ArrayLike) -> Floats:
     Returns
     -------
     strain : ndarray, shape (...)
-        0 at no load; NaN below zero and beyond the break load. [1]
+        0 at zero load; NaN below zero and beyond the break load. [1]
 
     Raises
     ------
     ValueError
-        From numpy, if the loads are no array of numbers.
+        From numpy, if the loads are not an array of numbers.
 
     Notes
     -----
-    Newton's rule on the cubic of the piece, all loads at once; a step that would leave the
-    bracket is replaced by a halving of it.  Ends where a step no longer changes a number, so that
-    the load at the strain found is the one asked for to rounding ([2]_ for the cubics).
+    Newton's method on the cubic of the piece, for all loads at once; a step that would leave the
+    bracket is replaced by bisection.  It ends when a step no longer changes a number, so the load
+    at the result equals the given load to rounding ([2]_ for the cubics).
 
     Examples
     --------
@@ -318,7 +317,7 @@ def cord_strain_at(curve: CordCurve, load: ArrayLike) -> Floats:
 
 
 def _first_guess(above: Floats, slope: Floats, square: Floats, width: Floats) -> Floats:
-    """Where a piece without its cubic term bears the load: right for small loads at any slope."""
+    """Solution for a piece without its cubic term: right for small loads at any slope."""
     with np.errstate(divide="ignore", invalid="ignore"):
         guess = 2 * above / (slope + np.sqrt(slope**2 + 4 * square * above))
     return np.asarray(np.clip(np.where(np.isnan(guess), 0.0, guess), 0.0, width))

@@ -1,9 +1,9 @@
-"""A measured hose against its prediction, and stated parameters fitted to the curve.
+"""Comparison of a measured hose with its prediction, and fit of stated parameters to the curve.
 
-**Whether one curve can tell several numbers of a hose apart.** A formal interval answers for the
-noise alone.  A fit of angle, cord scale and dead length to one smooth curve gives three narrow
-intervals, and an error of the model by 1 % of the tension moves all three by more than any workshop
-would be off: the question is what the curve *shows* of a plausible error, not what the noise hides.
+**Whether one curve can identify several parameters of a hose.** A formal interval covers noise
+only.  A fit of angle, cord scale and dead length to one smooth curve gives three narrow intervals,
+yet an error of the model by 1 % of the tension moves all three by more than a workshop would be
+off.  What matters is the response of the curve to a plausible error, not the noise.
 
 References
 ----------
@@ -76,7 +76,7 @@ CALIBRATED = (
     "cord_strain_scale",
     "dead_length_share",
 )
-"""Numbers that may be fitted; diameters and the number of cords are measured or counted."""
+"""Parameters that may be fitted; diameters and the number of cords are measured or counted."""
 
 _ANGLE = np.radians(1.0)
 
@@ -84,15 +84,15 @@ _PART = 0.1
 
 _DEAD_LENGTH = 0.05
 
-_MODEL = 0.01  # of the tension: no smooth error below this is held against a prediction
+_MODEL = 0.01  # share of the tension: a smaller smooth error of a prediction is accepted
 
-_LEAST_SEEN = 1e-6  # of the tension: nothing
+_LEAST_SEEN = 1e-6  # share of the tension that counts as no change
 
-_NAMED = 0.1  # of the largest part of a direction: less is not named
+_NAMED = 0.1  # share of the largest component of a direction below which a component is not named
 
 
 def _plausible_error(name: str, start: float) -> float:
-    """How far a number of a hose may be off before it is measured on the hose.
+    """Plausible error of a hose parameter before it is measured on the hose.
 
     Examples
     --------
@@ -126,29 +126,29 @@ def _identify_directions(
     contribution: ArrayLike,
     misfit: float,
 ) -> Identifiability:
-    r"""Find the directions of the fitted numbers that the curve hardly sees.
+    r"""Find the directions of the fitted parameters to which the curve hardly responds.
 
-    With :math:`S` the change of tension for one plausible error of each number and :math:`C`
-    what shared errors add, all over :math:`\sqrt n` and the RMS tension, a step of unit length
-    along :math:`v` cannot be told from an error of relative size :math:`\delta` where
+    With :math:`S` the change of tension for one plausible error of each parameter and :math:`C`
+    the contributions of shared errors, all over :math:`\sqrt n` and the RMS tension, a unit step
+    along :math:`v` cannot be separated from an error of relative size :math:`\delta` where
 
     .. math:: \min_z \lVert S v + C z \rVert^2 + \delta^2 \lVert z \rVert^2 < \delta^2
 
     Notes
     -----
     :math:`\delta` is 1 %, or the relative misfit where that is greater: an error of the model
-    is smooth, so that more strains do not average it out, and a prediction that left 3 %
-    somewhere cannot be trusted to 1 % elsewhere.  Along a direction of which a unit step changes
-    the curve by less, such an error moves the numbers by :math:`\delta` over that change: more
-    than one plausible error, which the noise does not say.  The unit of each number is what it
-    may plausibly be off by, so that a number to which the curve does not answer (the scale of
-    cords that carry little yet) is found as well as two that trade against each other.  The
-    collinearity index of [1]_, which knows only the second kind, is given beside; above 10 to 15
-    it is called poor there.
+    is smooth, so more strains do not average it out, and a prediction that was off by 3 %
+    somewhere cannot be trusted to 1 % elsewhere.  Along a direction whose unit step changes the
+    curve by less, such an error moves the parameters by :math:`\delta` over that change: more
+    than one plausible error, which the noise does not reveal.  The unit of each parameter is its
+    plausible error, so this finds a parameter to which the curve does not respond (the scale of
+    cords that carry little yet) as well as two that compensate each other.  The collinearity
+    index of [1]_, which detects only the second case, is also given; values above 10 to 15 are
+    called poor there.
 
     Examples
     --------
-    Two numbers that do the same cannot be told apart, whatever the noise.
+    Two parameters with the same effect cannot be separated, whatever the noise.
 
     >>> found = _identify_directions(
     ...     [[1.0, 1.0], [2.0, 2.0]], tension=[10.0, 20.0],
@@ -199,7 +199,7 @@ def _identify_directions(
 
 
 def _largest(axes: Floats) -> np.ndarray:
-    """Row of the first entry of each column that is as large as any, up to rounding."""
+    """Row of the first entry in each column that is the largest up to rounding."""
     size = np.abs(axes)
     return np.asarray(np.argmax(size > 0.999 * size.max(axis=0), axis=0))[None, :]
 
@@ -234,11 +234,11 @@ def _step(name: str, step: float, value: float) -> str:
 
 _LOWEST = {"dead_length_share": 0.0, "rubber_modulus": 0.0}
 
-_SMALLEST = 1e-6  # of what has to be above zero
+_SMALLEST = 1e-6  # least value of a parameter that has to be positive
 
 
 def _number_of(design: HoseDesign, name: str) -> float:
-    """A number of one design by its name.
+    """A parameter of one design by its name.
 
     Examples
     --------
@@ -260,7 +260,7 @@ def _number_of(design: HoseDesign, name: str) -> float:
 
 
 def _design_with(design: HoseDesign, numbers: Mapping[str, Any]) -> HoseDesign:
-    """The design with some of its numbers replaced.
+    """The design with some of its parameters replaced.
 
     Examples
     --------
@@ -291,13 +291,13 @@ def _trial_load(
     strain: Floats,
     load: _Load = "tension",
 ) -> Floats:
-    """Tension or fill pressure at trial values of some numbers.
+    """Tension or fill pressure at trial values of some parameters.
 
     Notes
     -----
-    A trial hose whose cords would break below a strain that was measured has no tension there,
-    and a fit would fall into the gap.  Its curve goes on along its tangent at the break, which
-    joins it without a step at any value of the numbers; its pressure goes on in proportion.
+    A trial hose whose cords would break below a measured strain has no tension there, and a fit
+    would be caught in the gap.  Its curve is therefore continued along its tangent at the break,
+    without a step at any parameter value; its pressure is continued in proportion.
 
     Examples
     --------
@@ -322,7 +322,7 @@ def _trial_load(
 
 
 def _range_of(name: str) -> tuple[float, float]:
-    """Between what a number of a hose has to lie.
+    """Allowed range of a hose parameter.
 
     Examples
     --------
@@ -338,9 +338,9 @@ _CUT = 3.0
 
 _BETWEEN = 16  # steps from one point of a cord curve to the next
 
-_LEAST_POINTS = 4  # of a cord curve, for a spline that is another one than the straight line
+_LEAST_POINTS = 4  # of a cord curve, for a spline to differ from the straight line
 
-_SEED = 20  # any; that it stays makes answers repeatable
+_SEED = 20  # arbitrary but fixed, so that answers are repeatable
 
 
 def _input_draws(
@@ -351,15 +351,15 @@ def _input_draws(
     n_draws: int,
     load: _Load = "tension",
 ) -> Floats:
-    """What the load of a hose may be off by, in draws of its uncertain numbers.
+    """Errors of the load of a hose in draws of its uncertain parameters.
 
     Notes
     -----
-    Normal and independent, cut at three standard uncertainties and at the range of the number
-    (propagation of distributions, [2]_).  Where cords pick up, tension is no linear function
-    of the angle over the width of its uncertainty, and no covariance from derivatives has the
-    shapes of curve that it makes.  What the cord curve may be between its points is drawn beside
-    them (`_cord_curve_errors`): where that shows in the hose goes with the angle.
+    Normal and independent, truncated at three standard uncertainties and at the range of the
+    parameter (propagation of distributions, [2]_).  Where cords pick up, tension is not linear in
+    the angle over the width of its uncertainty, and a covariance from derivatives does not contain
+    the resulting shapes.  Possible errors of the cord curve between its points are drawn as well
+    (`_cord_curve_errors`): their effect on the hose depends on the angle.
 
     Examples
     --------
@@ -398,25 +398,25 @@ def _input_draws(
 def _cord_curve_errors(
     design: HoseDesign, strain: Floats, load: _Load = "tension"
 ) -> tuple[Floats, tuple[tuple[str, int], ...]]:
-    r"""What the load may be off by since the cord curve is known at its points alone, and where.
+    r"""Possible errors of the load because the cord curve is known only at its points.
 
-    One row for each interval between two points, and each of two other curves through them: a
-    cubic spline, and a monotone cubic of ln P over ln e, which below the first point goes on as
-    a power.  A row is the load with that curve less that with the monotone cubic; rows of nothing
-    are left out.
+    One row for each interval between two points and for each of two other curves through them: a
+    cubic spline, and a monotone cubic of ln P over ln e, which continues below the first point as
+    a power.  A row is the load with that curve less that with the monotone cubic; zero rows are
+    left out.
 
     Notes
     -----
-    Nobody states this error: it is one of the numerical solution [3]_, sec. 2.  It is a few newtons
-    for a curve of fourteen points, far below the noise of any one strain; but it is smooth, and
-    bends the curve as a scale of the cord strain does.  A spline follows a law that is smooth at
-    rest, and no law of which the stiffness is not finite there or bends at once, such as
-    :math:`e^{1.15}`; a power does.  What a cord does between two points says nothing of what it
-    does between two others, so that each interval has errors of its own.
+    This error is not stated by anyone: it belongs to the numerical solution [3]_, sec. 2.  It is a
+    few newtons for a curve of fourteen points, far below the noise of any one strain; but it is
+    smooth, and bends the curve as a scale of the cord strain does.  A spline fits a law that is
+    smooth at rest, but not one with infinite or suddenly changing stiffness there, such as
+    :math:`e^{1.15}`; a power does.  Errors in one interval are independent of those in another, so
+    each interval has its own.
 
     Examples
     --------
-    Points on a straight line leave nothing open.
+    Points on a straight line leave no error.
 
     >>> design = HoseDesign(1.1, (0.08, 0.09), 0.06, 0.12, 1300.0, 5e-4, 1.4e6,
     ...     CordCurve(np.linspace(0.0, 0.2, 5), np.linspace(0.0, 130.0, 5)))
@@ -435,16 +435,16 @@ def _cord_curve_errors(
 
 
 class _OpenCord(NamedTuple):
-    """What other curves through the points of a cord are above its own, at some strains."""
+    """Difference of other curves through the points of a cord from its own, at some strains."""
 
     point: Floats
     strain: Floats
     apart: tuple[tuple[str, Floats], ...]
 
     def sizes(self, where: Sequence[tuple[str, int]], error: Floats) -> Floats:
-        """Errors (n_trial, n_where) in place, (n_trial, n_curve, n_points + 1).
+        """Errors (n_trial, n_where) in their places, (n_trial, n_curve, n_points + 1).
 
-        The first interval is slack and the last broken, where there is nothing.
+        The first interval is slack and the last is broken: both are zero.
         """
         names = [name for name, _ in self.apart]
         size = np.zeros((error.shape[0], len(names), self.point.size + 1))
@@ -453,13 +453,13 @@ class _OpenCord(NamedTuple):
         return size
 
     def between(self, at: Floats, size: Floats) -> Floats:
-        """What curves of these sizes are above the own at strains, (n_trial or 1, n_strain)."""
-        # all of them pass through the points, so that the intervals join
+        """Difference of curves of these sizes from the own at strains, (n_trial or 1, n_strain)."""
+        # all of them pass through the points, so the intervals join
         apart = np.reshape([one for _, one in self.apart], (-1, self.strain.size))
         interval = np.minimum(np.arange(self.strain.size) // _BETWEEN + 1, self.point.size - 1)
         curve = np.einsum("tcs,cs->ts", size[:, :, interval], apart)
         place = np.searchsorted(self.strain[1:-1], at)
-        # nothing beyond the first point and the last
+        # zero before the first point and beyond the last
         share = np.clip((at - self.strain[place]) / np.diff(self.strain)[place], 0.0, 1.0)
         rise = np.diff(curve, axis=1)
         trial = np.arange(len(size))[:, None]
@@ -486,9 +486,9 @@ def _load_between_points(
 ) -> Floats:
     """Load of trials with other curves through the points of the cord, less that with its own.
 
-    ``size`` is how much of each curve is in each interval, as of `_OpenCord.sizes`; one trial
-    goes with any number of them.  The load of a hose is proportional to that of its cords, so
-    that the difference is that of the difference.
+    ``size`` is the share of each curve in each interval, as in `_OpenCord.sizes`; one trial can be
+    combined with any number of them.  The load of a hose is proportional to that of its cords, so
+    its difference is that of the cords.
     """
     numbers = numbers_of(trials).column(slice(None))
     stretch = 1 + strain / numbers.free_share
@@ -506,17 +506,17 @@ def _load_of_intervals(
     where: Sequence[tuple[str, int]],
     load: _Load,
 ) -> Floats:
-    """What each other curve does to one trial in its interval alone, (n_where, n_strain)."""
+    """Effect of each other curve on one trial in its interval alone, (n_where, n_strain)."""
     size = cord.sizes(where, np.eye(len(where)))
     return _load_between_points(hose, strain, cord, size, load)
 
 
 def _other_curves(points: CordCurve, strain: Floats) -> dict[str, Floats]:
-    """Loads of other curves through the points of a cord, by their names.
+    """Loads of other curves through the points of a cord, by name.
 
     Examples
     --------
-    A power is found again, below the first point too.
+    A power law is reproduced, also below the first point.
 
     >>> at = np.array([0.0, 0.02, 0.06, 0.1, 0.15])
     >>> found = _other_curves(CordCurve(at, 900 * at**1.15), np.array([[0.0, 0.01, 0.04]]))
@@ -541,7 +541,7 @@ def _other_curves(points: CordCurve, strain: Floats) -> dict[str, Floats]:
 def _known_uncertainties(
     design: HoseDesign, standard_uncertainty: Mapping[str, float]
 ) -> dict[str, float]:
-    """Uncertainties above zero, in the order of `HOSE_PARAMETERS`.
+    """Positive uncertainties, in the order of `HOSE_PARAMETERS`.
 
     Examples
     --------
@@ -563,11 +563,11 @@ def _known_uncertainties(
 
 _START_STEPS = (-4.0, -2.0, 0.0, 2.0, 4.0)  # plausible errors, tried in all combinations
 
-_DIFFERENCE = 1e-3  # of a plausible error, for derivatives
+_DIFFERENCE = 1e-3  # step for derivatives, in plausible errors
 
-_NEAR_BOUND = 1e-4  # of the width between the bounds
+_NEAR_BOUND = 1e-4  # share of the width between the bounds
 
-# methods, and the most trials: where a search ends it takes ten to thirty
+# methods, and the most trials: a search that ends takes ten to thirty
 _SEARCHES: tuple[tuple[Literal["dogbox", "trf"], int | None], ...] = (
     ("dogbox", 100),
     ("trf", None),
@@ -577,13 +577,13 @@ _POLISHING_STEPS = 30
 
 _TOLERANCE = 1e-10  # of a search
 
-_ROUGH = 1e-6  # of one that another follows
+_ROUGH = 1e-6  # of a search that is followed by another
 
-_LEAST = 1e-14  # information below this part of the greatest is rounding
+_LEAST = 1e-14  # information below this share of the greatest is rounding
 
 
 def _parameter_bounds(name: str, start: float) -> tuple[float, float]:
-    """Between what a number is kept while it is fitted.
+    """Bounds of a parameter in the fit.
 
     Examples
     --------
@@ -602,19 +602,19 @@ def _parameter_bounds(name: str, start: float) -> tuple[float, float]:
 @dataclass(frozen=True)
 @read_only_arrays
 class _FitProblem:
-    """Measured points and what is to be fitted to them.
+    """Measured points and the parameters to be fitted to them.
 
-    What is fitted stands in one vector: numbers in plausible errors, then errors in standard
-    uncertainties, those of held numbers, of strain, of the cord between its points (``between``,
-    curve and interval), and those in proportion.
+    The fitted vector has the parameters in plausible errors, then errors in standard
+    uncertainties: those of held parameters, of strain, of the cord between its points
+    (``between``, curve and interval), and those with a proportional effect.
 
     Notes
     -----
-    A strain that was read high moves the whole curve, and its kink with it.  Minus the slope
-    times the error, the change in proportion, leaves the kink where it is: a fit would find the
-    error by that alone, and call the place of the kink the angle's.  So strains are moved, the
-    numbers that are held are changed in the design, and the hose is read at the strains between
-    the bin centres as the test was.
+    An error of strain shifts the whole curve, and its kink with it.  The proportional change,
+    minus the slope times the error, leaves the kink in place: a fit would find the error from that
+    alone, and attribute the place of the kink to the angle.  So strains are shifted, held
+    parameters are changed in the design, and the hose is evaluated at the strains between the bin
+    centres, as in the test.
     """
 
     design: HoseDesign
@@ -632,27 +632,27 @@ class _FitProblem:
 
     @cached_property
     def used(self) -> Bools:
-        """Which strains of the judged curve were measured, shape (n_strain,)."""
+        """Whether each strain of the judged curve was measured, shape (n_strain,)."""
         return np.isfinite(self.tension_of_test())
 
     @cached_property
     def held_at(self) -> dict[str, float]:
-        """Numbers of the design that are not fitted and not known either."""
+        """Design values of parameters that are uncertain but not fitted."""
         return {name: _number_of(self.design, name) for name in self.held}
 
     @cached_property
     def open_cord(self) -> _OpenCord:
-        """What other curves through the points of the cord are above its own."""
+        """Difference of other curves through the points of the cord from its own."""
         return _open_cord_of(self.design.cord)
 
     @property
     def n_traced(self) -> int:
-        """Numbers and errors whose effect is computed by the hose, not in proportion."""
+        """Number of parameters and errors computed with the hose, not in proportion."""
         return len(self.names) + len(self.held) + len(self.moved) + len(self.between)
 
     @property
     def n_error(self) -> int:
-        """Errors that are fitted beside the numbers."""
+        """Number of errors fitted together with the parameters."""
         return len(self.held) + len(self.moved) + len(self.between) + len(self.shared)
 
     def tension_of_test(self) -> Floats:
@@ -661,11 +661,11 @@ class _FitProblem:
 
     @property
     def n_followed(self) -> int:
-        """Numbers and traced errors of which the tension is no linear function."""
+        """Number of parameters and traced errors in which the tension is not linear."""
         return self.n_traced - len(self.between)
 
     def tension_at(self, traced: Floats) -> Floats:
-        """Tension of trials (n_trial, n_traced) as the test shows it, (n_trial, n_used). [N]."""
+        """Tension of trials (n_trial, n_traced) as read in the test, (n_trial, n_used). [N]."""
         moved, of_cord = self._errors_of(traced)
         numbers = self._numbers_of(traced)
         size = self.open_cord.sizes(self.between, of_cord)
@@ -675,7 +675,7 @@ class _FitProblem:
         for k, axis in enumerate(axes):
             trials = which.ravel() == k
             strain = node - axis @ self.moved
-            # a record that is read low has strains just below zero: the curve goes on there
+            # a record with low readings has strains just below zero: the curve continues there
             there = np.abs(strain)
             names = (*self.names, *self.held)
             curve = _trial_load(self.design, names, numbers[trials], there, self.load)
@@ -686,7 +686,7 @@ class _FitProblem:
         return tension
 
     def _numbers_of(self, traced: Floats) -> Floats:
-        """Fitted and held numbers of trials, (n_trial, n_numbers + n_held)."""
+        """Fitted and held parameters of trials, (n_trial, n_numbers + n_held)."""
         p = len(self.names)
         values = [traced[:, :p] * self.unit]
         for k, (name, spread) in enumerate(self.held.items()):
@@ -704,13 +704,13 @@ class _FitProblem:
         return _design_with(self.design, {name: numbers[:, k] for k, name in enumerate(names)})
 
     def _read(self, curve: Floats) -> Floats:
-        """Curves at the nodes as the test shows them where it measured."""
+        """Curves at the nodes, as read in the test where it measured."""
         return np.asarray(self.measured.reading.of(curve)[:, self.used])
 
     def slopes(self, traced: Floats, is_rough: bool = False) -> Floats:
-        """Derivative of tension by each number and traced error, (n_used, n_traced).
+        """Derivative of tension by each parameter and traced error, (n_used, n_traced).
 
-        Rough ones are differences to one side.
+        Rough derivatives are one-sided differences.
         """
         p, n = len(self.names), self.n_followed
         step = _DIFFERENCE * np.eye(n, traced.size)
@@ -737,22 +737,22 @@ class _FitProblem:
         return np.vstack([followed, self._read(np.sign(strain) * rows)]).T
 
     def error_slopes(self, x: Floats) -> Floats:
-        """What one standard uncertainty of each error does, shape (n_error, n_used). [N]."""
+        """Effect of one standard uncertainty of each error, shape (n_error, n_used). [N]."""
         of_traced = self.slopes(x[: self.n_traced])[:, len(self.names) :]
         return np.vstack([of_traced.T, self.shared])
 
     def remainder(self, x: Floats) -> Floats:
-        """Fitted curve, shared errors in it, less the measured one, shape (n_used,). [N]."""
+        """Fitted curve, including shared errors, less the measured one, shape (n_used,). [N]."""
         traced, z = np.split(x, [self.n_traced])
         curve = self.tension_at(traced[None, :])[0] + z @ self.shared
         return np.asarray(curve - self.tension_of_test()[self.used])
 
     def residual(self, x: Floats, noise: Floats) -> Floats:
-        """What is squared and summed: every strain, then every error."""
+        """Terms of the sum of squares: every strain, then every error."""
         return np.concatenate([self.remainder(x) / noise, x[len(self.names) :]])
 
     def jacobian(self, x: Floats, noise: Floats, is_rough: bool = False) -> Floats:
-        """Of `residual`, by the numbers and the errors."""
+        """Jacobian of `residual`, by the parameters and the errors."""
         slopes = self.slopes(x[: self.n_traced], is_rough)
         data = np.hstack([slopes, self.shared.T]) / noise[:, None]
         p, k = len(self.names), self.n_error
@@ -760,7 +760,7 @@ class _FitProblem:
         return np.vstack([data, prior])
 
     def start(self, first: Floats) -> Floats:
-        """Best of a few values around the design, since the curve has kinks."""
+        """Best of a few starting values around the design, since the curve has kinks."""
         p = first.size
         offsets = np.array(list(product(_START_STEPS, repeat=p)))
         tried = np.clip(first + offsets, self.low, self.high)
@@ -768,25 +768,25 @@ class _FitProblem:
             self.design, self.names, tried * self.unit, self.measured.strain[self.used], self.load
         )
         error = (curve - self.tension_of_test()[self.used]) / self.noise
-        # a number that the curve does not show stays where the design has it
+        # a parameter to which the curve does not respond keeps its design value
         cost = np.sum(error**2, axis=1) + 1e-3 * np.sum(offsets**2, axis=1)
         return np.asarray(tried[int(np.argmin(cost))])
 
     def solve(self, first: Floats, noise: Floats, is_rough: bool = False) -> Floats:
-        """Least sum of squares, from these numbers and errors; rough where another search follows.
+        """Least sum of squares, from these starting values; rough where another search follows.
 
         Raises
         ------
         FitError
-            If the search does not end.
+            If the search does not converge.
         """
         k = self.n_error
-        margin = 1e-6 * (self.high - self.low)  # a search may not begin on a bound
+        margin = 1e-6 * (self.high - self.low)  # a search must not start on a bound
         numbers, errors = np.split(first, [self.unit.size])
         inside = np.clip(numbers, self.low + margin, self.high - margin)
         tolerance = _ROUGH if is_rough else _TOLERANCE
-        # dogbox takes half the steps of the default to the same minima or lower ones, but beside
-        # a kink of the curve it may go back and forth without an end
+        # dogbox reaches the same minima or lower ones in half the steps of the default, but near
+        # a kink of the curve it may oscillate endlessly
         for method, most in _SEARCHES:
             found = scipy.optimize.least_squares(
                 partial(self.residual, noise=noise),
@@ -814,9 +814,9 @@ class _FitProblem:
         return np.asarray(found.x)
 
     def solve_from(self, begins: Sequence[Floats], noise: Floats) -> Floats:
-        """The least of the sums of squares that several starts lead to: the curve has kinks.
+        """The lowest of the sums of squares from several starts, since the curve has kinks.
 
-        Errors begin at zero.  It is a start itself, so that a rough one will do.
+        Errors start at zero.  The result is a start itself, so a rough one is enough.
         """
         zero = np.zeros(self.n_error)
         apart = np.unique(begins, axis=0)
@@ -828,7 +828,7 @@ class _FitProblem:
         """Gauss-Newton steps while they get shorter.
 
         A search stops where the sum of squares no longer changes, at half the digits of the
-        numbers, by the last digits of a processor.  A number at its bound stays there.
+        parameters, which depends on rounding in the processor.  Parameters at bounds stay there.
         """
         p = len(self.names)
         margin = _NEAR_BOUND * (self.high - self.low)
@@ -847,7 +847,7 @@ class _FitProblem:
             ):
                 break
             after = self.residual(trial, noise)
-            # not where a kink of the curve lies between: there a step leads anywhere
+            # not across a kink of the curve: a step there is arbitrary
             if not after @ after <= (left @ left) * (1 + 1e-9):
                 break
             x, shortest, left = trial, length, after
@@ -857,7 +857,7 @@ class _FitProblem:
 @dataclass(frozen=True)
 @read_only_arrays
 class _FitSpread:
-    """Covariance of the fitted numbers, in plausible errors, and what it rests on."""
+    """Covariance of the fitted parameters, in plausible errors, and its basis."""
 
     covariance: Floats
     freedom: float
@@ -865,7 +865,7 @@ class _FitSpread:
 
 
 def _spread_of(problem: _FitProblem, best: Floats, noise: Floats) -> _FitSpread:
-    """Covariance of what was fitted, from the points that the residuals are worth.
+    """Covariance of the fitted values, from the effective number of points in the residuals.
 
     Notes
     -----
@@ -896,15 +896,15 @@ def _spread_of(problem: _FitProblem, best: Floats, noise: Floats) -> _FitSpread:
     return _FitSpread(covariance[:p, :p], freedom, worth)
 
 
-_LEAST_NOISE = 1e-6  # of the RMS tension: points without scatter are not infinitely exact
+_LEAST_NOISE = 1e-6  # share of the RMS tension: points without scatter are not exact
 
-_AT_BOUND = 1e-4  # of the width between the bounds
+_AT_BOUND = 1e-4  # share of the width between the bounds
 
 _FAR = 2.0  # standard uncertainties
 
-_NOTHING = 1e-3  # of the noise
+_NOTHING = 1e-3  # share of the noise
 
-_WIDE = 0.5  # of the width between the bounds
+_WIDE = 0.5  # share of the width between the bounds
 
 
 def _calibrate_hose(
@@ -916,44 +916,44 @@ def _calibrate_hose(
     bounds: Mapping[str, tuple[float, float]] | None = None,
     load: _Load = "tension",
 ) -> HoseCalibration:
-    r"""Fit numbers of a hose to the judged curve of a test, with intervals that can be trusted.
+    r"""Fit parameters of a hose to the judged curve of a test, with reliable intervals.
 
-    Least of
+    Minimises
 
     .. math:: \sum_i \frac{[T_i(\theta, z) + \sum_j z_j c_{ij} - D_i]^2}{u_i^2 + s^2}
               + \sum_j z_j^2
 
-    over the numbers :math:`\theta` between their bounds and the shared errors :math:`z`, each of
-    unit variance.  Errors of strain move the strains at which T is taken, uncertain numbers that
-    are not fitted change the hose, and :math:`T_i` is read from it as the curve was from the
-    samples; errors of load and the scatter that cycles have in common are in proportion.
+    over the parameters :math:`\theta` within their bounds and the shared errors :math:`z`, each of
+    unit variance.  Errors of strain shift the strains at which T is taken, uncertain parameters
+    that are not fitted change the hose, and :math:`T_i` is evaluated as the curve was read from
+    the samples; errors of load and the common scatter of cycles are proportional.
 
     Notes
     -----
-    *Weights* [5]_. Type A of each strain, and s, one variance for all strains that makes the
-    residuals of a first fit what they should be: where the model is wrong by more than the
-    noise, all strains count alike instead of the few with the least scatter.
+    *Weights* [5]_. Type A of each strain, and s, one variance for all strains that brings the
+    residuals of a first fit to their expected size: where the model error exceeds the noise, all
+    strains count alike instead of the few with the least scatter.
 
-    *Intervals.* A model that is wrong is wrong smoothly: neighbouring residuals are no
-    independent witnesses.  The variance of the data is multiplied by the length over which
-    residuals are correlated, tau, and by what is left of the reduced chi square where that
-    is above 1 [4]_; the interval is Student's with n / tau - p degrees of freedom.  Shared
-    errors keep their stated variance.  Not in the interval: a smooth error of the model that
-    fitted numbers can follow and that leaves no residual; but where `_identify_directions` finds
-    that the curve does not show a direction, what one percent of it would do is.  An interval
-    that would reach beyond all that a number was allowed is NaN.
+    *Intervals.* An error of the model is smooth, so neighbouring residuals are not independent.
+    The variance of the data is multiplied by the autocorrelation length of the residuals, tau,
+    and by the remaining reduced chi square where that is above 1 [4]_; the interval is Student's t
+    with n / tau - p degrees of freedom.  Shared errors keep their stated variance.  The interval
+    leaves out a smooth error of the model that fitted parameters can follow without a residual;
+    but where `_identify_directions` finds a direction to which the curve does not respond, the
+    effect of a 1 % error is included.  An interval that would exceed the allowed range of a
+    parameter is NaN.
 
-    *Start.* Of five values of each number around the design, in all combinations, the best.
+    *Start.* The best of five values of each parameter around the design, in all combinations.
 
-    *Break.* Trials whose cords would break within the measured strains go on along their
-    tangent, so that the fit does not fall into a gap.
+    *Break.* Trials whose cords would break within the measured strains are continued along their
+    tangent, so that the fit is not caught in the gap.
 
-    Fitted values are those that make the prediction meet this test; a cord scale found from a
-    dynamic test holds what the cord does differently under dynamic load.
+    Fitted values are those with which the prediction matches this test; a cord scale from a
+    dynamic test includes the different behaviour of the cord under dynamic load.
 
     Examples
     --------
-    A pull of the hose itself, its modulus thought to be a tenth less.
+    A pull computed from the hose itself, its modulus assumed a tenth too low.
 
     >>> from reduction.prediction.measured_curve import measured_curve
     >>> from reduction.prediction.cord_curve import CordCurve
@@ -988,7 +988,7 @@ def _calibrate_hose(
     curve = problem.tension_at(best[None, : problem.n_traced])[0]
     told_apart = _identify_directions(
         problem.slopes(best[: problem.n_traced])[:, :p] / problem.unit,
-        # cords that never pick up press on nothing: shares are then of what was measured
+        # cords that never pick up exert no pressure: shares then refer to the measurement
         tension=curve if curve.any() else judged[used],
         names=names,
         plausible=problem.unit,
@@ -1045,7 +1045,7 @@ def _pose(
     held: Mapping[str, float],
     load: _Load,
 ) -> tuple[_FitProblem, tuple[str, ...]]:
-    """The problem, and the names of the errors that are fitted beside the numbers."""
+    """The fit problem, and the names of the errors fitted together with the parameters."""
     if not names or len(set(names)) < len(names):
         raise SettingsError(
             "what to calibrate cannot be read",
@@ -1105,7 +1105,7 @@ def _pose(
 
 
 def _between_seen(problem: _FitProblem, first: Floats) -> tuple[tuple[str, int], ...]:
-    """Curves and intervals of the cord that show at the measured strains, from either start."""
+    """Curves and intervals of the cord that affect the measured strains, from either start."""
     strain = problem.measured.strain[problem.used]
     found: dict[tuple[str, int], None] = {}
     for begin in (first, problem.start(first)):
@@ -1178,17 +1178,17 @@ def _compare_hose(
     calibrate: Sequence[str] = (),
     pressure: MeasuredCurve | None = None,
 ) -> Comparison:
-    """Hold a prediction against a test, and its fill pressure where it was measured.
+    """Compare a prediction with a test, including its fill pressure where measured.
 
     Notes
     -----
-    Every difference is predicted less measured [3]_.  The prediction is elastic; it is judged
-    by the midline of the loop, since either branch is off by half of a loop that no cord
-    curve knows of.  The verdict reads the prediction at the strains of the samples, as the curve
-    was, so that a kink is rounded in both.  Where one branch was measured, that one is judged,
-    and a note says so.
+    Every difference is predicted less measured [3]_.  The prediction is elastic; it is compared
+    with the midline of the loop, since either branch differs by half of a loop that the cord curve
+    does not contain.  For the verdict the prediction is evaluated at the strains of the samples, as
+    the curve was, so that a kink is rounded in both.  Where only one branch was measured, it is
+    used, and a note says so.
 
-    Strains beyond the predicted break of the cords are not in any difference; a note counts them.
+    Strains beyond the predicted break of the cords are in no difference; a note counts them.
 
     Examples
     --------
@@ -1255,7 +1255,7 @@ def _compare_pressure(
     known: Mapping[str, float],
     calibrate: Sequence[str],
 ) -> PressureComparison:
-    """Hold the predicted fill pressure against a measured one, as the tension is."""
+    """Compare the predicted fill pressure with the measured one, in the same way as the tension."""
     predicted = predict_hose(design, measured.strain).fill_pressure
     inputs = _input_draws(design, known, measured.strain, n_draws=N_DRAWS, load="fill_pressure")
     names = [name for name in calibrate if name != _WITHOUT_PRESSURE]
@@ -1289,10 +1289,10 @@ def _compare_pressure(
 def _as_read(
     design: HoseDesign, measured: MeasuredCurve, prediction: Floats, load: _Load = "tension"
 ) -> Floats:
-    """Prediction as the test would show it; plain where it is broken beside a strain."""
+    """Prediction as the test would show it; without smoothing where it is broken nearby."""
     node = measured.reading.node
     there = np.isfinite(measured.tension_of(measured.judged))
-    # the curve goes on just below zero, where a record that is read low has strains
+    # the curve continues just below zero, where a record with low readings has strains
     curve = getattr(predict_hose(design, np.abs(node)), load)
     read = measured.reading.of(np.sign(node) * curve)
     return np.where(there & np.isfinite(read), read, prediction)
@@ -1343,11 +1343,11 @@ def _notes(
 _STATIC = ("quasi-static", "tensile")
 
 _WAY_BACK = 0.5
-"""Share of the stroke that a way back has, to be a branch of its own."""
+"""Least share of the stroke for a return to be a branch of its own."""
 
 
 def loading_of(kind: str) -> Loading:
-    """How a test of a kind is pulled, where nobody says it.
+    """Default loading of a test of each kind.
 
     >>> loading_of("cyclic")
     'dynamic'
@@ -1369,7 +1369,7 @@ def compare_record(
     fill_pressure: Floats | None = None,
     fill_pressure_standard_uncertainty: float = 0.0,
 ) -> Comparison:
-    """Hold the prediction of a hose against one test."""
+    """Compare the prediction of a hose with one test."""
     usable = np.isfinite(strain) & np.isfinite(tension)
     if not usable.any():
         raise DataError(
@@ -1402,7 +1402,7 @@ def compare_record(
 
 
 def _out_and_back(strain: Floats) -> tuple[Integers | None, Integers | None]:
-    """A pull and its way back as one cycle; no cycle where it does not come back."""
+    """A pull and its return as one cycle; no cycle where it does not return."""
     top = int(np.nanargmax(strain))
     least = np.nanmin(strain[: top + 1])
     stroke = strain[top] - least

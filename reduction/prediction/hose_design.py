@@ -1,26 +1,27 @@
-r"""Hoses for a wanted stretch and load.
+r"""Design of hoses for a required stretch and load.
 
-**From a wanted stretch and a wanted working load to a hose, in closed form.** The stretch fixes the
-wrap angle alone: at the working load the cords bear a known share of their break load, so their
-stretch ratio :math:`\lambda_c` is known, and with the wanted :math:`\lambda_h`
+**From a required stretch and working load to a hose, in closed form.** The stretch alone determines
+the wrap angle: at the working load the cords carry a known share of their break load, so their
+stretch ratio :math:`\lambda_c` is known, and with the required :math:`\lambda_h`
 
 .. math:: \cos^2\alpha_0 = \frac{\lambda_c^2 - 1/\lambda_h}{\lambda_h^2 - 1/\lambda_h}
 
-The load is then linear in the cords per length, and, in a wall whose thicknesses are held,
-linear in the wrap diameter: with the thicknesses :math:`t_i` from bore to layers, :math:`t_s`
-between the layers and :math:`t_o` from layers to skin, :math:`t = t_i + t_s + t_o`,
+The load is then linear in the cords per length, and, for constant wall thicknesses, linear in the
+wrap diameter: with the thicknesses :math:`t_i` from bore to layers, :math:`t_s` between the layers
+and :math:`t_o` from layers to skin, :math:`t = t_i + t_s + t_o`,
 
 .. math:: T = C\,d_w + \pi t (d_w + t_o - t_i)\,\sigma_r
 
-where C is the load of the cords a length of diameter and :math:`\sigma_r` that of the rubber an
+where C is the load of the cords per length of diameter and :math:`\sigma_r` that of the rubber per
 area at rest.
 
-The other numbers of the hose come from a design that it is to be like.
+The other parameters of the hose are those of a reference design.
 
-A working share of a third is of the *cords*.  The rubber of a hose that stretches far bears half
-of the working load but a quarter of the load at the break, so the hose breaks at less than three
-times its working load: 2.2 to 2.7 times with wrap angles of 64 to 68 degrees in a thick wall, above
-three below the neutral angle.  `reduction.prediction.hose_tension.find_events` gives both loads.
+A working share of a third refers to the *cords*.  The rubber of a hose that stretches far carries
+half of the working load but a quarter of the load at the break, so the hose breaks at less than
+three times its working load: 2.2 to 2.7 times with wrap angles of 64 to 68 degrees in a thick wall,
+more than three below the neutral angle.  `reduction.prediction.hose_tension.find_events` gives both
+loads.
 
 References
 ----------
@@ -50,12 +51,12 @@ from reduction.record.measurement import Bools, Floats
 
 
 def _design_angle(like: HoseDesign, *, strain: ArrayLike) -> HoseDesign:
-    """Wrap angle that gives a wanted stretch at the working load.
+    """Wrap angle for a required stretch at the working load.
 
     Notes
     -----
     Eq. 8 of [1]_ (module).  Only the cord strain at the working share and the dead length
-    have a say; diameters, fabric and rubber change the load alone.
+    matter; diameters, fabric and rubber affect only the load.
 
     Examples
     --------
@@ -81,7 +82,7 @@ def _design_angle(like: HoseDesign, *, strain: ArrayLike) -> HoseDesign:
 
 
 def _design_fabric(like: HoseDesign, *, strain: ArrayLike, tension: ArrayLike) -> HoseDesign:
-    """Wrap angle and cords per length for a wanted stretch and working load, diameters held.
+    """Wrap angle and cords per length for a required stretch and load, with constant diameters.
 
     Notes
     -----
@@ -118,15 +119,15 @@ def _design_fabric(like: HoseDesign, *, strain: ArrayLike, tension: ArrayLike) -
 
 
 def _design_diameters(like: HoseDesign, *, strain: ArrayLike, tension: ArrayLike) -> HoseDesign:
-    """Wrap angle and diameters for a wanted stretch and working load, wall and fabric held.
+    """Wrap angle and diameters for a required stretch and load, with constant wall and fabric.
 
     Notes
     -----
-    Eq. 26 of [1]_ (module); the area of the wall is linear in the wrap diameter too.
+    Eq. 26 of [1]_ (module); the area of the wall is also linear in the wrap diameter.
 
     Examples
     --------
-    Like a hose of 3.5 in with half an inch of wall, in inches.
+    Similar to a hose of 3.5 in with half an inch of wall, in inches.
 
     >>> from reduction.prediction.cord_curve import CordCurve
     >>> cord = CordCurve(np.array([0.0, 0.095, 0.26]), np.array([0.0, 44.5, 133.5]))
@@ -177,7 +178,7 @@ def _working_state(design: HoseDesign, strain: Floats) -> tuple[Floats, Floats, 
 
 
 def _loads(design: HoseDesign, strain: ArrayLike) -> tuple[Floats, Floats, Floats]:
-    """Stretch, load of the cords with one a length, load of the rubber an area: when working."""
+    """Stretch, load of the cords for one per length, load of the rubber per area, at work."""
     stretch, cord_stretch, load = _working_state(design, np.asarray(strain, dtype=np.float64))
     one = numbers_of(replace(design, cords_per_length=1.0))
     cords = loads_at(one, stretch, cord_stretch, load).cord_axial_load
@@ -203,7 +204,7 @@ def _positive(name: str, values: ArrayLike) -> Floats:
 
 
 def _first(values: Floats, bad: Bools) -> float:
-    """Of the designs at fault; of any where none is."""
+    """Value of the first invalid design; of the first design where none is."""
     value, place = np.broadcast_arrays(values, bad)
     return float(value.flat[int(np.argmax(place))])
 
@@ -226,7 +227,7 @@ class DesignedHose:
     """One way to reach a target; ``design`` and ``events`` are None where there is none.
 
     ``varied`` says what was changed: the wrap angle, and with it the fabric or the diameters.
-    ``ribbon_width`` is of each cord layer [m]; ``refusal`` why there is no such hose.
+    ``ribbon_width`` is that of each cord layer [m]; ``refusal`` says why there is no such hose.
     """
 
     varied: str

@@ -1,6 +1,6 @@
 r"""Geometry of a hose: helix angle, cord length, fabric, helical layers.
 
-**Helix on a cylinder at rest: its angle, and how the cylinder's radius follows its stretch**:
+**Helix on a cylinder at rest: its angle, and the radius as a function of the stretch**:
 
 .. math:: \lambda_r^2 = 1/\lambda_h \text{ (isochoric)}, \qquad \lambda_r = 1 \text{ (rigid)}
 
@@ -11,12 +11,13 @@ r"""Geometry of a hose: helix angle, cord length, fabric, helical layers.
 :math:`\lambda_h` is the stretch ratio of the cylinder, :math:`\lambda_c` that of the helix,
 :math:`a_0` the angle at rest between helix and axis.  The radius follows the stretch as
 :math:`\lambda_r^2 = 1/\lambda_h` where wall and filling keep their volume (``isochoric``: the
-water-filled hose), or stays (``rigid``: wires on a core that does not give).
+water-filled hose), or stays constant (``rigid``: wires on a rigid core).
 
-The isochoric form needs both wall and filling incompressible, none of the filling lost, no twist,
-and the ends far away.  A hose that leaks, holds air or turns under load is not of this kind.
+The isochoric form requires that wall and filling are incompressible, that no filling is lost, and
+that there is no twist and the ends are far away.  It does not hold for a hose that leaks, holds air
+or turns under load.
 
-**Angle of a helix on a cylinder that stretches, and the angle at rest that gives two stretches**:
+**Angle of a helix on a cylinder that stretches, and the angle at rest for two given stretches**:
 
 .. math:: \tan a = \tan a_0 \, \lambda_r / \lambda_h
 
@@ -26,19 +27,19 @@ parallelogram whose side across the hose is :math:`\pi d_w`, so that
 
 .. math:: w_c = \pi d_w \cos\alpha_0, \qquad N = 2 w_c n_c
 
-The width of the ribbon is what makes the angle: it is cut, and the angle follows from it and
-from the diameter it is wrapped on.
+The width of the ribbon determines the angle: the ribbon is cut, and the angle follows from its
+width and the diameter on which it is wrapped.
 
-**Layers of a hose that are to carry no load: fish-bite protection, conductors.** They follow the
-hose as its cords do, :math:`\lambda^2 = \lambda_h^2\cos^2\alpha_0 + \sin^2\alpha_0/\lambda_h`, at
-any diameter: the wall is incompressible and so is its filling, and every radius shrinks by the same
-factor.  The square is convex in the hose stretch, so over a range from rest the *greatest* strain
-stands at an end and the *least* at :math:`\lambda_h^3 = \tan^2\alpha_0 / 2`, where the current
-angle is 54.7356 degrees.
+**Layers of a hose that carry no load: fish-bite protection, conductors.** They follow the hose as
+its cords do, :math:`\lambda^2 = \lambda_h^2\cos^2\alpha_0 + \sin^2\alpha_0/\lambda_h`, at any
+diameter: wall and filling are incompressible, so every radius shrinks by the same factor.  The
+square is convex in the hose stretch, so over a range from rest the *greatest* strain is at an end
+and the *least* at :math:`\lambda_h^3 = \tan^2\alpha_0 / 2`, where the current angle is 54.7356
+degrees.
 
-A layer that is steep enough not to be stretched is therefore compressed on the way, the more
-the steeper it is: `least_layer_angle` and `greatest_layer_angle` are the two sides of a window
-that closes when the hose stretches far.
+A layer that is steep enough not to be stretched is therefore compressed at intermediate stretch,
+and more so the steeper it is: `least_layer_angle` and `greatest_layer_angle` are the two sides of a
+window that closes for a large stretch of the hose.
 
 References
 ----------
@@ -63,7 +64,7 @@ from reduction.record.measurement import Bools, Floats, read_only_arrays
 Core = Literal["isochoric", "rigid"]
 
 NEUTRAL_ANGLE = atan(sqrt(2.0))
-"""54.7356 deg: wrapped at more, a cord goes slack as a water-filled hose stretches. [rad]."""
+"""54.7356 deg: with a larger angle, a cord goes slack as a water-filled hose stretches. [rad]."""
 
 
 def _squares_of_angle(wrap_angle: ArrayLike) -> tuple[Floats, Floats]:
@@ -101,7 +102,7 @@ def _squared_radius_ratio(stretch_ratio: Floats, core: Core) -> Floats:
 
 
 def _check_core(core: Core) -> None:
-    """Refuse a core that is none.
+    """Refuse an unknown core.
 
     Examples
     --------
@@ -125,7 +126,7 @@ def cord_stretch_ratio(
     wrap_angle : array_like, shape (...)
         :math:`a_0` at rest, from the axis. [rad]
     core : {"isochoric", "rigid"}
-        What the radius does.
+        Behaviour of the radius.
 
     Returns
     -------
@@ -145,7 +146,7 @@ def cord_stretch_ratio(
 
     Examples
     --------
-    A cord at 64 deg is 2.74 % short where it is slackest, and at length again at +61.04 %:
+    A cord at 64 deg is 2.74 % short where it is slackest, and has its length again at +61.04 %:
 
     >>> print((100 * cord_stretch_ratio([1.28096, 1.61039], np.radians(64.0)) - 100).round(2))
     [-2.74 0. ]
@@ -173,13 +174,13 @@ def hose_stretch_ratio(
     wrap_angle : array_like, shape (...)
         :math:`a_0` at rest, from the axis. [rad]
     core : {"isochoric", "rigid"}
-        What the radius does.
+        Behaviour of the radius.
 
     Returns
     -------
     stretch_ratio : ndarray, shape (...)
         :math:`\lambda_h` on the branch where stretch lengthens the helix; NaN where the helix
-        is nowhere as short as asked. [1]
+        never becomes that short. [1]
 
     Raises
     ------
@@ -211,14 +212,14 @@ def hose_stretch_ratio(
             return np.asarray(np.sqrt(1 + (cord - 1) * (cord + 1) / cosine2))
         square = cord**2 / cosine2
         cosine3 = -1.5 * (sine2 / cord**2) * np.sqrt(3 / square)
-        # the shortest helix of all is at -1, and may be found there to rounding only
+        # the shortest possible helix is at -1, which rounding may miss
         cosine3 = np.where(cosine3 > -1 - 8 * np.finfo(np.float64).eps, cosine3, np.nan)
         cosine3 = np.maximum(cosine3, -1.0)
         return np.asarray(2 * np.sqrt(square / 3) * np.cos(np.arccos(cosine3) / 3))
 
 
 def pick_up_stretch_ratio(wrap_angle: ArrayLike) -> Floats:
-    r"""Stretch ratio of a water-filled hose at which its slack cords are at length again.
+    r"""Stretch ratio of a water-filled hose at which its slack cords reach their rest length again.
 
     .. math:: \lambda_h^* = \tfrac12\left(\sqrt{1 + 4\tan^2 a_0} - 1\right)
 
@@ -317,7 +318,7 @@ def current_wrap_angle(
 def wrap_angle_for(
     stretch_ratio: ArrayLike, cord_stretch_ratio: ArrayLike, *, core: Core = "isochoric"
 ) -> Floats:
-    r"""Angle at rest that gives both stretch ratios at once.
+    r"""Angle at rest for which both stretch ratios occur together.
 
     .. math:: \cos^2 a_0 = \frac{\lambda_c^2 - \lambda_r^2}{\lambda_h^2 - \lambda_r^2}
 
@@ -342,14 +343,14 @@ def wrap_angle_for(
 
 
 def ribbon_width(wrap_diameter: ArrayLike, wrap_angle: ArrayLike) -> Floats:
-    r"""Width to which the ribbon of one layer is cut.
+    r"""Cutting width of the ribbon of one layer.
 
     Parameters
     ----------
     wrap_diameter : array_like, shape (...)
         Mean diameter of the layer at rest. [m]
     wrap_angle : array_like, shape (...)
-        Wanted, from the hose axis, 0 to below pi/2. [rad]
+        Required angle, from the hose axis, 0 to below pi/2. [rad]
 
     Returns
     -------
@@ -364,8 +365,8 @@ def ribbon_width(wrap_diameter: ArrayLike, wrap_angle: ArrayLike) -> Floats:
     Notes
     -----
     Eq. 10 of [1]_ (module): :math:`p_c \sin\alpha_0` with the pitch :math:`p_c = \pi d_w /
-    \tan\alpha_0` is the same.  Each of two layers needs its own width, as it has its own
-    diameter.
+    \tan\alpha_0` is the same.  Each of two layers needs its own width, since their diameters
+    differ.
 
     Examples
     --------
@@ -387,7 +388,7 @@ def ribbon_width(wrap_diameter: ArrayLike, wrap_angle: ArrayLike) -> Floats:
 def number_of_cords(
     wrap_diameter: ArrayLike, wrap_angle: ArrayLike, cords_per_length: ArrayLike
 ) -> Floats:
-    """Cords in a cross-section of the hose, both layers together.
+    """Number of cords in a cross-section of the hose, both layers together.
 
     Notes
     -----
@@ -395,7 +396,7 @@ def number_of_cords(
 
     Examples
     --------
-    3.5 in and 34 cords an inch, 64 and 68 degrees.
+    3.5 in and 34 cords per inch, 64 and 68 degrees.
 
     >>> print(number_of_cords(3.5, np.radians([64, 68]), 34).round(1))
     [327.8 280.1]
@@ -409,7 +410,7 @@ def number_of_cords(
 class _CordStrainChart:
     """Cord strain over hose strain for a family of wrap angles.
 
-    Hose strains are of the whole relaxed length.
+    Hose strains refer to the whole relaxed length.
     """
 
     wrap_angle: Floats
@@ -429,7 +430,7 @@ def cord_strain_chart(
     Notes
     -----
     Eq. 8 of [1]_ (module).  The report reads "about 54 degrees" from its figure for the angle
-    above which cords go slack; it is the arctangent of the root of two.
+    above which cords go slack; it is the arctangent of the square root of two.
 
     Examples
     --------
@@ -477,7 +478,7 @@ def _free(dead_length_share: float) -> float:
 class _LayerRange:
     """Strain of a helical layer while the hose goes from rest to a strain.
 
-    Arrays have the shape (...) of angles and strains together.
+    Arrays have the joint shape (...) of angles and strains.
     """
 
     least_strain: Floats
@@ -500,12 +501,12 @@ def layer_range(
 
     Notes
     -----
-    Eq. 8 of [1]_ (module); convex, hence no search.  The report says that a steep layer will
+    Eq. 8 of [1]_ (module); convex, so no search is needed.  The report says that a steep layer will
     "not be stretched, just changed in [its] geometry": it is also shortened.
 
     Examples
     --------
-    A layer at 71.1 degrees over a working range of 146 %: not stretched, but 9 % compressed at
+    A layer at 71.1 degrees over a working range of 146 %: not stretched, but compressed by 9 % at
     62 %.
 
     >>> layer = layer_range(np.radians(71.1), 1.46)
@@ -519,7 +520,7 @@ def layer_range(
     share = np.asarray(dead_length_share, dtype=np.float64)
     shortest = np.minimum(slackest_stretch_ratio(angle), stretch)
     final, least = (
-        # at rest nothing is strained, which rounding may not say
+        # at rest nothing is strained, whatever the rounding
         np.where(one > 1, cord_stretch_ratio(one, angle) - 1, 0.0)
         for one in (stretch, shortest)
     )
@@ -541,12 +542,12 @@ def least_layer_angle(
 
     Notes
     -----
-    The greatest strain stands at the end of the range, so the angle is that of eq. 8 of [1]_
+    The greatest strain is at the end of the range, so the angle follows from eq. 8 of [1]_
     (module) there; for no stretch at all :math:`\tan^2\alpha_0 = \lambda_h^2 + \lambda_h`.
 
     Examples
     --------
-    A hose that works at 146 %: its protection at 71.1 degrees, or at 69.4 where it bears 5 %.
+    A hose that works at 146 %: its protection at 71.1 degrees, or at 69.4 if it withstands 5 %.
 
     >>> print(np.degrees(least_layer_angle(1.46, strain_limit=[0, 0.05])).round(1))
     [71.1 69.4]
@@ -554,7 +555,7 @@ def least_layer_angle(
     stretch = _stretch(hose_strain, dead_length_share)
     limit = _limit("strain_limit", strain_limit)
     stretch, limit = np.broadcast_arrays(stretch, limit)
-    is_free = 1 + limit >= stretch  # even along the hose it is not stretched further
+    is_free = 1 + limit >= stretch  # even along the hose it is stretched no further
     safe = np.where(is_free, 2.0, stretch)
     angle = wrap_angle_for(safe, np.where(is_free, 1.0, 1 + limit))
     return np.asarray(np.where(is_free, 0.0, angle))
@@ -571,11 +572,11 @@ def greatest_layer_angle(
     :math:`\lambda^6 = \tfrac{27}{4} \sin^4\alpha_0 \cos^2\alpha_0`; with :math:`q =
     \cos^2\alpha_0` that is a cubic, and :math:`q = \tfrac23 [1 + \cos(\tfrac23
     \arccos\lambda^3 - \tfrac{4\pi}{3})]`.  Where the range ends before that least ratio, the
-    ratio at its end decides.  Below `least_layer_angle` there is no angle that does both.
+    ratio at its end is used.  Below `least_layer_angle` no angle satisfies both limits.
 
     Examples
     --------
-    A conductor that bears 2 % of compression has to lie below 62.7 degrees, where a hose at
+    A conductor that withstands 2 % of compression has to lie below 62.7 degrees, where a hose at
     146 % stretches it by 26 %: no angle avoids both.
 
     >>> print(np.degrees(greatest_layer_angle(1.46, compression_limit=0.02)).round(1))
@@ -591,7 +592,7 @@ def greatest_layer_angle(
     ratio = 1 - limit
     along = 2 / 3 * (1 + np.cos(2 / 3 * np.arccos(ratio**3) - 4 * pi / 3))
     inside = np.arccos(np.sqrt(np.clip(along, 0, 1 / 3)))
-    # where the range ends early: the angle that is just so short at its end
+    # where the range ends early: the angle with that ratio at its end
     is_free = ratio**2 * stretch <= 1
     is_at_rest = stretch == 1
     at_end = wrap_angle_for(

@@ -1,6 +1,6 @@
 """A hose from its plan to its response and events.
 
-The archive stores it, and neither knows the other.
+It is independent of the archive that stores it.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class HelicalLayer:
     """A layer that carries no load: fish-bite protection, conductors.
 
     ``wrap_angle`` is from the axis [rad]; ``strain_limit`` is the greatest tensile strain
-    that it bears and ``compression_limit`` the greatest compressive one, a positive number
+    that it withstands and ``compression_limit`` the greatest compressive strain, a positive number
     [1]; NaN where none is stated.
     """
 
@@ -47,11 +47,11 @@ class HelicalLayer:
 
 @dataclass(frozen=True)
 class HosePlan:
-    """What is to be predicted.
+    """Input of a prediction.
 
     ``standard_uncertainty`` is by name of `reduction.prediction.hose_product.HOSE_PARAMETERS`, in
-    the unit of that number; ``strain_step`` and ``greatest_strain`` are of the whole length [1],
-    the latter NaN to go on to the break of the cords; ``length`` is relaxed, NaN where it is not
+    the unit of that parameter; ``strain_step`` and ``greatest_strain`` refer to the whole length
+    [1], the latter NaN to continue to the break of the cords; ``length`` is relaxed, NaN where not
     stated [m].
     """
 
@@ -66,10 +66,10 @@ class HosePlan:
 
 @dataclass(frozen=True)
 class HoseTarget:
-    """What a hose is to do where its cords bear their working share.
+    """Required state of a hose where its cords carry their working share.
 
-    ``strain`` is of the whole length [1], ``tension`` the safe working load, None where any
-    will do [N].
+    ``strain`` refers to the whole length [1], ``tension`` is the safe working load, None where any
+    is acceptable [N].
     """
 
     strain: float
@@ -80,10 +80,10 @@ class HoseTarget:
 class _LayerResponse:
     """Strain of a layer that carries no load while the hose goes to its working load.
 
-    ``least_strain``, ``greatest_strain`` and ``break_strain``, the greatest one up to the
-    break of the cords, are of the layer [1]; ``least_angle`` is the smallest angle at which it
+    ``least_strain``, ``greatest_strain`` and ``break_strain``, the greatest up to the break of
+    the cords, are strains of the layer [1]; ``least_angle`` is the smallest angle at which it
     is not stretched beyond its limit, ``greatest_angle`` the greatest at which it is not
-    compressed beyond its own, NaN where no limit is stated [rad].
+    compressed beyond its limit, NaN where no limit is stated [rad].
     """
 
     layer: HelicalLayer
@@ -98,9 +98,9 @@ class _LayerResponse:
 class PredictedHose:
     """A plan with its response, its events, their uncertainty and its other layers.
 
-    ``ribbon_width`` is of each of the two cord layers [m], ``number_of_cords`` of both [1];
-    ``working_torque`` holds the hose from turning at the working load [N m], and
-    ``balanced_wrap_angle`` is that of an outer layer that leaves none [rad].
+    ``ribbon_width`` is that of each cord layer [m], ``number_of_cords`` that of both layers [1];
+    ``working_torque`` holds the hose against turning at the working load [N m], and
+    ``balanced_wrap_angle`` is that of an outer layer with which no torque is left [rad].
     """
 
     plan: HosePlan
@@ -126,17 +126,17 @@ def predict_from_plan(plan: HosePlan) -> PredictedHose:
     Parameters
     ----------
     plan : HosePlan
-        As read.
+        Plan as read.
 
     Returns
     -------
     hose : PredictedHose
-        At every step of strain, and at the events themselves.
+        At every strain step, and at the events themselves.
 
     Raises
     ------
     SettingsError
-        If the step is so small that there is no end of points.
+        If the step is so small that there are too many points.
     """
     design = plan.design
     events = find_events(design)
@@ -221,7 +221,7 @@ def _layer(
 
 
 def _says(one: _LayerResponse) -> list[Note]:
-    """What a layer does that it does not bear."""
+    """Strains of a layer beyond its limits."""
     name, said = one.layer.name, []
     if one.greatest_strain > one.layer.strain_limit:
         said.append(
@@ -260,7 +260,7 @@ def _notes_of_design(plan: HosePlan, prediction: HosePrediction) -> list[Note]:
 
 
 def _ranges(strain: Floats, is_so: Bools) -> str:
-    """Where something is so; cords of a steep hose may touch at rest and, again, near the end."""
+    """Ranges with a property; cords of a steep hose may touch at rest and again near the end."""
     place = np.flatnonzero(is_so)
     if not place.size:
         return ""

@@ -1,4 +1,4 @@
-"""What a hose prediction takes and returns.
+"""Input and output of a hose prediction.
 
 References
 ----------
@@ -32,7 +32,7 @@ HOSE_PARAMETERS = (
     "cord_strain_scale",
     "dead_length_share",
 )
-"""Numbers of a design that may be uncertain, or calibrated; a layer diameter stands for both."""
+"""Design parameters that may be uncertain or calibrated; a layer diameter means both layers."""
 
 
 @dataclass(frozen=True)
@@ -40,34 +40,34 @@ HOSE_PARAMETERS = (
 class HoseDesign:
     """One hose, or many that share a cord curve and a rubber law.
 
-    Numbers are floats or arrays that broadcast to the shape (...) of the designs.
+    Parameters are floats or arrays that broadcast to the shape (...) of the designs.
 
     Parameters
     ----------
     wrap_angle : float or ndarray, shape (...)
-        Of the cords at rest, from the hose axis. [rad]
+        Angle of the cords at rest, from the hose axis. [rad]
     layer_diameter : tuple of 2 (float or ndarray, shape (...))
         Mean diameters of the inner and the outer cord layer at rest. [m]
     inner_diameter, outer_diameter : float or ndarray, shape (...)
-        Of the rubber wall at rest. [m]
+        Diameters of the rubber wall at rest. [m]
     cords_per_length : float or ndarray, shape (...)
-        Of the fabric, across the cords. [m-1]
+        Cords of the fabric per length across the cords. [m-1]
     cord_diameter : float or ndarray, shape (...)
-        Of one cord; limits the spacing only. [m]
+        Diameter of one cord; affects the spacing only. [m]
     rubber_modulus : float or ndarray, shape (...)
         Young's modulus at small strain. [Pa]
     cord : CordCurve
         Load on one cord against its strain.
     rubber_law : {"neo-hookean", "linear", "linear-current", "hencky"}
-        How the rubber wall carries tension.
+        Law of the tension of the rubber wall.
     working_share : float
-        Of the break load of a cord, at the safe working load. [1]
+        Share of the break load of a cord at the safe working load. [1]
     cord_load_scale, cord_strain_scale : float or ndarray, shape (...)
         Factors on the two axes of the cord curve. [1]
     dead_length_share : float or ndarray, shape (...)
-        Part of the relaxed length that does not stretch: the stretch-limited ends. [1]
+        Share of the relaxed length that does not stretch: the stretch-limited ends. [1]
     minimum_inner_diameter : float
-        Smallest bore that is allowed; 0 where none is stated. [m]
+        Smallest allowed bore; 0 where none is stated. [m]
     """
 
     wrap_angle: float | Floats
@@ -126,7 +126,7 @@ class HoseDesign:
 
     @cached_property
     def shape(self) -> tuple[int, ...]:
-        """Of the designs together; () for one."""
+        """Common shape of the designs; () for one."""
         numbers = [
             getattr(self, item.name)
             for item in fields(self)
@@ -156,29 +156,29 @@ class HosePrediction:
     Parameters
     ----------
     strain : ndarray, shape (n_strain,)
-        Of the whole relaxed length, dead ends included. [1]
+        Strain of the whole relaxed length, including dead ends. [1]
     free_strain : ndarray
-        Of the part that stretches. [1]
+        Strain of the part that stretches. [1]
     tension : ndarray
         Net axial load. [N]
     fill_pressure : ndarray
-        In the bore, above the pressure outside. [Pa]
+        Pressure in the bore, above that outside. [Pa]
     cord_tension : ndarray
-        In one cord. [N]
+        Tension of one cord. [N]
     cord_strain : ndarray
-        Below zero where the cord is slack. [1]
+        Negative where the cord is slack. [1]
     cord_share, rubber_share : ndarray
-        Of the net tension; of the cords after the end cap. [1]
+        Shares of the net tension; for the cords, after the end cap. [1]
     end_cap_load : ndarray
-        What the pressure takes from the axial load of the cords. [N]
+        Part of the axial load of the cords that balances the pressure. [N]
     current_wrap_angle : ndarray
-        From the axis; of a slack cord, of its helix. [rad]
+        From the axis; for a slack cord, that of its helix. [rad]
     cord_spacing : ndarray
-        Between centres of neighbouring cords of one layer. [m]
+        Distance between centres of neighbouring cords of one layer. [m]
     current_inner_diameter : ndarray
         Bore. [m]
     is_slack, is_broken, is_jammed, is_bore_too_small : ndarray of bool
-        Cords carry nothing; are beyond their curve; touch; bore below its limit.
+        Cords carry no load; cords are beyond their curve; cords touch; bore is below its limit.
     """
 
     strain: Floats
@@ -202,7 +202,7 @@ class HosePrediction:
 @dataclass(frozen=True)
 @read_only_arrays
 class HoseEvent:
-    """Where something happens to the cords.  Arrays have the shape (...) of the designs."""
+    """State at an event of the cords.  Arrays have the shape (...) of the designs."""
 
     strain: Floats
     tension: Floats

@@ -1,9 +1,9 @@
-r"""Derivatives of a hose prediction by the numbers of its design.
+r"""Derivatives of a hose prediction with respect to its design parameters.
 
-**How the stretch of a water-filled hose goes with the stretch and the angle of its cords.**
+**Stretch of a water-filled hose as a function of the stretch and the angle of its cords.**
 Derivatives of the kinematics of `reduction.prediction.hose_geometry`.
 
-**Where a hose is, at a strain or at an event, and how its numbers move it from there.** With
+**State of a hose at a strain or an event, and how its parameters change it.** With
 :math:`P` the tension of a cord, :math:`d_w` the mean diameter of the layers and :math:`n` the cords
 per length, the net tension and the fill pressure are
 
@@ -13,9 +13,9 @@ per length, the net tension and the fill pressure are
     G = \lambda_h \cos^2\alpha_0 - \sin^2\alpha_0 / (2\lambda_h^2) \\
     p &= 2 n \left(d_1^{-1} + d_2^{-1}\right) P \sin^2\alpha_0 / (\lambda_h\lambda_c)
 
-A number of the design acts directly, and through :math:`\lambda_h`, :math:`\lambda_c` and
-:math:`P`.  On the curve the strain is held: the angle moves the cord strain, the dead length
-the free stretch.  At an event the cord strain is held: the hose stretch follows.
+A design parameter acts directly, and through :math:`\lambda_h`, :math:`\lambda_c` and
+:math:`P`.  On the curve the strain is constant: the angle changes the cord strain, the dead length
+the free stretch.  At an event the cord strain is constant, and the hose stretch follows from it.
 
 References
 ----------
@@ -48,7 +48,7 @@ from reduction.record.measurement import Floats, read_only_arrays
 
 
 def _stretch_ratio_per_angle(cord_stretch_ratio: ArrayLike, wrap_angle: ArrayLike) -> Floats:
-    r"""How the stretch of a water-filled hose at a given stretch of its cords goes with the angle.
+    r"""Derivative of the stretch of a water-filled hose by the angle, at constant cord stretch.
 
     .. math:: \frac{\partial\lambda_h}{\partial a_0} = \frac{(\lambda_h^2 - 1/\lambda_h)\sin a_0
        \cos a_0}{\lambda_h \cos^2 a_0 - \sin^2 a_0/(2\lambda_h^2)}
@@ -59,7 +59,7 @@ def _stretch_ratio_per_angle(cord_stretch_ratio: ArrayLike, wrap_angle: ArrayLik
 
     Examples
     --------
-    Points of stretch a degree, at a cord strain of 9.5 %:
+    Points of stretch per degree, at a cord strain of 9.5 %:
 
     >>> print(np.radians(100 * _stretch_ratio_per_angle(1.095, np.radians([64.0, 68.0]))).round(1))
     [ 8.6 12.5]
@@ -70,7 +70,7 @@ def _stretch_ratio_per_angle(cord_stretch_ratio: ArrayLike, wrap_angle: ArrayLik
 
 
 def _stretch_ratio_per_cord_stretch(cord_stretch_ratio: ArrayLike, wrap_angle: ArrayLike) -> Floats:
-    r"""How the stretch of a water-filled hose goes with the stretch of its cords.
+    r"""Derivative of the stretch of a water-filled hose by the stretch of its cords.
 
     .. math:: \frac{\partial\lambda_h}{\partial\lambda_c} =
        \frac{\lambda_c}{\lambda_h \cos^2 a_0 - \sin^2 a_0/(2\lambda_h^2)}
@@ -96,7 +96,7 @@ def _rise_of_cord(stretch: Floats, cosine2: Floats, sine2: Floats) -> Floats:
 def _stretched(
     cord_stretch_ratio: ArrayLike, wrap_angle: ArrayLike
 ) -> tuple[Floats, Floats, Floats]:
-    """Stretch of the hose, and squares of cosine and sine of the angle, which it has checked."""
+    """Stretch of the hose, and squares of cosine and sine of the checked angle."""
     stretch = hose_stretch_ratio(cord_stretch_ratio, wrap_angle)
     angle = np.asarray(wrap_angle, dtype=np.float64)
     return stretch, np.asarray(np.cos(angle) ** 2), np.asarray(np.sin(angle) ** 2)
@@ -107,7 +107,7 @@ Rates = Mapping[str, Floats]
 
 @dataclass(frozen=True)
 class _HoseState:
-    """Where a hose is, and how each parameter moves it from there; ``columns`` adds an axis."""
+    """State of a hose, and its derivatives by each parameter; ``columns`` adds an axis."""
 
     stretch: Floats
     cord_stretch: Floats
@@ -119,13 +119,13 @@ class _HoseState:
 
 
 def _as_number(value: ArrayLike, *, columns: bool) -> Floats:
-    """Numbers of designs as float64, with an axis for strain where there are ``columns``."""
+    """Design parameters as float64, with an axis for strain where there are ``columns``."""
     array = np.asarray(value, dtype=np.float64)
     return array[..., None] if columns else array
 
 
 def _on_the_curve(design: HoseDesign, strain: Floats) -> _HoseState:
-    """Where hoses are at strains of their whole length."""
+    """State of hoses at strains of their whole length."""
     angle, dead, load_scale, strain_scale = (
         _as_number(one, columns=True)
         for one in (
@@ -153,7 +153,7 @@ def _on_the_curve(design: HoseDesign, strain: Floats) -> _HoseState:
 
 
 def _at_deepest_slack(design: HoseDesign) -> _HoseState:
-    """Where the cords are slackest."""
+    """State where the cords are slackest."""
     angle = np.asarray(design.wrap_angle, dtype=np.float64)
     stretch = slackest_stretch_ratio(angle)
     per_angle = 2 / 3 * stretch / (np.sin(angle) * np.cos(angle))
@@ -161,7 +161,7 @@ def _at_deepest_slack(design: HoseDesign) -> _HoseState:
 
 
 def _at_pick_up(design: HoseDesign) -> _HoseState:
-    """Where the cords begin to carry."""
+    """State where the cords begin to carry."""
     angle = np.asarray(design.wrap_angle, dtype=np.float64)
     stretch = pick_up_stretch_ratio(angle)
     per_angle = 2 * np.tan(angle) / np.cos(angle) ** 2 / (2 * stretch + 1)
@@ -169,7 +169,7 @@ def _at_pick_up(design: HoseDesign) -> _HoseState:
 
 
 def _slack(design: HoseDesign, stretch: Floats, per_angle: Floats) -> _HoseState:
-    """Where the cords carry nothing; below the neutral angle the hose is at rest there."""
+    """State with unloaded cords; below the neutral angle the hose is at rest there."""
     is_above = np.asarray(design.wrap_angle) > NEUTRAL_ANGLE
     of_stretch = {
         "strain": 1 / (1 - np.asarray(design.dead_length_share, dtype=np.float64)),
@@ -179,7 +179,7 @@ def _slack(design: HoseDesign, stretch: Floats, per_angle: Floats) -> _HoseState
 
 
 def _at_cord_strain(design: HoseDesign, at: Floats) -> _HoseState:
-    """Where the cords are at a strain of their measured curve."""
+    """State with the cords at a strain of their measured curve."""
     angle, load_scale, strain_scale, dead = (
         np.asarray(one, dtype=np.float64)
         for one in (
@@ -213,11 +213,11 @@ def _at_cord_strain(design: HoseDesign, at: Floats) -> _HoseState:
 @dataclass(frozen=True)
 @read_only_arrays
 class EventSensitivity:
-    """Derivatives where something happens to the cords, shape (n_parameters, ...).
+    """Derivatives at the events of the cords, shape (n_parameters, ...).
 
-    Rows as `reduction.prediction.hose_product.HOSE_PARAMETERS`, in the unit of the quantity a unit
-    of the parameter.  ``strain`` is of the whole length; ``stiffness``, shape (...), is the slope
-    of the tension over it there, at pick-up that of the slack side. [N]
+    Rows as in `reduction.prediction.hose_product.HOSE_PARAMETERS`, in the unit of the quantity per
+    unit of the parameter.  ``strain`` refers to the whole length; ``stiffness``, shape (...), is
+    the slope of the tension over it there, at pick-up that on the slack side. [N]
     """
 
     strain: Floats
@@ -242,19 +242,19 @@ class _HoseSensitivity:
 
 
 def hose_sensitivity(design: HoseDesign, strain: ArrayLike) -> _HoseSensitivity:
-    r"""Derivatives by every number of the design that may be uncertain.
+    r"""Derivatives with respect to every uncertain design parameter.
 
     Parameters
     ----------
     design : HoseDesign
         One hose, or many.
     strain : array_like, shape (n_strain,)
-        Of the whole relaxed length. [1]
+        Strain of the whole relaxed length. [1]
 
     Returns
     -------
     sensitivity : HoseSensitivity
-        Of the curve at held strain, and of the events.
+        Derivatives of the curve at constant strain, and of the events.
 
     Raises
     ------
@@ -263,18 +263,18 @@ def hose_sensitivity(design: HoseDesign, strain: ArrayLike) -> _HoseSensitivity:
 
     Notes
     -----
-    Eq. 8, 24 and 26 of [1]_ (module) differentiated.  A row ``layer_diameter`` moves both
-    layers by the same length.  Every row holds the others: a layer diameter that comes out
-    large *with its ribbon as cut* moves the wrap angle too, by the cotangent of the angle times
-    the relative error (eq. 10).
+    Eq. 8, 24 and 26 of [1]_ (module) differentiated.  A row ``layer_diameter`` changes both layers
+    by the same length.  In every row the other parameters are constant: a layer diameter that
+    turns out large *with its ribbon as cut* also changes the wrap angle, by the cotangent of the
+    angle times the relative error (eq. 10).
 
-    At pick-up the derivatives jump: a cord strain of exactly zero counts as slack, also of a
+    At pick-up the derivatives jump: a cord strain of exactly zero counts as slack, also for a
     hose below 54.7356 degrees at rest.  There the cords pick up at rest at any angle, and the
-    strain of pick-up does not follow it.
+    strain of pick-up does not depend on it.
 
     Examples
     --------
-    Points of stretch a degree at the working load of the two hoses of [1]_, section 3.0, with
+    Points of stretch per degree at the working load of the two hoses of [1]_, section 3.0, with
     a cord that has 9.5 % at a third of its break load; and for 1 % of cord strain.
 
     >>> from reduction.prediction.cord_curve import CordCurve
@@ -292,7 +292,7 @@ def hose_sensitivity(design: HoseDesign, strain: ArrayLike) -> _HoseSensitivity:
     tension, pressure = _chain(design, curve)
     shape = (*design.shape, along.size)
     working = cord_strain_at(design.cord, design.working_share * design.cord.break_load)
-    broken = np.where(np.isnan(curve.cord_tension), np.nan, 0.0)  # the rubber knows nothing of it
+    broken = np.where(np.isnan(curve.cord_tension), np.nan, 0.0)  # the rubber curve has no break
     return _HoseSensitivity(
         strain=np.array(along),
         tension=_rows(tension, shape) + broken,

@@ -1,7 +1,7 @@
 r"""Tension and fill pressure of a water-filled hose: the Snubber calculation.
 
-**Loads of a hose from the tension of its cords, wherever on its curve that is.** Virtual work of
-the cord layers, by layer diameter :math:`d_i`.
+**Loads of a hose from the tension of its cords, at any point of their curve.** Virtual work of the
+cord layers, with layer diameters :math:`d_i`.
 
 **Tension and fill pressure of a water-filled hose from its cords: the "Snubber" calculation.** A
 hose of relaxed length one holds the energy of its cords and of its rubber.  With the layers
@@ -13,19 +13,18 @@ on one cord, and :math:`\lambda_c(\lambda_h)` from `reduction.prediction.hose_ge
    \left(\lambda_h \cos^2 a_0 - \frac{\sin^2 a_0}{2 \lambda_h^2}\right) + T_r
 
 The first part is the axial load of the :math:`N_i = \pi d_i n \cos a_0` cords of each layer; the
-second is what the pressures of the layers, :math:`p_i = 2 P n \sin^2 a_0/(\lambda_h \lambda_c
-d_i)`, put on the end cap: each on the *current* area :math:`\pi d_i^2/(4\lambda_h)` inside its
-cords, for the rubber inside the cords is under the pressure too.
+second is the end-cap force of the layer pressures, :math:`p_i = 2 P n \sin^2 a_0/(\lambda_h
+\lambda_c d_i)`, each on the *current* area :math:`\pi d_i^2/(4\lambda_h)` inside its cords, since
+the rubber inside the cords is under the pressure too.
 
-The hose is long, straight and does not turn; both layers have one angle, but for
-`predict_two_layers`; wall and filling keep their volume, so that none of the water may leave; cords
-are elastic.  Where cords are slack the rubber alone carries and there is no pressure.  In
-compression a hose buckles, and there is no prediction.
+The hose is long, straight and does not turn; both layers have the same angle, except in
+`predict_two_layers`; wall and filling keep their volume, so no water may leave; cords are elastic.
+Where cords are slack the rubber alone carries and there is no pressure.  In compression a hose
+buckles, and there is no prediction.
 
-**What happens to the cords of a hose, and at which stretch: closed forms.** The strains belong to a
-long, straight hose that keeps its volume, and to a slow pull of its cords.
-Where the cords break is where a single cord of the curve
-would: a hose has weaker places, at its ends above all.
+**Events of the cords of a hose, in closed form.** The strains hold for a long, straight hose that
+keeps its volume, and for a slow pull of its cords.  The cords break where a single cord of the
+curve would; a hose has weaker places, above all at its ends.
 
 References
 ----------
@@ -68,7 +67,7 @@ from reduction.record.measurement import Floats, read_only_arrays
 
 @dataclass(frozen=True)
 class _HoseNumbers:
-    """What the loads need of designs, worked out once.  Arrays of one shape."""
+    """Parameters of designs needed for the loads, computed once.  Arrays of one shape."""
 
     free_share: Floats
     cosine2: Floats
@@ -86,14 +85,14 @@ class _HoseNumbers:
     strain_scale: Floats
 
     def column(self, rows: slice) -> _HoseNumbers:
-        """Some of the designs, flattened, as a column: shape (n_rows, 1)."""
+        """Some of the designs, flattened to a column of shape (n_rows, 1)."""
         parts = {item.name: getattr(self, item.name) for item in fields(self)}
         return _HoseNumbers(**{name: one.reshape(-1, 1)[rows] for name, one in parts.items()})
 
 
 @dataclass(frozen=True)
 class _HoseLoads:
-    """Loads of the cords and of the water; ``cord_axial_load`` is after the end cap."""
+    """Loads of cords and water; ``cord_axial_load`` includes the end cap."""
 
     fill_pressure: Floats
     end_cap_load: Floats
@@ -101,12 +100,12 @@ class _HoseLoads:
 
 
 def numbers_of(design: HoseDesign) -> _HoseNumbers:
-    """Work out what the loads need of a design.
+    """Compute the parameters of a design that the loads need.
 
     Parameters
     ----------
     design : HoseDesign
-        One hose or many.
+        One or many hoses.
 
     Returns
     -------
@@ -116,15 +115,15 @@ def numbers_of(design: HoseDesign) -> _HoseNumbers:
     Raises
     ------
     ValueError
-        From numpy, if numbers of the design do not broadcast.
+        From numpy, if parameters of the design do not broadcast.
 
     Notes
     -----
-    Source: [1]_, eq. (10) and (11): the number of cords is pi d n cos a0 a layer.
+    Source: [1]_, eq. (10) and (11): the number of cords is pi d n cos a0 per layer.
 
     Examples
     --------
-    Mean diameter 3.5 in and 34 cords an inch, the angles of the hoses of [1]_, sec. 3.0:
+    Mean diameter 3.5 in and 34 cords per inch, with the angles of the hoses of [1]_, sec. 3.0:
 
     >>> from reduction.prediction.cord_curve import CordCurve
     >>> design = HoseDesign(
@@ -212,7 +211,7 @@ def loads_at(
 
 
 BLOCK = 131_072
-"""Values a block: few enough for a cache, so many that threads seldom wait for the interpreter."""
+"""Values per block: few enough for a cache, enough that threads seldom wait for the interpreter."""
 
 
 def predict_hose(design: HoseDesign, strain: ArrayLike) -> HosePrediction:
@@ -221,9 +220,9 @@ def predict_hose(design: HoseDesign, strain: ArrayLike) -> HosePrediction:
     Parameters
     ----------
     design : HoseDesign
-        One hose or many, shape (...).
+        One or many hoses, shape (...).
     strain : array_like, shape (n_strain,)
-        Of the relaxed length, dead ends included; zero or more, in any order. [1]
+        Of the relaxed length including dead ends; zero or more, in any order. [1]
 
     Returns
     -------
@@ -233,26 +232,26 @@ def predict_hose(design: HoseDesign, strain: ArrayLike) -> HosePrediction:
     Raises
     ------
     DataError
-        If the strains are no series, not finite, or below zero: compression is not of this model.
+        If the strains are not a series, not finite, or negative: compression is not modelled.
 
     Notes
     -----
     Source: [1]_, sec. 1.2.  Equation (8) gives the cord strain, the cord curve the cord tension,
     (24) the fill pressure, (26) the tension, with the end cap on the current area inside the
-    cords and a law of rubber that is zero at rest.  As printed, (25) has the square root closed
-    too late (its unit is lbf/in), (20) has the stretch of the cord for that of the hose, and (26)
-    takes the end cap at the bore.
+    cords and a rubber law that is zero at rest.  As printed, (25) closes the square root too late
+    (its unit is lbf/in), (20) has the stretch of the cord instead of that of the hose, and (26)
+    has the end cap at the bore.
 
-    Strain of the part that stretches is that of the whole over one less the share of the ends.
-    Cord strain is divided by its scale before the curve is read, load is multiplied by its own.
-    Where there is no tension the share of the cords is zero.
+    Strain of the stretching part is that of the whole hose over one less the share of the ends.
+    Cord strain is divided by its scale before the curve is evaluated; load is multiplied by its
+    own scale.  Where there is no tension the share of the cords is zero.
 
-    Designs are worked in blocks, side by side on the processors there are; the answer does not
+    Designs are computed in blocks, in parallel on the available processors; the answer does not
     depend on their number.
 
     Examples
     --------
-    A hose with a wrap angle of 68 deg: the rubber alone up to +102.5 %, then the cords.
+    A hose with a wrap angle of 68 deg: rubber alone up to +102.5 %, then cords as well.
 
     >>> from reduction.prediction.cord_curve import CordCurve
     >>> design = HoseDesign(
@@ -282,7 +281,7 @@ def predict_hose(design: HoseDesign, strain: ArrayLike) -> HosePrediction:
     names = [item.name for item in fields(HosePrediction) if item.name != "strain"]
     flags = [name for name in names if name.startswith("is_")]
     numerals = [name for name in names if name not in flags]
-    # one piece of memory for all: the system hands out large ones more quickly than many
+    # one allocation for all: the system provides one large block faster than many small ones
     target: dict[str, Any] = {
         **dict(zip(numerals, np.empty((len(numerals), n_designs, n_strain)), strict=True)),
         **dict(
@@ -322,12 +321,12 @@ def _respond(
     design: HoseDesign,
     out: dict[str, Any],
 ) -> None:
-    """Fill a block of each array: operations in place, for new memory costs more than they do."""
+    """Fill a block of each array, with operations in place to avoid allocations."""
     stretch, inverse, cord_stretch, spare, other = np.empty((5, *out["tension"].shape))
     free = np.divide(strain, numbers.free_share, out=out["free_strain"])
     np.add(free, 1, out=stretch)
     np.reciprocal(stretch, out=inverse)
-    # lambda_c^2 - 1 without the difference of two ones, so that a hose at rest has no cord strain
+    # lambda_c^2 - 1 without cancellation, so that a hose at rest has no cord strain
     square = np.add(free, 2, out=spare)
     square *= free
     square *= numbers.cosine2
@@ -368,7 +367,7 @@ def _respond(
 @dataclass(frozen=True)
 @read_only_arrays
 class _TwoLayers:
-    """A hose whose layers have angles of their own.  Arrays have the shape (n_strain,)."""
+    """A hose whose layers have different angles.  Arrays have the shape (n_strain,)."""
 
     tension: Floats
     fill_pressure: Floats
@@ -378,20 +377,20 @@ class _TwoLayers:
 def predict_two_layers(
     design: HoseDesign, outer_wrap_angle: float, strain: ArrayLike
 ) -> _TwoLayers:
-    r"""Tension, fill pressure and torque of one hose, its outer layer at an angle of its own.
+    r"""Tension, fill pressure and torque of one hose whose outer layer has a different angle.
 
     .. math:: M = \sum_i \pm \frac{\pi d_i^2 n P_i \sin a_i \cos a_i}{2 \lambda_h \lambda_{c,i}}
 
     Notes
     -----
-    Layers add their energy.  A twist psi a length of the relaxed hose makes the squared stretch of
-    a cord (lambda_h cos a)^2 + (sin a +- psi d cos a / 2)^2 / lambda_h; the torque that holds the
-    hose from turning is dW/dpsi at psi = 0, positive as the inner layer would turn it.  NaN where
-    a layer is broken.
+    The energies of the layers add.  With a twist psi per length of the relaxed hose, the squared
+    stretch of a cord is (lambda_h cos a)^2 + (sin a +- psi d cos a / 2)^2 / lambda_h; the torque
+    that holds the hose against turning is dW/dpsi at psi = 0, positive in the direction in which
+    the inner layer would turn it.  NaN where a layer is broken.
 
     Examples
     --------
-    Layers of one angle do not balance, since the outer one is wider: d^2 goes into the torque.
+    Layers of equal angle do not balance, since the outer one is wider: torque grows as d^2.
 
     >>> from reduction.prediction.cord_curve import CordCurve
     >>> design = HoseDesign(
@@ -406,7 +405,7 @@ def predict_two_layers(
     """
     angle = np.array([float(design.wrap_angle), outer_wrap_angle])
     diameter = np.array([float(one) for one in design.layer_diameter])
-    # each of the two is a hose with twice one of the layers: their mean is the hose
+    # each of the two is a hose with two equal layers: the hose is their mean
     twice = predict_hose(
         replace(design, wrap_angle=angle, layer_diameter=(diameter, diameter)), strain
     )
@@ -421,12 +420,12 @@ def predict_two_layers(
 
 
 def torque_balanced_angle(design: HoseDesign, strain: float) -> float:
-    """Wrap angle of the outer layer that leaves one hose no torque at a strain.
+    """Wrap angle of the outer layer at which a hose has no torque at a strain.
 
     Notes
     -----
-    Between the angle of the inner layer, where the wider outer one has the upper hand, and that
-    at which the outer layer would be slack.  NaN where the cords are slack or broken.
+    Between the angle of the inner layer, where the wider outer layer dominates, and that at which
+    the outer layer would be slack.  NaN where the cords are slack or broken.
 
     Examples
     --------
@@ -449,7 +448,7 @@ def torque_balanced_angle(design: HoseDesign, strain: float) -> float:
 
     if not inner < slack or np.isnan(torque(inner)):
         return float("nan")
-    # of layers of one diameter rounding alone is left
+    # with layers of equal diameter only rounding is left
     return (
         inner
         if torque(inner) >= 0
@@ -458,18 +457,18 @@ def torque_balanced_angle(design: HoseDesign, strain: float) -> float:
 
 
 def hose_energy(design: HoseDesign, stretch_ratio: ArrayLike) -> Floats:
-    r"""Energy in cords and rubber, a relaxed length of the part that stretches.
+    r"""Energy in cords and rubber, per relaxed length of the stretching part.
 
     .. math:: W = \pi (d_1 + d_2) n \int P \, d\lambda_c + \int T_r \, d\lambda_h
 
     Notes
     -----
-    Cords of both layers together are pi (d1 + d2) n cos a0, each 1/cos a0 long a length of hose
-    ([1]_, eq. (2), (10), (11)).  The water and the dead ends hold none.
+    Both layers together have pi (d1 + d2) n cos a0 cords, each 1/cos a0 long per length of hose
+    ([1]_, eq. (2), (10), (11)).  The water and the dead ends store none.
 
     Examples
     --------
-    With 130 N at 20 % in a straight cord curve, slack cords, and a neo-Hookean wall:
+    With 130 N at 20 % on a straight cord curve, slack cords, and a neo-Hookean wall:
 
     >>> from reduction.prediction.cord_curve import CordCurve
     >>> design = HoseDesign(
@@ -497,31 +496,31 @@ def hose_energy(design: HoseDesign, stretch_ratio: ArrayLike) -> Floats:
 
 
 def find_events(design: HoseDesign) -> HoseEvents:
-    """Where cords are shortest, pick up, reach their working load, and break.
+    """Find where cords are shortest, pick up, reach their working load, and break.
 
     Parameters
     ----------
     design : HoseDesign
-        One hose or many, shape (...).
+        One or many hoses, shape (...).
 
     Returns
     -------
     events : HoseEvents
-        Arrays of shape (...); strains of the whole relaxed length, dead ends included.
+        Arrays of shape (...); strains refer to the whole relaxed length including dead ends.
 
     Raises
     ------
     ValueError
-        From numpy, if numbers of the design do not broadcast.
+        From numpy, if parameters of the design do not broadcast.
 
     Notes
     -----
     Source: [1]_, eq. (8) and Fig. 11.  The safe working load is the tension of the hose "at which
     the nylon tire cords are stressed to 1/3rd of their breaking strength" (sec. 1.2.4): of the
-    cords, not of the hose, which the rubber makes another number.
+    cords, not of the hose, whose third differs because of the rubber.
 
-    No search but for the inverse of the cord curve, `cord_strain_at`.  The cord strain at pick-up
-    is exactly zero and at the break exactly that of the last point times its scale.
+    Only the inverse of the cord curve, `cord_strain_at`, needs a search.  The cord strain at
+    pick-up is exactly zero, and at the break exactly that of the last point times its scale.
 
     Examples
     --------

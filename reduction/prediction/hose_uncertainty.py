@@ -1,11 +1,11 @@
-r"""Uncertainty of a hose prediction, source by source.
+r"""Uncertainty of a hose prediction, by source.
 
 .. math:: \delta_i T = \frac{\partial T}{\partial x_i} u(x_i), \qquad
           u^2(T) = \sum_i (\delta_i T)^2
 
-Each contribution keeps its sign and stands along the whole curve: one wrong angle moves all of
-it, so the errors at two strains are not independent, and a difference between two points (a
-modulus, an energy) takes the difference of the contributions before it is squared.
+Each contribution keeps its sign along the whole curve: one wrong angle moves all of it, so the
+errors at two strains are not independent.  For a difference between two points (a modulus, an
+energy) the contributions are subtracted before they are squared.
 
 References
 ----------
@@ -29,10 +29,10 @@ from reduction.record.errors import SettingsError
 from reduction.record.measurement import Bools, Floats, read_only_arrays
 
 WIDTH = 2.0
-"""Standard uncertainties on either side of a kink within which a line through it is not trusted."""
+"""Distance from a kink, in standard uncertainties, within which linear propagation fails."""
 
 PICK_UP = "pick_up"
-"""Source of what cords may bear that are slack by the numbers of the design."""
+"""Source of the load that cords may carry although they are slack in the design."""
 
 _QUANTILES = (np.arange(400) + 0.5) / 400
 
@@ -40,7 +40,7 @@ _QUANTILES = (np.arange(400) + 0.5) / 400
 @dataclass(frozen=True)
 @read_only_arrays
 class EventUncertainty:
-    """Where something happens to the cords: contributions (n_source, ...) and their sum (...)."""
+    """Uncertainty of an event of the cords: contributions (n_source, ...) and their sum (...)."""
 
     strain_contribution: Floats
     tension_contribution: Floats
@@ -53,29 +53,29 @@ class EventUncertainty:
 @dataclass(frozen=True)
 @read_only_arrays
 class HoseUncertainty:
-    """What each uncertain number of a design does to its prediction.
+    """Effect of each uncertain parameter of a design on its prediction.
 
     Contributions are signed, and have the shape (n_source, ...) before the axes of the quantity.
 
     Parameters
     ----------
     source : tuple of str, length n_source
-        Names from `reduction.prediction.hose_product.HOSE_PARAMETERS`, in that order; after them
+        Names from `reduction.prediction.hose_product.HOSE_PARAMETERS`, in that order, followed by
         `PICK_UP` from `with_pick_up`.
     strain : ndarray, shape (n_strain,)
-        Of the whole relaxed length. [1]
+        Strain of the whole relaxed length. [1]
     tension_contribution, fill_pressure_contribution : ndarray, shape (n_source, ..., n_strain)
-        At held strain; NaN where the cords are broken. [N], [Pa]
+        At constant strain; NaN where the cords are broken. [N], [Pa]
     tension_standard_uncertainty, fill_pressure_standard_uncertainty : ndarray, (..., n_strain)
         Root of the sum of squares. [N], [Pa]
     is_near_kink : ndarray of bool, shape (..., n_strain)
-        Within two standard uncertainties of the strain at pick-up or at break: some of the
-        hoses that the design may be have their cords slack, or broken, and others not.
+        Within two standard uncertainties of the strain at pick-up or at break: in some of the
+        hoses that the design may represent the cords are slack, or broken, in others not.
     deepest_slack, pick_up, working, cord_break : EventUncertainty
-        Where the cords are shortest, pick up, bear the working share of their break load, break.
+        Where the cords are shortest, pick up, carry the working share of their break load, break.
     strain_at_working_load_contribution : ndarray, shape (n_source, ...)
-        Of the strain at which the hose carries the *nominal* working load, as it is read from
-        a curve at that load; ``working`` is where the cords carry their share. [1]
+        For the strain at which the hose carries the *nominal* working load, as read from a curve
+        at that load; ``working`` is where the cords carry their share. [1]
     strain_at_working_load_standard_uncertainty : ndarray, shape (...)
         Root of the sum of squares. [1]
     """
@@ -98,18 +98,18 @@ class HoseUncertainty:
 def propagate_hose(
     design: HoseDesign, strain: ArrayLike, standard_uncertainty: Mapping[str, float]
 ) -> HoseUncertainty:
-    r"""Carry the uncertainty of the numbers of a design through to its prediction.
+    r"""Propagate the uncertainty of design parameters to the prediction.
 
     Parameters
     ----------
     design : HoseDesign
         One hose, or many with the same uncertainties.
     strain : array_like, shape (n_strain,)
-        Of the whole relaxed length, as `reduction.prediction.hose_tension.predict_hose` takes it.
+        Of the whole relaxed length, as for `reduction.prediction.hose_tension.predict_hose`.
         [1]
     standard_uncertainty : mapping of str to float
         By name of `reduction.prediction.hose_product.HOSE_PARAMETERS`, each in the SI unit of that
-        number: rad for the wrap angle. What is not named counts as known. [rad, m, m-1, Pa or 1]
+        parameter: rad for the wrap angle. Others count as known. [rad, m, m-1, Pa or 1]
 
     Returns
     -------
@@ -121,38 +121,38 @@ def propagate_hose(
     SettingsError
         If a name is unknown, or an uncertainty is negative or not finite.
     DataError
-        If a strain is not finite, or outside what can be predicted.
+        If a strain is not finite, or outside the range of the prediction.
 
     Notes
     -----
     First order, [1]_ (module) 5.1.2, with the derivatives of
-    `reduction.prediction.hose_sensitivity.hose_sensitivity`; the sources are taken as independent.
-    They are not where one cause moves two of them: a layer that comes out large with its ribbon
-    as cut is steeper as well (by the cotangent of the angle times the relative error: eq. 10), and
-    every diameter follows that of the mandrel.  ``layer_diameter`` stands for both layers together.
+    `reduction.prediction.hose_sensitivity.hose_sensitivity`; the sources are assumed independent.
+    They are not where one cause affects two of them: a layer that turns out large with its ribbon
+    as cut is also steeper (by the cotangent of the angle times the relative error: eq. 10), and
+    every diameter depends on that of the mandrel.  ``layer_diameter`` means both layers together.
 
     Linear propagation fails at the kinks of the curve.  Within a standard uncertainty of the
-    strain at pick-up the cords of some hoses are slack and of others not: below pick-up the
-    linear answer has none of their load, above it the answer is symmetric where the true one
-    cannot fall below the rubber alone.  Against sampling, with half a degree of angle at 68
-    degrees, it is a quarter too low at pick-up and a seventh too high half a standard
-    uncertainty above, and within a twentieth from two on (`with_pick_up` adds what is missing
+    strain at pick-up, the cords of some hoses are slack and those of others are not: below pick-up
+    the linear result has none of their load; above it, the result is symmetric although the true
+    tension cannot fall below that of the rubber.  Compared with sampling, for half a degree of
+    angle at 68 degrees, it is a quarter too low at pick-up, a seventh too high half a standard
+    uncertainty above, and within a twentieth from two on (`with_pick_up` adds the part missing
     below).  Near the break some hoses are broken.  ``is_near_kink`` marks both, to two standard
     uncertainties.
 
-    The curve above pick-up is steep.  At a *held strain* the same half degree is 13 % of the
-    tension at the working load; the working load itself, which moves along with its strain, has
-    3 %.  What is quoted beside a working load is that of the event.
+    The curve above pick-up is steep.  At *constant strain* the same half degree is 13 % of the
+    tension at the working load; for the working load itself, whose strain changes too, it is
+    3 %.  The uncertainty quoted with a working load is that of the event.
 
-    For the strain at the working load there are two questions.  Where the *cords* bear their
-    share (``working``), neither the rubber nor the diameters nor the number of cords has a say.
-    Where the *hose* carries the load that was computed (``strain_at_working_load``), they do:
-    :math:`-(\partial T/\partial x_i)/(\partial T/\partial\varepsilon)` at held strain.
+    The strain at the working load has two meanings.  Where the *cords* carry their share
+    (``working``), the rubber, the diameters and the number of cords have no effect.  Where the
+    *hose* carries the computed load (``strain_at_working_load``), they do:
+    :math:`-(\partial T/\partial x_i)/(\partial T/\partial\varepsilon)` at constant strain.
 
     Examples
     --------
     Half a degree of wrap angle is 6 points of stretch at the working load, 5 % of rubber
-    modulus none; at that *load* of the hose the rubber counts too.
+    modulus none; at that *load* of the hose the rubber matters too.
 
     >>> from reduction.prediction.cord_curve import CordCurve
     >>> cord = CordCurve(np.array([0.0, 0.095, 0.26]), np.array([0.0, 44.5, 133.5]))
@@ -207,24 +207,24 @@ def propagate_hose(
 
 
 def with_pick_up(design: HoseDesign, known: HoseUncertainty) -> HoseUncertainty:
-    r"""Uncertainty of one hose, with what cords may bear that are slack by its numbers.
+    r"""Uncertainty of one hose, including the load of cords that are slack in its design.
 
     Notes
     -----
-    Below pick-up the derivatives are those of the rubber alone, and say that the fill pressure is
-    zero for certain; within two standard uncertainties u of the strain of pick-up it is not.  A
-    hose that picks up earlier by :math:`\delta`, normal with u, has there the load Q of the cords
-    that this one has later by :math:`\delta`,
+    Below pick-up the derivatives are those of the rubber alone, and give a fill pressure of exactly
+    zero; within two standard uncertainties u of the strain at pick-up this is not certain.  A hose
+    that picks up earlier by :math:`\delta`, normal with u, has the cord load Q there that this hose
+    has later by :math:`\delta`,
 
     .. math:: \delta Q^2(\varepsilon) = \int Q^2(\varepsilon + \delta)\, dN(\delta)
 
     the mean square about the predicted zero.  Above pick-up the derivatives are up to a seventh
-    too large, and stay.
+    too large, and are kept.
 
     Examples
     --------
-    A hose of which half a degree is 6 points of the strain of pick-up, 1.025; of 1,500 hoses drawn
-    with that scatter the root mean square is 63 kPa.
+    A hose for which half a degree is 6 points of the strain at pick-up, 1.025; for 1,500 hoses
+    drawn with that scatter the root mean square is 63 kPa.
 
     >>> from reduction.prediction.cord_curve import CordCurve
     >>> cord = CordCurve(np.array([0.0, 0.095, 0.26]), np.array([0.0, 44.5, 133.5]))
@@ -247,7 +247,7 @@ def with_pick_up(design: HoseDesign, known: HoseUncertainty) -> HoseUncertainty:
     is_slack = known.strain <= at
     parts = []
     for load in (later.cord_share * later.tension, later.fill_pressure):
-        # at the break itself the curve has ended: the last load before it
+        # at the break itself the curve has ended: use the last load before it
         whole = np.nan_to_num(load, nan=float(np.nanmax(load))).reshape(reached.shape)
         parts.append(np.where(is_slack, np.sqrt(np.mean(whole**2, axis=0)), 0.0))
     tension, pressure = (

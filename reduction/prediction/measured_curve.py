@@ -32,15 +32,15 @@ BRANCHES: tuple[CurveName, CurveName] = ("ascending", "descending")
 CURVES: tuple[CurveName, ...] = (*BRANCHES, "midline")
 
 NODES_A_BIN = 40
-"""Steps of the strains between two bin centres at which a prediction is read."""
+"""Number of steps between two bin centres at which a prediction is evaluated."""
 
 
 @dataclass(frozen=True)
 @read_only_arrays
 class _Reading:
-    """How a test shows a curve: weights of the strains between the bin centres.
+    """How a test reads a curve: weights of the strains between the bin centres.
 
-    Samples lie at some strains of a bin and the mean is moved to its centre; at a kink that is
+    Samples lie at some strains of a bin, and their mean is moved to its centre; at a kink this is
     not the tension at the centre.  A prediction that is read in the same way has the same kink.
     """
 
@@ -48,7 +48,7 @@ class _Reading:
     weight: Floats
 
     def of(self, curve: Floats) -> Floats:
-        """A curve at the nodes, shape (..., n_node), as the test shows it, (..., n_strain)."""
+        """A curve at the nodes, shape (..., n_node), as read by the test, (..., n_strain)."""
         windows = np.lib.stride_tricks.sliding_window_view(curve, self.weight.shape[1], axis=-1)
         return np.asarray(np.einsum("...bm,bm->...b", windows[..., ::NODES_A_BIN, :], self.weight))
 
@@ -58,17 +58,17 @@ class _Reading:
 class MeasuredCurve:
     """Tension of a test on one axis of strain, cycle by cycle and over the cycles.
 
-    NaN stands where a branch was not visited.  The *judged* curve is the midline of the two
-    branches, or the ascending branch of a test that has no other.
+    NaN where a branch was not visited.  The *judged* curve, used for the comparison, is the midline
+    of the two branches, or the ascending branch of a test that has no other.
 
     Parameters
     ----------
     strain : ndarray, shape (n_strain,)
         Bin centres, equally spaced, of the whole relaxed length. [1]
     tension : ndarray, shape (n_cycle, 2, n_strain)
-        Of each cycle, ascending before descending, at the bin centre. [N]
+        Tension of each cycle, ascending before descending, at the bin centre. [N]
     count : ndarray of int, shape (n_cycle, 2, n_strain)
-        Samples in the bin. [1]
+        Number of samples in the bin. [1]
     cycle_number : ndarray of int, shape (n_cycle,)
         First cycle of each row; a row is one cycle unless ``cycles_pooled`` is above 1.
     branch_tension, branch_standard_uncertainty : ndarray, shape (2, n_strain)
@@ -76,27 +76,27 @@ class MeasuredCurve:
     midline_tension, midline_standard_uncertainty : ndarray, shape (n_strain,)
         Half way between the branches, and its standard uncertainty, type A alone. [N]
     scatter_contribution : ndarray, shape (n_component, n_strain)
-        What the type A standard uncertainty of the judged curve has in common over strain, as
-        signed contributions: cycles lie high or low as a whole. [N]
+        Part of the type A standard uncertainty of the judged curve that is correlated over strain,
+        as signed contributions: whole cycles lie high or low. [N]
     component : tuple of Component, length n_component
         Errors that all cycles share.
     contribution : ndarray, shape (n_component, 3, n_strain)
-        Of each, to both branches and the midline, one standard uncertainty, signed; zero where
-        there is no curve. [N]
+        Signed contribution of each to both branches and the midline, for one standard uncertainty;
+        zero where there is no curve. [N]
     strain_error : ndarray, shape (n_component, n_strain)
-        What the strain of the judged curve is read wrong by in it: the part of the contribution
-        that moves the curve along its axis. [1]
+        Error of the strain of the judged curve in that contribution: the part that moves the curve
+        along its axis. [1]
     loading : {"static", "dynamic"}
-        How it was pulled.
+        Kind of loading.
     reading : Reading
         How the judged curve was read from the samples.
     end_strain, end_tension, end_standard_uncertainty : float
-        Where the judged curve ends beyond its last bin centre: mean of the samples between, and
-        its type A; NaN where there are none. [1], [N], [N]
+        End of the judged curve beyond its last bin centre: mean of the samples between, and its
+        type A uncertainty; NaN where there are none. [1], [N], [N]
     cycles_pooled : int
         Consecutive cycles in a row of ``tension``.
     notes : tuple of Note
-        What a reader has to know.
+        Remarks for the reader.
     """
 
     strain: Floats
@@ -137,7 +137,7 @@ class MeasuredCurve:
 
     @property
     def judged(self) -> CurveName:
-        """The curve that the prediction is judged by."""
+        """The curve with which the prediction is compared."""
         return "midline" if np.isfinite(self.midline_tension).any() else "ascending"
 
     def tension_of(self, curve: CurveName) -> Floats:
@@ -147,21 +147,21 @@ class MeasuredCurve:
         return np.asarray(self.branch_tension[BRANCHES.index(curve)])
 
     def standard_uncertainty_of(self, curve: CurveName) -> Floats:
-        """Of that mean, type A alone, shape (n_strain,). [N]."""
+        """Type A uncertainty of that mean, shape (n_strain,). [N]."""
         if curve == "midline":
             return self.midline_standard_uncertainty
         return np.asarray(self.branch_standard_uncertainty[BRANCHES.index(curve)])
 
     def contribution_of(self, curve: CurveName) -> Floats:
-        """Of the shared errors to that mean, signed, shape (n_component, n_strain). [N]."""
+        """Signed contributions of the shared errors to that mean, (n_component, n_strain). [N]."""
         return np.asarray(self.contribution[:, CURVES.index(curve)])
 
     def curves(self) -> tuple[CurveName, ...]:
-        """Curves that were measured anywhere."""
+        """Curves with any measured values."""
         return tuple(name for name in CURVES if np.isfinite(self.tension_of(name)).any())
 
     def independent_uncertainty(self) -> Floats:
-        """Type A of the judged curve that no two strains share, shape (n_strain,). [N]."""
+        """Type A of the judged curve without the shared part, shape (n_strain,). [N]."""
         whole = self.standard_uncertainty_of(self.judged) ** 2
         common = np.sum(self.scatter_contribution**2, axis=0)
         return np.asarray(np.sqrt(np.maximum(whole - common, 0.0)))
@@ -177,7 +177,7 @@ _MOST_ROWS = 1000
 @dataclass(frozen=True)
 @read_only_arrays
 class _BranchSamples:
-    """Samples that are finite and belong to a branch."""
+    """Finite samples that belong to a branch."""
 
     strain: Floats
     tension: Floats
@@ -205,7 +205,7 @@ def _select_samples(
     branch: ArrayLike | None,
     break_in_cycles: int,
 ) -> _BranchSamples:
-    """Samples that are finite and belong to a branch, each with its cycle and branch.
+    """Finite samples that belong to a branch, each with its cycle and branch.
 
     Examples
     --------
@@ -252,7 +252,7 @@ def _select_samples(
             found=f"{n_cycles} cycles, {break_in_cycles} of them break-in",
             needed="at least one cycle more than break_in_cycles",
         )
-    # of a long test there are samples of some cycles alone: each of those is one, and no other
+    # a long test has samples of some cycles only: these are counted one by one
     there = np.flatnonzero(np.bincount(number[(number > 0) & (number <= n_cycles)]))
     pooled = -(-there.size // _MOST_ROWS)
     k = np.searchsorted(there, number[use]) // pooled
@@ -277,10 +277,10 @@ def _pull(tension: Floats, break_in_cycles: int) -> tuple[Integers, Integers]:
     return ascending, ascending
 
 
-# a centre further than this beyond the last sample would be extrapolated, not read
+# a centre farther than this beyond the last sample would be extrapolated
 _BEYOND = 0.05
 
-# of the range of the samples: a slope from bin to bin is not quite that within the last one
+# share of the range of the samples: the slope between bins differs from that within the last bin
 _OUTSIDE = 0.05
 
 
@@ -374,16 +374,16 @@ def _fill_cells(
 
 
 def _centre_weights(cells: _Cells) -> Floats:
-    """What the tension at a centre takes from the means of its own bin and of the two beside it.
+    """Weights of the means of a bin and its two neighbours in the tension at its centre.
 
     Notes
     -----
-    The tension at a centre is moved there from the means by slope and bend, both of which are
-    differences of means: it is linear in them.
+    The means are moved to the centre by slope and curvature, both of which are differences of
+    means: the tension at the centre is linear in them.
 
     Examples
     --------
-    Means of three samples that lie at the centres: the middle one is taken as it is.
+    Means of three samples that lie at the centres: the middle one is used unchanged.
 
     >>> cells, _ = _fill_cells(
     ...     np.array([0.1, 0.2, 0.3]), np.zeros(3), row=np.zeros(3, int), n_rows=1, step=0.1
@@ -399,7 +399,7 @@ def _centre_weights(cells: _Cells) -> Floats:
     is_middle = has_before & has_after
     both = before + after
     bend = (offset**2 - cells.spread) / 2
-    # of the rise from the bin below to this one, and from this one to the bin above
+    # of the increase from the bin below to this one, and from this one to the bin above
     of_before = np.where(is_middle, -(offset * after + 2 * bend) / both, -offset)
     of_after = np.where(is_middle, -(offset * before - 2 * bend) / both, -offset)
     of_before = np.where(has_before, of_before / before, 0.0)
@@ -414,12 +414,12 @@ def _centre_weights(cells: _Cells) -> Floats:
 
 
 def _tension_at_centres(cells: _Cells) -> Floats:
-    """Tension at the bin centres, by the slope and bend through the neighbouring bins.
+    """Tension at the bin centres, with slope and curvature from the neighbouring bins.
 
     Notes
     -----
-    A bend that is not that of the curve (bins far wider than it) moves a mean out of all
-    samples; no test measured that, and the value stays among them.
+    In bins that are too wide for the curve the correction could move a mean beyond all samples;
+    no test measured that, so the value is limited to their range.
 
     Examples
     --------
@@ -449,7 +449,7 @@ def _reading_of(
 
     Examples
     --------
-    A straight line is read as it is.
+    A straight line is read unchanged.
 
     >>> place, row = np.linspace(0.0, 0.5, 600), np.zeros(600, int)
     >>> cells, centre = _fill_cells(place, place, row=row, n_rows=1, step=0.1)
@@ -469,7 +469,7 @@ def _reading_of(
     part = of_node - left
     weight = np.zeros(n_bins * wide)
     for side, of_rows in enumerate(_centre_weights(cells)):
-        # the bin whose tension takes its share from the bin of the sample
+        # the bin to whose tension the bin of the sample contributes
         taker = place + 1 - side
         known = (taker >= 0) & (taker < n_bins)
         rows, takers, its = row[known], taker[known], place[known]
@@ -482,9 +482,9 @@ def _reading_of(
     return _Reading(node, weight.reshape(n_bins, wide))
 
 
-_POOLED_FREEDOM = 10.0  # what the scatter of the whole branch weighs beside that of one bin
+_POOLED_FREEDOM = 10.0  # weight of the scatter of the whole branch relative to that of one bin
 
-_LEAST_SHARE = 0.5  # of the cycles, that have to visit a bin
+_LEAST_SHARE = 0.5  # of the cycles have to visit a bin
 
 _CUBIC = 4  # coefficients
 
@@ -492,20 +492,20 @@ _ROUNDING = 1e-12
 
 
 def _bin_noise(cells: _Cells, tension: Floats) -> Floats:
-    """Variance of the tension of each bin by noise alone.
+    """Variance of the tension of each bin from noise alone.
 
-    The greater of two: the scatter of samples about the line in their bin, as means are moved
-    to the centre (half a bin at the end of a branch is moved by a slope of its own), and what
-    third differences from bin to bin leave, which sees noise that is slower than the samples.
+    The greater of two: the scatter of samples about the line in their bin, with the weights that
+    move means to the centre (at the end of a branch half a bin, with its own slope), and the
+    variance from third differences between bins, which includes noise slower than the samples.
 
     Notes
     -----
     The third difference of white noise of variance v has the variance 20 v; its median is
-    taken, so that a kink does not count.
+    used, so that a kink has no effect.
 
     Examples
     --------
-    Without noise there is none.
+    Without noise the variance is zero.
 
     >>> from reduction.prediction.measured_curve import _fill_cells, _tension_at_centres
     >>> place = np.linspace(0, 1, 1001)
@@ -530,13 +530,13 @@ def _branch_scatter(tension: Floats, noise: Floats) -> tuple[Floats, Floats]:
 
     Notes
     -----
-    The scatter of a few cycles at one strain is a poor estimate, and the least of a hundred
-    of them is far too small; it is pooled with that of the whole branch, which counts as ten
+    The scatter of a few cycles at one strain is a poor estimate, and the least of a hundred such
+    estimates is far too small; it is pooled with that of the whole branch, which counts as ten
     degrees of freedom.  It is never below the noise.
 
     Examples
     --------
-    Cycles at 9 and 11 N: scatter 2 N2, of the mean 1 N2.
+    Cycles at 9 and 11 N: variance 2 N2, that of the mean 1 N2.
 
     >>> mean, variance = _branch_scatter(np.array([[[9.0]], [[11.0]]]), np.zeros((2, 1, 1)))
     >>> print(mean, variance)
@@ -558,10 +558,10 @@ def _branch_scatter(tension: Floats, noise: Floats) -> tuple[Floats, Floats]:
 
 
 def _shared_scatter(tension: Floats, mean: Floats) -> tuple[Floats, Floats]:
-    r"""What the scatter of the cycles has in common over strain, and what is left of the cycles.
+    r"""Scatter of the cycles that is correlated over strain, and the rest.
 
-    Deviations from the mean are taken apart into a cubic over strain and the rest; the
-    covariance of the coefficients :math:`b` over :math:`n` cycles gives the contributions,
+    Deviations from the mean are split into a cubic over strain and the rest; the covariance of
+    the coefficients :math:`b` over :math:`n` cycles gives the contributions,
 
     .. math:: \frac{\mathrm{cov}(b)}{n} - \frac{v}{n} I = \sum_k q_k q_k^T, \qquad c_k = B q_k
 
@@ -569,16 +569,16 @@ def _shared_scatter(tension: Floats, mean: Floats) -> tuple[Floats, Floats]:
 
     Notes
     -----
-    A cycle lies high or low as a whole, or turns: the hose softens, warms, or starts from
-    another length. The few directions in which it does are those in which numbers of a hose
-    are fitted, and there the scatter does not average out over strain.  Directions whose
-    variance noise alone would reach are dropped (the edge of [4]_).  The variance of a few
-    cycles is itself uncertain: contributions are widened by the ratio of Student's to the
-    normal quantile (1.15 for ten cycles, 2.2 for three).
+    A whole cycle lies high or low, or tilts: the hose softens, warms, or starts from another
+    length. The fitted hose parameters respond to these few directions, in which the scatter does
+    not average out over strain.  Directions with a variance that noise alone could reach are
+    dropped (the edge of [4]_).  The variance of a few cycles is itself uncertain: contributions
+    are widened by the ratio of Student's t to the normal quantile (1.15 for ten cycles, 2.2 for
+    three).
 
     Examples
     --------
-    Eleven cycles that lie apart by 1 N everywhere: scatter 3.3 N, of the mean 1 N, widened 14 %.
+    Eleven cycles 1 N apart everywhere: scatter 3.3 N, of the mean 1 N, widened by 14 %.
 
     >>> cycles = np.arange(-5.0, 6.0)[:, None] + np.zeros(50)
     >>> parts, rest = _shared_scatter(cycles, np.zeros(50))
@@ -606,11 +606,11 @@ def _shared_scatter(tension: Floats, mean: Floats) -> tuple[Floats, Floats]:
     return (spread * (basis @ common)).T, tension - coefficient @ common @ (basis @ common).T
 
 
-_AT_AN_END = 5  # points whose straight line goes on beyond an end
+_AT_AN_END = 5  # points of the straight line that is continued beyond an end
 
 
 class _CurveErrors(NamedTuple):
-    """What shared errors do to points of two branches, shape (n_component, 2, n_strain).
+    """Effect of shared errors at points of two branches, shape (n_component, 2, n_strain).
 
     ``tension`` at the strain of the point [N], ``strain`` at its tension [1].
     """
@@ -622,22 +622,22 @@ class _CurveErrors(NamedTuple):
 @dataclass(frozen=True)
 @read_only_arrays
 class SharedErrors:
-    """Errors that all samples of a test share, each one standard uncertainty above zero.
+    """Errors that all samples of a test share, each for plus one standard uncertainty.
 
-    An error of tension is known by the tension at which it is, one of strain by the strain:
-    either can be read between and just beyond the points.
+    An error of tension is a function of tension, one of strain a function of strain: either can
+    be evaluated between and just beyond the points.
 
     Parameters
     ----------
     component : tuple of Component, length n_component
-        Each once.
+        Each only once.
     strain : ndarray, shape (n_point,)
-        Rising. [1]
+        Increasing. [1]
     tension : ndarray, shape (2, n_point)
-        Of both branches at these strains, NaN where not known. [N]
+        Tension of both branches at these strains, NaN where not known. [N]
     tension_error : ndarray, shape (n_component, 2, n_point)
-        Logged less true at one strain; NaN where not known. A branch of which nothing is known
-        has the errors of the other. [N]
+        Logged less true at one strain; NaN where not known. A branch without known errors has those
+        of the other. [N]
     strain_error : ndarray, shape (n_component, 2, n_point)
         Logged less true at one tension; likewise. [1]
     """
@@ -669,7 +669,7 @@ class SharedErrors:
 
     @staticmethod
     def _known(at: Floats, error: Floats, branch: int) -> tuple[Floats, Floats]:
-        """Points of a branch in rising order; of the other one where it has none."""
+        """Points of a branch in rising order; of the other branch where it has none."""
         for own in (branch, 1 - branch):
             there = np.isfinite(at[own]) & np.isfinite(error[own])
             if there.any():
@@ -690,7 +690,7 @@ def constant_errors(
 
     Notes
     -----
-    Each is one error ([5]_).
+    Each is a single error ([5]_).
 
     Examples
     --------
@@ -721,7 +721,7 @@ def constant_errors(
 
 
 def pressure_errors(shared: SharedErrors | None, gauge: float) -> SharedErrors:
-    """Shared errors of a curve of fill pressure: those of strain, and the zero of the gauge.
+    """Shared errors of a curve of fill pressure: errors of strain, and the zero of the gauge.
 
     Examples
     --------
@@ -742,7 +742,7 @@ def pressure_errors(shared: SharedErrors | None, gauge: float) -> SharedErrors:
 
 
 def error_words(component: Component) -> str:
-    """What an error is called in a note.
+    """Name of an error in a note.
 
     Examples
     --------
@@ -755,7 +755,7 @@ def error_words(component: Component) -> str:
 
 
 def read_along(at: Floats, known: Floats, values: Floats) -> Floats:
-    """Values between known points on straight lines, and beyond them on the line of the last five.
+    """Linear interpolation between known points, and beyond them the line of the last five.
 
     Examples
     --------
@@ -796,37 +796,36 @@ def measured_curve(
     .. math:: T = \bar T - T' (\bar\varepsilon - \varepsilon_0)
               + \tfrac{1}{2} T'' [(\bar\varepsilon - \varepsilon_0)^2 - s^2],
 
-    slope and bend from the means of the two neighbouring bins, :math:`s^2` the variance of
+    slope and curvature from the means of the two neighbouring bins, :math:`s^2` the variance of
     strain in the bin.
 
     Notes
     -----
-    *Bias.* A mean over a bin is high by a 24th of its bend; the third term takes that off, so
-    that a parabola comes back exactly.  Where the cords pick up, the slope jumps and the curve
-    is rounded over one bin; ``reading`` says how.  A bin at the end of a branch has one neighbour
-    and no bend.  No value lies beyond the samples that it is read from.
+    *Bias.* A mean over a bin is too high by a 24th of its curvature; the third term corrects this,
+    so a parabola is reproduced exactly.  Where the cords pick up, the slope jumps and the curve
+    is rounded over one bin, as described by ``reading``.  A bin at the end of a branch has one
+    neighbour and no curvature.  No value lies beyond the samples from which it is read.
 
     *End.* The last samples rarely reach the centre of their bin.  Where they do not, the curve
-    goes on to the last sample, by the mean of those samples and the slope from the bin below.
+    continues to the last sample, with the mean of those samples and the slope from the bin below.
 
     *Uncertainty* of the means is type A: scatter over the cycles, and for a single pull the
-    noise in the bins and from bin to bin.  Where cycles lie high or low as a whole, that part
-    is kept as signed contributions, since it does not average out over strain.  What is wrong
-    alike with all samples is signed contributions too: what the curve is wrong by if the
-    instrument reads one standard uncertainty high.  A strain that is read high moves the curve
-    to the right: minus the slope times it.  The noise of a reading is no such thing: it is in
-    the scatter.
+    noise in the bins and between bins.  Where whole cycles lie high or low, that part is kept as
+    signed contributions, since it does not average out over strain.  Errors common to all samples
+    are signed contributions too: the error of the curve if the instrument reads one standard
+    uncertainty high.  A strain that is read high moves the curve to the right: minus the slope
+    times it.  The noise of a reading is not among them: it is in the scatter.
 
     *NaN.* A sample that is missing in either series is left out; a bin is NaN where a branch
-    has no sample, or only samples beside its centre with nothing beyond; a mean is NaN where
-    fewer than half of the cycles came.  Strains below zero are left out: no hose is
+    has no sample, or only samples on one side of its centre with none beyond; a mean is NaN where
+    fewer than half of the cycles reached it.  Negative strains are left out, since no hose is
     predicted there.
 
     More than 1000 cycles are kept as means of consecutive ones.
 
     Examples
     --------
-    Two cycles of a parabola come back exactly, ascending 10 N above descending.
+    Two cycles of a parabola are reproduced exactly, ascending 10 N above descending.
 
     >>> stroke = np.linspace(0.0, 0.5, 401)
     >>> strain = np.tile(np.concatenate([stroke, stroke[::-1]]), 2)
@@ -946,7 +945,7 @@ def _end_of_curve(
 
 
 def _contributions(strain: Floats, tension: Floats, shared: SharedErrors) -> tuple[Floats, Floats]:
-    """Errors of the branches and their middle in tension, and of the branches in strain."""
+    """Errors in tension of both branches and their middle, and errors in strain of the branches."""
     errors = shared.at(strain, tension)
     slope = np.zeros(tension.shape)
     for branch, curve in zip(slope, tension, strict=True):

@@ -4,18 +4,18 @@ With :math:`A_0` the area at rest and :math:`E` Young's modulus at small strain,
 
 =================  ===============================================================
 neo-hookean        :math:`\tfrac13 A_0 E (\lambda - \lambda^{-2})`
-linear             :math:`A_0 E (\lambda - 1)`: nominal stress goes with strain
-linear-current     :math:`(A_0/\lambda) E (\lambda - 1)`: true stress goes with strain
-hencky             :math:`(A_0/\lambda) E \ln\lambda`: true stress goes with true strain
+linear             :math:`A_0 E (\lambda - 1)`: nominal stress is proportional to strain
+linear-current     :math:`(A_0/\lambda) E (\lambda - 1)`: true stress is proportional to strain
+hencky             :math:`(A_0/\lambda) E \ln\lambda`: true stress is proportional to true strain
 =================  ===============================================================
 
-All begin with the slope :math:`A_0 E`; at a stretch ratio of 2.46 they have come to 0.76, 1.46,
-0.59 and 0.37 of :math:`A_0 E`.  Only the neo-Hookean law belongs to a solid in three dimensions
-that keeps its volume; linear-current levels off at :math:`A_0 E`, and the Hencky load *falls*
-beyond a stretch ratio of e.
+All have the initial slope :math:`A_0 E`; at a stretch ratio of 2.46 they reach 0.76, 1.46, 0.59 and
+0.37 of :math:`A_0 E`.  Only the neo-Hookean law is that of a three-dimensional solid of constant
+volume; linear-current levels off at :math:`A_0 E`, and the Hencky load *falls* beyond a stretch
+ratio of e.
 
 The report prints the load as :math:`A_r E_r \lambda_h`, which is :math:`A_r E_r` on the hose at
-rest; "linear" is what is left of it when the load at rest is taken away.
+rest; "linear" is this law without the load at rest.
 
 References
 ----------
@@ -48,16 +48,16 @@ def rubber_tension(
     stretch_ratio : array_like, shape (...)
         :math:`\lambda`. [1]
     area : array_like, shape (...)
-        Of the wall at rest. [m2]
+        Area of the wall at rest. [m2]
     modulus : array_like, shape (...)
         Young's modulus at small strain. [Pa]
     law : {"neo-hookean", "linear", "linear-current", "hencky"}
-        See the table of the module.
+        See the table in the module docstring.
 
     Returns
     -------
     tension : ndarray, shape (...)
-        Below zero in compression. [N]
+        Negative in compression. [N]
 
     Raises
     ------
@@ -82,11 +82,11 @@ def rubber_tension(
 
 
 def tension_into(out: Floats, stretch: Floats, stiffness: Floats, law: RubberLaw) -> Floats:
-    """Write the axial load of the wall into an array; nothing is checked but the law.
+    """Write the axial load of the wall into an array; only the law is checked.
 
     Notes
     -----
-    As `rubber_tension`, for many hoses at once: no array is made on the way.
+    As `rubber_tension`, for many hoses at once, without temporary arrays.
 
     Examples
     --------
@@ -116,12 +116,12 @@ def tension_into(out: Floats, stretch: Floats, stiffness: Floats, law: RubberLaw
 def rubber_energy(
     stretch_ratio: ArrayLike, *, area: ArrayLike, modulus: ArrayLike, law: RubberLaw
 ) -> Floats:
-    r"""Energy in the wall, a length at rest: the integral of the tension over strain.
+    r"""Energy in the wall per rest length: the integral of the tension over strain.
 
     .. math:: \tfrac16(\lambda - 1)^2(1 + 2/\lambda), \quad \tfrac12(\lambda - 1)^2, \quad
        \lambda - 1 - \ln\lambda, \quad \tfrac12\ln^2\lambda
 
-    times :math:`A_0 E`, in the order of the table of the module.
+    times :math:`A_0 E`, in the order of the table in the module docstring.
 
     Notes
     -----
@@ -129,7 +129,7 @@ def rubber_energy(
 
     Examples
     --------
-    At a stretch ratio of 2 the neo-Hookean wall holds 1/6 (4 + 1 - 3) of A E:
+    At a stretch ratio of 2 the neo-Hookean wall stores 1/6 (4 + 1 - 3) of A E:
 
     >>> print(rubber_energy(2.0, area=1, modulus=3, law="neo-hookean").round(12))
     1.0
@@ -155,7 +155,7 @@ def rubber_stiffness(
     .. math:: \tfrac13(1 + 2\lambda^{-3}), \quad 1, \quad \lambda^{-2}, \quad
        (1 - \ln\lambda)\lambda^{-2}
 
-    times :math:`A_0 E`, in the order of the table of the module.
+    times :math:`A_0 E`, in the order of the table in the module docstring.
 
     Notes
     -----

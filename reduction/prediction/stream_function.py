@@ -9,8 +9,8 @@ velocities over :math:`\sqrt{g d}`,
    \psi(x, \eta) = -Q, \qquad
    \tfrac12 (u^2 + w^2) + \eta = R \text{ at } z = \eta
 
-The series meets Laplace's equation and the bed at every N; the two conditions of the surface
-hold at N + 1 points from crest to trough.  The only approximation is N.
+The series satisfies Laplace's equation and the condition at the bed for every N; the two conditions
+at the surface hold at N + 1 points from crest to trough.  The only approximation is N.
 
 References
 ----------
@@ -29,28 +29,28 @@ import numpy as np
 from reduction.record.errors import FitError
 from reduction.record.measurement import Floats, read_only_arrays
 
-_SIZES = (16, 32, 64, 128)  # harmonics tried, until the last is small
+_SIZES = (16, 32, 64, 128)  # numbers of harmonics, tried until the last harmonic is small
 
-_LAST = 1e-5  # of the crest, of its height and of its velocity, that the last harmonic may have
+_LAST = 1e-5  # greatest last harmonic, as a share of the height and velocity of the crest
 
-_MISS = 1e-11  # of a condition of the surface
+_MISS = 1e-11  # greatest residual of a condition at the surface
 
 _MOST_STEPS = 12  # of Newton's method at one height; five or six are enough
 
-_LEAST_RISE = 1e-2  # of the height, from one solved wave to the next
+_LEAST_RISE = 1e-2  # least increase of the height between solved waves, as a share of it
 
 
 @dataclass(frozen=True)
 @read_only_arrays
 class SteadyWave:
-    """A wave, with the depth and the velocity of long waves on it for units.
+    """A wave in units of the depth and the velocity of long waves.
 
     Parameters
     ----------
     number : float
         k d. [1]
     speed : float
-        Of the crest through water that is at rest on average, over the root of g d. [1]
+        Speed of the crest in water at rest on average, over sqrt(g d). [1]
     surface : ndarray, shape (n_harmonics,)
         Amplitudes of the cosines of the surface over the depth. [1]
     velocity : ndarray, shape (n_harmonics,)
@@ -66,33 +66,33 @@ class SteadyWave:
 def steady_wave(
     *, height: float, first_number: float, frequency: float | None, current: float
 ) -> SteadyWave:
-    """Wave of this height, and of this frequency over this current or of this wave number.
+    """Wave with this height, and this frequency over this current or this wave number.
 
     Parameters
     ----------
     height : float
         From trough to crest, over the depth. [1]
     first_number : float
-        k d of the wave number that is held, or of the linear wave where the frequency is. [1]
+        k d of the given wave number, or of the linear wave for a given frequency. [1]
     frequency : float or None
-        Angular, as a fixed point sees it, times the root of d / g; None holds the wave number. [1]
+        Angular frequency at a fixed point, times sqrt(d / g); None keeps the wave number. [1]
     current : float
-        Mean velocity of the water below the trough, over the root of g d. [1]
+        Mean velocity of the water below the trough, over sqrt(g d). [1]
 
     Raises
     ------
     FitError
-        If no such wave is found: it is higher than a wave can be, or too long for the series.
+        If there is no such wave: it is higher than a wave can be, or too long for the series.
 
     Notes
     -----
     Method of [1]_ in the form of [2]_, with its derivatives in closed form.  The height grows
-    from a low wave in steps, each from the two before it, which halve where Newton's method
-    fails.
+    from a low wave in steps, each extrapolated from the two before it, which are halved where
+    Newton's method fails.
 
     Examples
     --------
-    A low wave has the speed of the linear one, here the root of tanh(1) over 1.
+    A low wave has the speed of the linear wave, here the root of tanh(1) over 1.
 
     >>> wave = steady_wave(height=1e-4, first_number=1.0, frequency=None, current=0.0)
     >>> print(round(wave.speed, 6), round(float(np.sqrt(np.tanh(1.0))), 6))
@@ -127,7 +127,7 @@ def steady_wave(
 def _grown(
     size: int, height: float, first_number: float, frequency: float | None, current: float
 ) -> Floats | None:
-    """Solution at the full height from a low wave on; None where it is not reached."""
+    """Solution at the full height, from a low wave on; None where it is not reached."""
     low = min(0.01 * height, 1e-3 * min(1.0, 1 / first_number))
     speed = np.sqrt(np.tanh(first_number) / first_number)
     state = np.zeros(2 * size + 5)
@@ -157,7 +157,7 @@ def _solved(
     frequency: float | None,
     current: float,
 ) -> Floats | None:
-    """Newton's method on 2 N + 5 equations from a guess; None where it does not arrive."""
+    """Newton's method on 2 N + 5 equations from a guess; None where it does not converge."""
     state = state.copy()
     order, point = np.arange(1, size + 1), np.arange(size + 1)
     cosine = np.cos(np.multiply.outer(point, order) * np.pi / size)
@@ -184,7 +184,7 @@ def _solved(
             number - held_number if frequency is None else number * (speed + current) - frequency
         )
         slope = np.zeros((state.size, state.size))
-        # by the wave number: of sinh(j k eta) / cosh(j k) and of cosh(j k eta) / cosh(j k)
+        # derivatives by wave number of sinh(j k eta) / cosh(j k) and of cosh(j k eta) / cosh(j k)
         tanh = order * np.tanh(flat)
         sinh_by = order * eta[:, None] * cosh - sinh * tanh
         cosh_by = order * eta[:, None] * sinh - cosh * tanh

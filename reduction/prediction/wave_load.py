@@ -1,16 +1,16 @@
 r"""Wave, current and wind on a floating hose, by Morison's equation, classic and improved.
 
-**How deep a hose floats, from its weight**:
+**Immersion of a floating hose, from its weight**:
 
 .. math::
    S_1 = \frac{\rho_2 (S_0 - S_b) + \rho_3 S_b}{\rho_1}, \qquad
    S_1 = \frac{D^2}{8} (\beta - \sin\beta), \qquad h = D \sin^2\frac{\beta}{4}
 
-with the bore S_b, and beta the angle at the centre over the part under water (2 pi - 2 theta
+with the bore S_b, and beta the central angle of the part under water (2 pi - 2 theta
 in [1]_).
 
-**Coefficients of drag and inertia with their sources, and where a case stands among them.** With
-the greatest velocity u and the diameter D,
+**Coefficients of drag and inertia with their sources, and the flow regime.** With the greatest
+velocity u and the diameter D,
 
 .. math:: KC = \frac{u T}{D}, \qquad Re = \frac{u D}{\nu}, \qquad
           \frac{F_D}{F_I} = \frac{C_D}{\pi^2 C_M} KC
@@ -20,23 +20,23 @@ the greatest velocity u and the diameter D,
 .. math::
    f = \tfrac12 C_D \rho\, b\, (u + U) |u + U| + C_M \rho\, S\, \dot u
 
-The classic form takes the whole section, b = D and S = pi D^2/4; the improved form what is
+The classic form uses the whole section, b = D and S = pi D^2/4; the improved form uses the part
 under water, S = S_1 and b = h for the horizontal load.
 
-**Greatest and least wave load over a period, between any samples.** A Morison load is a|u|u + b
-du/dt with sums of harmonics u and du/dt of the phase.  Where u keeps its sign the derivative
+**Greatest and least wave load over a period, also between samples.** A Morison load is a|u|u + b
+du/dt with sums of harmonics u and du/dt of the phase.  Where u keeps its sign, the derivative
 
 .. math:: \pm 2 a\, u\, u' + b\, (\dot u)'
 
-is a sum of harmonics too, of twice the order, whose zeros are roots of a polynomial.  Where u
-changes its sign the derivative goes on without a jump, so that no extreme hides there.
+is also a sum of harmonics, of twice the order, whose zeros are roots of a polynomial.  Where u
+changes its sign the derivative is continuous, so no extreme is missed there.
 
-**Wind, current and wave together on a moored floating hose: the anchor force**:
+**Anchor force of a moored floating hose in wind, current and waves**:
 
 .. math:: F_P = F_{wind} + F_{wave} + F_{current}
 
-Drag goes with the square of the velocity, so that wave and current do not add: their
-velocities do.
+Drag is proportional to the square of the velocity, so the loads of wave and current do not add:
+their velocities do.
 
 References
 ----------
@@ -78,7 +78,7 @@ from reduction.record.arrays import as_finite, as_positive
 from reduction.record.errors import DataError, FitError, SettingsError
 from reduction.record.measurement import Bools, Floats, read_only_arrays
 
-_STEP = 1e-14  # last Newton step over the root, at most
+_STEP = 1e-14  # greatest last Newton step, relative to the root
 
 _MOST_STEPS = 50
 
@@ -90,7 +90,7 @@ _SERIES_TERMS = 10  # of beta - sin beta up to beta = 1: the last is below 1e-21
 @dataclass(frozen=True)
 @read_only_arrays
 class ImmersedSection:
-    """Cross section of a floating hose, still water.  Arrays have the shape (...) of the hoses.
+    """Cross section of a floating hose in still water.  Arrays have the shape (...) of the hoses.
 
     Parameters
     ----------
@@ -108,12 +108,12 @@ class ImmersedSection:
 
     @property
     def section_area(self) -> Floats:
-        """Of the whole cylinder, S_0. [m2]."""
+        """Area of the whole cylinder, S_0. [m2]."""
         return np.asarray(pi * self.outer_diameter**2 / 4)
 
     @property
     def submerged_share(self) -> Floats:
-        """Of the section. [1]."""
+        """Submerged share of the section. [1]."""
         return np.asarray(self.submerged_section_area / self.section_area)
 
     @property
@@ -123,14 +123,14 @@ class ImmersedSection:
 
     @property
     def centre_elevation(self) -> Floats:
-        """Of the axis above the surface; below zero once more than half is under. [m]."""
+        """Height of the axis above the surface; negative if more than half is submerged. [m]."""
         return np.asarray(self.outer_diameter / 2 - self.immersion_depth)
 
     @property
     def submerged_width(self) -> Floats:
-        """Of the part under water, seen from below. [m].
+        """Width of the part under water, seen from below. [m].
 
-        The chord at the waterline, and D once more than half is under.
+        The chord at the waterline, or D if more than half is submerged.
         """
         chord = 2 * np.sqrt(self.immersion_depth * self.emergent_height)
         return np.asarray(np.where(self.centre_elevation > 0, chord, self.outer_diameter))
@@ -150,8 +150,8 @@ def immerse_hose(
     -----
     Eq. (6) of [1]_.  Eq. (5) leaves out the acceleration of free fall, which cancels.
 
-    An empty hose is taken as round; a collapsible one lies flat, which [1]_, eq. 4-8 and 11, Table
-    3 says and does not compute.
+    An empty hose is assumed round; a collapsible one lies flat, which [1]_, eq. 4-8 and 11, Table
+    3 mentions but does not compute.
 
     Examples
     --------
@@ -199,15 +199,15 @@ def _immersion_depth_of(submerged_section_area: ArrayLike, outer_diameter: Array
 
     Notes
     -----
-    Eq. (8) of [1]_ in the angle beta of the smaller one of the two segments, which is
-    Kepler's equation on its edge.  The start, beta^3 = 6 (beta - sin beta), is below the root;
-    the first step goes above it, and beta - sin beta is convex up to pi, so that the steps
-    behind it fall without passing the root.  Below beta = 1 the difference is summed as a
-    series: it would lose its digits.
+    Eq. (8) of [1]_ in the angle beta of the smaller of the two segments, which is Kepler's
+    equation on its edge.  The start, beta^3 = 6 (beta - sin beta), is below the root; the first
+    step goes above it, and beta - sin beta is convex up to pi, so the following steps decrease
+    without passing the root.  Below beta = 1 the difference is summed as a series, since it would
+    lose digits.
 
     Examples
     --------
-    Half a circle, and nearly none.
+    Half a circle, and almost nothing.
 
     >>> print(_immersion_depth_of([np.pi / 8, 1e-12], 1.0))
     [5.00000000e-01 8.25481814e-09]
@@ -265,7 +265,7 @@ def _refuse(bad: Bools, problem: str, values: Floats, needed: str) -> None:
 
 SEAWATER_VISCOSITY = 1.1892e-6
 
-"""Kinematic, of standard seawater at 15 deg C ([3]_). [m2 s-1]"""
+"""Kinematic viscosity of standard seawater at 15 deg C ([3]_). [m2 s-1]"""
 
 GREATEST_DIAMETER_TO_LENGTH = 0.2
 
@@ -304,7 +304,7 @@ PUBLISHED_COEFFICIENTS = (
     ),
 )  # fmt: skip
 
-"""Table 2 of [1]_; none is for a cylinder that floats."""
+"""Table 2 of [1]_; no row is for a floating cylinder."""
 
 CODE_OF_HYDROLOGY = _PublishedCoefficients(
     "any", (1.2, 1.2), 2.0,
@@ -318,7 +318,7 @@ CODE_OF_HYDROLOGY = _PublishedCoefficients(
 @dataclass(frozen=True)
 @read_only_arrays
 class _FlowRegime:
-    """Where a hose in a wave stands; arrays have the shape (...) of the diameters."""
+    """Flow regime of a hose in a wave; arrays have the shape (...) of the diameters."""
 
     greatest_velocity: float
     keulegan_carpenter_number: Floats
@@ -331,7 +331,7 @@ class _FlowRegime:
 def _keulegan_carpenter_number(
     greatest_velocity: ArrayLike, wave_period: ArrayLike, outer_diameter: ArrayLike
 ) -> Floats:
-    """Way of the water over the diameter, times pi in a sine.
+    """Path of the water over the diameter, times pi for a sinusoid.
 
     Notes
     -----
@@ -339,8 +339,7 @@ def _keulegan_carpenter_number(
 
     Examples
     --------
-    The hose of [1]_ in its 6 m deep wave, 1.15 m/s: far in the region of drag,
-    yet not steady.
+    The hose of [1]_ in its 6 m deep wave, 1.15 m/s: far in the drag regime, yet not steady.
 
     >>> print(_keulegan_carpenter_number(1.15, 3.57, 0.114).round(1))
     36.0
@@ -356,7 +355,7 @@ def _reynolds_number(
     *,
     kinematic_viscosity: float = SEAWATER_VISCOSITY,
 ) -> Floats:
-    """Inertia of the flow over its friction.
+    """Ratio of inertia to friction in the flow.
 
     Notes
     -----
@@ -378,7 +377,7 @@ def _drag_to_inertia(
     drag_coefficient: float = CODE_OF_HYDROLOGY.drag_coefficient[0],
     inertia_coefficient: float = CODE_OF_HYDROLOGY.inertia_coefficient,
 ) -> Floats:
-    """Greatest drag over greatest inertia of a whole cylinder in a sine.
+    """Greatest drag over greatest inertia of a whole cylinder in a sinusoidal flow.
 
     Notes
     -----
@@ -405,12 +404,12 @@ def _flow_regime(
     inertia_coefficient: float = CODE_OF_HYDROLOGY.inertia_coefficient,
     kinematic_viscosity: float = SEAWATER_VISCOSITY,
 ) -> _FlowRegime:
-    """Numbers by which coefficients are chosen, of hoses in one wave.
+    """Numbers by which coefficients are chosen, for hoses in one wave.
 
     Notes
     -----
-    Of the horizontal velocity, the current included; some sources give KC for the wave alone
-    and the current apart.  Table 2 of [1]_ gives no range of KC or Re for its numbers,
+    For the horizontal velocity, including the current; some sources give KC for the wave alone
+    and treat the current separately.  Table 2 of [1]_ gives no range of KC or Re for its values,
     though [2]_ shows that they depend on KC.
 
     Examples
@@ -429,7 +428,7 @@ def _flow_regime(
         greatest_velocity=speed,
         keulegan_carpenter_number=number,
         reynolds_number=reynolds,
-        # Re / KC, which has no velocity in it
+        # Re / KC, which does not contain the velocity
         frequency_parameter=as_positive("outer_diameter", outer_diameter) ** 2
         / (kinematic_viscosity * period),
         drag_to_inertia=_drag_to_inertia(
@@ -451,7 +450,7 @@ SEAWATER_DENSITY = 1025.0
 @dataclass(frozen=True)
 @read_only_arrays
 class _LoadFactors:
-    """What u|u| and the acceleration are multiplied with; arrays have the shape (...).
+    """Factors of u|u| and of the acceleration; arrays have the shape (...).
 
     Drag factors are in [kg m-2], inertia factors in [kg m-1]; the classic load has the same
     in both directions.
@@ -487,12 +486,12 @@ def load_factors(
     water_density: float = SEAWATER_DENSITY,
     vertical_width: VerticalWidth = "submerged",
 ) -> _LoadFactors:
-    """Drag and inertia of a section per velocity squared and per acceleration.
+    """Drag per velocity squared and inertia per acceleration, for a section.
 
     Notes
     -----
-    Eq. (9) of [1]_ takes the height h for the vertical load too.  Water that rises meets the
-    width, which is D for its hose: h understates the drag by 1 - h/D, 16.6 %.
+    Eq. (9) of [1]_ uses the height h for the vertical load too.  Rising water meets the width,
+    which is D for its hose: h underestimates the drag by 1 - h/D, 16.6 %.
 
     Examples
     --------
@@ -526,19 +525,19 @@ def wave_load(
     position: float = 0.0,
     vertical_width: VerticalWidth = "submerged",
 ) -> _WaveLoad:
-    """Load of a wave, and of a current with it, on a hose that lies along the crest.
+    """Load of a wave, and a current with it, on a hose that lies along the crest.
 
     Notes
     -----
-    Eq. (1) and (10) of [1]_.  The hose is held in place with its waterline at the mean level,
-    as there; one that rides the wave meets less.  Drag is taken direction by direction; on a
-    round section wholly under water it would go with the speed of both together, which is
-    more.  Lift and the change of buoyancy are left out.
+    Eq. (1) and (10) of [1]_.  The hose is fixed with its waterline at the mean level, as there; a
+    hose that rides the wave has less load.  Drag is computed for each direction separately; on a
+    fully submerged round section it would depend on the resultant speed, which is larger.  Lift and
+    the change of buoyancy are left out.
 
     Examples
     --------
-    Table 7 of [1]_ prints 84.21 and 70.25 N/m at time 0; with a length that fits the period, the
-    hose at its own depth and 1025 kg/m3 it is this.
+    Table 7 of [1]_ prints 84.21 and 70.25 N/m at time 0; with a length that matches the period, the
+    hose at its own depth and 1025 kg/m3 the result is this.
 
     >>> from reduction.prediction.wave_load import immerse_hose
     >>> from reduction.prediction.wave_theory import airy_wave
@@ -586,7 +585,7 @@ def wave_load(
 class _LoadRange:
     """Greatest and least value over a period; arrays have the shape (...).
 
-    Loads are in [N m-1]; times in [s], from 0 to the period, of one place where it happens.
+    Loads are in [N m-1]; times in [s], from 0 to the period, of one occurrence.
     """
 
     maximum: Floats
@@ -602,7 +601,7 @@ class _LoadRange:
 
 @dataclass(frozen=True)
 class _LoadExtremes:
-    """Of the improved load and of the classic one, in both directions."""
+    """Extremes of the improved and the classic load, in both directions."""
 
     horizontal: _LoadRange
     vertical: _LoadRange
@@ -625,7 +624,7 @@ def _find_extremes(
 
     Notes
     -----
-    Table 5 of [1]_ is the extreme on a grid of 0.1 s up to 5 s, its Table 6 up to 10 s; both
+    Table 5 of [1]_ has the extreme on a grid of 0.1 s up to 5 s, its Table 6 up to 10 s; both
     miss the extremes of their own formula, by up to 0.4 N/m.
 
     Examples
@@ -682,11 +681,11 @@ def _load_range(
 
     Notes
     -----
-    The load is tried at the phases of *all* roots of both branches with its true sign.  The
-    extremes are among them, and no other phase can give more; so no root has to be judged.
+    The load is computed at the phases of *all* roots of both branches with its true sign.  The
+    extremes are among them, and no other phase gives more, so no root has to be judged.
 
-    A wave of more than 20 harmonics is tried at 256 phases per harmonic, since the time of the
-    roots goes with the cube of their number.
+    A wave of more than 20 harmonics is computed at 256 phases per harmonic, since the time for the
+    roots grows with the cube of their number.
 
     Examples
     --------
@@ -753,19 +752,19 @@ class _LoadDifference:
 def _load_difference(
     load: _WaveLoad, extremes: _LoadExtremes, *, minimum_share: float = 0.1
 ) -> _LoadDifference:
-    """How much less the improved load is than the classic one, where that means something.
+    """Reduction of the improved load relative to the classic one, where it is defined.
 
     Notes
     -----
-    Eq. (18) and (19) of [1]_.  Drag and inertia vanish at different times and are cut by
+    Eq. (18) and (19) of [1]_.  Drag and inertia vanish at different times and are reduced by
     different shares, so the two loads pass zero at different times, where P of eq. (19) is
-    any number: 35.85 % in Table 7 is at 8 % of the greatest load.  Its mean over a period does
-    not exist, and that of Table 8 depends on the times chosen.  The differences of the
-    extremes have no such trouble.
+    arbitrary: 35.85 % in Table 7 occurs at 8 % of the greatest load.  Its mean over a period does
+    not exist, and that of Table 8 depends on the chosen times.  The differences of the extremes
+    do not have this problem.
 
     Examples
     --------
-    The drag is cut by 1 - h/D and the inertia by 1 - S1/S0, hence the load by what is between.
+    Drag is reduced by 1 - h/D and inertia by 1 - S1/S0, the load by a value between.
 
     >>> from reduction.prediction.wave_load import _find_extremes
     >>> from reduction.prediction.wave_load import immerse_hose
@@ -803,7 +802,7 @@ def _cut(improved: Floats, classic: Floats) -> Floats:
 
 AIR_DENSITY = 1.225
 
-"""At sea level, 15 deg C ([4]_). [kg m-3]"""
+"""Density of air at sea level, 15 deg C ([4]_). [kg m-3]"""
 
 
 @dataclass(frozen=True)
@@ -830,8 +829,8 @@ def _wind_load(
 
     Notes
     -----
-    [1]_ names the load in eq. (4) and gives no form; this is drag on D - h.  A wind
-    stated for a height of 10 m is larger than that at the hose.
+    [1]_ names the load in eq. (4) but gives no formula; this is drag on D - h.  A wind speed stated
+    for a height of 10 m is larger than that at the hose.
 
     Examples
     --------
@@ -856,7 +855,7 @@ def _current_load(
 
     Notes
     -----
-    The drag of eq. (9) of [1]_ with the current for the velocity.
+    The drag of eq. (9) of [1]_ with the velocity of the current.
 
     Examples
     --------
@@ -882,14 +881,14 @@ def _anchor_force(
     water_density: float = SEAWATER_DENSITY,
     air_density: float = AIR_DENSITY,
 ) -> _AnchorForce:
-    """Greatest horizontal force of wind, wave and current, added and combined.
+    """Greatest horizontal force of wind, wave and current, as a sum and combined.
 
     Notes
     -----
-    Eq. (4) of [1]_, the extreme case in which all act in one direction, adds loads; the cross
-    term 2 u U of the squared velocity is missing there, so that the sum is too low where the
-    current follows the wave, the very case meant.  Where the current opposes the wave the
-    term takes from the load under the crest, and the sum is too high.
+    Eq. (4) of [1]_, the extreme case with all loads in one direction, adds loads.  It lacks the
+    cross term 2 u U of the squared velocity, so the sum is too low where the current follows the
+    wave, which is the intended case.  Where the current opposes the wave, the term reduces the load
+    under the crest, and the sum is too high.
 
     Examples
     --------
@@ -942,7 +941,7 @@ def _anchor_force(
 
 
 def _larger_sum(steady: Floats, maximum: Floats, minimum: Floats) -> Floats:
-    """That extreme which with the steady force is of the larger magnitude."""
+    """The extreme that gives the larger magnitude together with the steady force."""
     return np.asarray(
         np.where(np.abs(steady + maximum) >= np.abs(steady + minimum), maximum, minimum)
     )
@@ -952,14 +951,14 @@ _SAME_LENGTH = 0.005  # between theories
 
 _SMALL_ERROR = 0.05
 
-"""Of a greatest load beside that of the stream function, which no message need state."""
+"""Error of a greatest load relative to the stream function that needs no message."""
 
 
 @dataclass(frozen=True)
 class PredictedWaveLoad:
-    """Loads per length over time, their extremes, and where the case stands.
+    """Loads per length over time, their extremes, and the flow regime.
 
-    ``elevation`` is that at which the water was taken, from the mean level up [m]; ``used`` the
+    ``elevation`` is the level of the water motion, upwards from the mean level [m]; ``used`` the
     theory that computed ``wave``.  Coefficients [1], velocities [m s-1] and length of the hose
     [m] as given.
     """
@@ -1008,7 +1007,7 @@ def predict_wave_load(
 ) -> PredictedWaveLoad:
     """Predict the load of a regular wave on a floating hose that lies along its crest.
 
-    ``auto`` is the stream function.  The error of another theory is that of its loads beside it.
+    ``auto`` is the stream function.  The error of another theory is the difference of its loads.
     """
     section = immerse_hose(
         outer_diameter=outer_diameter,
@@ -1109,11 +1108,11 @@ def predict_wave_load(
 
 
 def _error_words(used: str, found: _LoadExtremes, true: _LoadExtremes) -> list[str]:
-    """How far the greatest loads of a theory are from those of the stream function."""
+    """Difference of the greatest loads of a theory from those of the stream function."""
     said = []
     for name in ("horizontal", "vertical"):
         own, right = (float(getattr(one, name).greatest) for one in (found, true))
-        # far below the surface nothing moves
+        # far below the surface there is no motion
         if right > 0 and abs(own / right - 1) > _SMALL_ERROR:
             said.append(f"{100 * (own / right - 1):+.0f} % {name}")
     if not said:

@@ -1,18 +1,18 @@
-r"""Regular waves: dispersion, breaking, Airy and Stokes theory, which one applies.
+r"""Regular waves: dispersion, breaking, Airy and Stokes theory, and the choice of a theory.
 
-**Length of a wave from its period, and back, over still water or a current.** A current U along the
-wave shifts the period that a fixed point sees,
+**Length of a wave from its period, and vice versa, over still water or a current.** A current U
+along the wave changes the period at a fixed point,
 
 .. math:: (\omega - k U)^2 = g k \tanh k d
 
-An opposing current faster than the group of waves stops them: no length answers then.
+An opposing current faster than the group velocity stops the waves: there is no length then.
 
-**How high a wave can be before it breaks**:
+**Greatest height of a wave before it breaks**:
 
 .. math:: H_b = \min(0.142\, L \tanh k d,\; 0.78\, d)
 
-**Sums of harmonics of a phase, and the phases at which such a sum vanishes.** A real sum of
-harmonics up to order M is written with complex coefficients,
+**Sums of harmonics of a phase, and their zeros.** A real sum of harmonics up to order M is written
+with complex coefficients,
 
 .. math:: f(\theta) = \sum_{m=-M}^{M} c_m e^{i m \theta}, \qquad c_{-m} = \overline{c_m}
 
@@ -51,10 +51,10 @@ For m = 1 it is the solitary wave, H sech^2 over still water with c^2 = g (d + H
 
 The steady wave of `reduction.prediction.stream_function`, for waves that do not break.
 
-**Which wave theory applies, and how far a wave is from the limits of each.** With the Ursell number
+**Which wave theory applies, and the distance of a wave from its limits.** With the Ursell number
 Ur = H L^2 / d^3 and the amplitudes a_1, a_2 of the first and second harmonic of Stokes' surface,
-a_2 / a_1 goes to 3 Ur / (32 pi^2) over shallow water; where it passes 1/4, at Ur = 8 pi^2 / 3 =
-26.3, the trough has a crest of its own.
+a_2 / a_1 tends to 3 Ur / (32 pi^2) over shallow water; where it exceeds 1/4, at Ur = 8 pi^2 / 3 =
+26.3, the trough has a secondary crest.
 
 References
 ----------
@@ -101,11 +101,11 @@ from reduction.record.measurement import Floats, read_only_arrays
 STANDARD_GRAVITY = 9.80665
 """Standard acceleration of free fall. [m s-2]"""
 
-_STEP = 1e-14  # last Newton step over the root, at most
+_STEP = 1e-14  # greatest last Newton step, relative to the root
 
 _RESIDUAL = 4 * float(np.finfo(np.float64).eps)
 
-_MOST_STEPS = 100  # four or five are enough but at the very edge of blocking
+_MOST_STEPS = 100  # four or five are enough except at the limit of blocking
 
 
 def _wave_number(
@@ -121,13 +121,13 @@ def _wave_number(
     -----
     Eq. (14) of [1]_ prints k = 2 pi / T; a wave number is 2 pi / L (its tables use that).
 
-    Over still water Newton starts from the form of [2]_, which is right to 5 %.  Over a
-    current it starts from there: omega - k U - sqrt(g k tanh k d) is convex in k, so that it
-    cannot pass the wanted root, and a tangent that no longer falls proves there is none.
+    Over still water Newton's method starts from the form of [2]_, which is right to 5 %.  Over a
+    current it starts from that result: omega - k U - sqrt(g k tanh k d) is convex in k, so it
+    cannot pass the wanted root, and a tangent that no longer falls proves that there is none.
 
     Examples
     --------
-    Table 4 of [1]_ gives 20 m beside 3.57 s, the length over deep water; 3 m deep it is 16.3 m.
+    Table 4 of [1]_ has 20 m with 3.57 s, the length over deep water; 3 m deep it is 16.3 m.
 
     >>> print((2 * np.pi / _wave_number(3.57, [100.0, 6.0, 3.0])).round(2))
     [19.89 19.13 16.31]
@@ -149,7 +149,7 @@ def wave_period_of(
     current_velocity: ArrayLike = 0.0,
     gravity: float = STANDARD_GRAVITY,
 ) -> Floats:
-    """Period of the linear wave with this wave number, as a fixed point sees it.
+    """Period of the linear wave with this wave number at a fixed point.
 
     Notes
     -----
@@ -157,7 +157,7 @@ def wave_period_of(
 
     Examples
     --------
-    The 20 m of Table 4 of [1]_ do not fit its 3.57 s at either depth of its examples.
+    The 20 m of Table 4 of [1]_ do not match its 3.57 s at either depth of its examples.
 
     >>> print(wave_period_of(2 * np.pi / 20, [6.0, 3.0]).round(3))
     [3.663 4.172]
@@ -176,7 +176,7 @@ def wave_period_of(
 def _group_velocity(
     wave_number: ArrayLike, water_depth: ArrayLike, *, gravity: float = STANDARD_GRAVITY
 ) -> Floats:
-    """Speed of the energy of a linear wave through the water.
+    """Speed of the energy of a linear wave relative to the water.
 
     Notes
     -----
@@ -256,7 +256,7 @@ def _refuse_blocked(is_blocked: np.ndarray, current: Floats) -> None:
 @dataclass(frozen=True)
 @read_only_arrays
 class _WaveLengthCheck:
-    """A length and a period that were given together, against the dispersion relation."""
+    """Comparison of a given length and period with the dispersion relation."""
 
     period_of_length: Floats
     length_of_period: Floats
@@ -272,11 +272,11 @@ def _check_wave_length(
     current_velocity: ArrayLike = 0.0,
     gravity: float = STANDARD_GRAVITY,
 ) -> _WaveLengthCheck:
-    """How far a length and a period that were given together are from one wave.
+    """Mismatch of a given length and period for one wave.
 
     Notes
     -----
-    By the linear relation; a steep wave is faster, so that a few per cent may be its height.
+    By the linear relation; a steep wave is faster, so its height may explain a few per cent.
 
     Examples
     --------
@@ -316,13 +316,13 @@ def breaking_height(wave_number: ArrayLike, water_depth: ArrayLike) -> Floats:
 
     Notes
     -----
-    Not covered: a sloping bed, an opposing current and short-crested seas, which break
-    waves earlier.  NaN is refused.
+    Not covered: a sloping bed, an opposing current and short-crested seas, in which waves break
+    earlier.  NaN is refused.
 
     Examples
     --------
-    Table 1 of [1]_ asks for a height of 0.2 lengths or more where it names Stokes' theory. The
-    20 m wave of its examples breaks long before, at 0.136 lengths 6 m deep and 0.105 3 m deep.
+    Table 1 of [1]_ requires a height of 0.2 lengths or more for Stokes' theory. The 20 m wave of
+    its examples breaks long before, at 0.136 lengths 6 m deep and 0.105 3 m deep.
 
     >>> print((breaking_height(2 * np.pi / 20, [6.0, 3.0]) / 20).round(3))
     [0.136 0.105]
@@ -334,7 +334,7 @@ def breaking_height(wave_number: ArrayLike, water_depth: ArrayLike) -> Floats:
 
 
 def _refuse_breaking(*, wave_height: float, wave_number: float, water_depth: float) -> None:
-    """Raise where a wave is higher than it can be.
+    """Raise where a wave is higher than the breaking height.
 
     Notes
     -----
@@ -363,9 +363,9 @@ class WaveHarmonics:
     """Amplitudes of the first harmonic and those above it.
 
     With the phase k x - omega t, harmonic n of the elevation, the horizontal velocity and the
-    vertical acceleration goes with cos n(phase); that of the vertical velocity and the
-    horizontal acceleration with sin n(phase).  Velocities and accelerations may come from
-    different theories: a load does not know them.
+    vertical acceleration varies as cos n(phase); that of the vertical velocity and the
+    horizontal acceleration as sin n(phase).  Velocities and accelerations may come from
+    different theories: a load does not depend on their origin.
 
     Parameters
     ----------
@@ -374,11 +374,11 @@ class WaveHarmonics:
     angular_frequency : float
         omega. [rad s-1]
     elevation : ndarray, shape (n_harmonics,)
-        Of the surface. [m]
+        Surface elevation. [m]
     horizontal_velocity, vertical_velocity : ndarray, shape (n_harmonics,)
-        Of a particle. [m s-1]
+        Velocity of a particle. [m s-1]
     horizontal_acceleration, vertical_acceleration : ndarray, shape (n_harmonics,)
-        Of a particle, local; the vertical one is negative in a progressive wave. [m s-2]
+        Local acceleration; the vertical one is negative in a progressive wave. [m s-2]
     """
 
     wave_number: float
@@ -444,7 +444,7 @@ def sine_series(amplitude: Floats) -> Coefficients:
 
 
 def phase_derivative(coefficients: Coefficients) -> Coefficients:
-    """Coefficients of the derivative by the phase.
+    """Coefficients of the derivative with respect to the phase.
 
     Notes
     -----
@@ -469,7 +469,7 @@ def series_product(first: Coefficients, second: Coefficients) -> Coefficients:
 
     Examples
     --------
-    4 cos^2 is 2 + 2 cos of the double phase.
+    4 cos^2 is 2 + 2 cos of twice the phase.
 
     >>> cosine = cosine_series(np.array([2.0]))
     >>> print(series_product(cosine, cosine).real)
@@ -496,13 +496,13 @@ def sum_at(coefficients: Coefficients, phase: Floats) -> Floats:
 
 
 def root_phases(coefficients: Coefficients) -> Floats:
-    """Phases of all roots of z^M f, on the unit circle or not.
+    """Phases of all roots of z^M f, whether on the unit circle or not.
 
     Notes
     -----
-    Eigenvalues of the companion matrix ([4]_).  Roots off the circle are kept: who looks
-    for the greatest value of a function tries them all and needs no tolerance to tell them
-    apart.  Outermost orders that are rounding are left out.
+    Eigenvalues of the companion matrix ([4]_).  Roots off the circle are kept: a search for the
+    greatest value of a function tries them all and needs no tolerance to separate them.  Outermost
+    orders that are rounding errors are left out.
 
     Examples
     --------
@@ -559,22 +559,22 @@ def airy_wave(
 
     Notes
     -----
-    Eq. (13) and (15) of [1]_ print the velocity amplitude H g k / (2 omega) with cosh kd below,
-    and the acceleration 2 pi^2 H / T^2 with sinh kd below.  One is the derivative of the other
-    only where length and period fit.  Here velocities follow the surface (pi H/T over sinh kd)
-    whatever the length, and accelerations are their derivative; see
+    Eq. (13) and (15) of [1]_ print the velocity amplitude H g k / (2 omega) with cosh kd in the
+    denominator, and the acceleration 2 pi^2 H / T^2 with sinh kd.  One is the derivative of the
+    other only where length and period match.  Here velocities follow the surface (pi H/T over sinh
+    kd) whatever the length, and accelerations are their derivative; see
     `reduction.prediction.wave_theory` for the mismatch.
 
-    Over a current the motion is that in water that moves with it ([3]_), and so is the
-    acceleration: that of a particle to first order.
+    Over a current, the motion is that in water moving with the current ([3]_), and so is the
+    acceleration, which is that of a particle to first order.
 
-    Between the mean level and the crest the motion is that of the formula carried on,
-    which overstates it; the convective acceleration is left out, as in [1]_, eq. 13-17.
+    Between the mean level and the crest the formula is extrapolated, which overestimates the
+    motion; the convective acceleration is left out, as in [1]_, eq. 13-17.
 
     Examples
     --------
-    The wave of Table 4 of [1]_ 6 m deep, at the mean level: pi H/T = 1.1 m/s both ways but for
-    coth kd.
+    The wave of Table 4 of [1]_ 6 m deep, at the mean level: pi H/T = 1.1 m/s in both directions,
+    except for coth kd.
 
     >>> wave = airy_wave(wave_height=1.25, wave_period=3.57, water_depth=6.0, elevation=0.0,
     ...                  wave_number=2 * np.pi / 20)
@@ -612,7 +612,7 @@ def stokes_wave(
     -----
     Eq. (16) and (17) of [1]_, which are right as printed; the elevation, which it does not
     print, from [5]_, ch. 3, 4 and 11.  Second order has the dispersion relation of first order: the
-    gain in speed with height is of third order.
+    increase of speed with height is of third order.
 
     Not flagged here: a secondary crest in the trough where the second harmonic of the surface
     is above a quarter of the first; see `reduction.prediction.wave_theory`.
@@ -630,7 +630,7 @@ def stokes_wave(
         wave_height, wave_period, water_depth, wave_number, current_velocity, gravity
     )
     depth = number * water_depth
-    flat = -expm1(-2 * depth)  # 2 exp(-kd) sinh kd: nothing overflows on deep water
+    flat = -expm1(-2 * depth)  # 2 exp(-kd) sinh kd: no overflow on deep water
     # cosh kd (2 + cosh 2kd) / sinh^3 kd = coth kd (3 + 2 sinh^2 kd) / sinh^2 kd
     shape = (2 + 12 * exp(-2 * depth) / flat**2) / tanh(depth)
     surface = [wave_height / 2, number * wave_height**2 / 16 * shape]
@@ -671,18 +671,17 @@ def high_stokes_wave(
     SettingsError
         If raschii is not installed.
     DataError, FitError
-        If the wave breaks, is too long for its depth ([9]_), or no length belongs to its period.
+        If the wave breaks, is too long for its depth ([9]_), or no length matches its period.
 
     Notes
     -----
-    Theory of [7]_.  raschii computes surface and velocities; their harmonics are read off at
-    16 phases, which is exact for up to seven of them.  As for the lower orders, velocities
+    Theory of [7]_.  raschii computes surface and velocities; their harmonics are found from 16
+    phases, which is exact for up to seven harmonics.  As for the lower orders, velocities
     follow the surface whatever the length, and accelerations are their local rate.
 
     Examples
     --------
-    The steep wave of [1]_, by the linear theory 16.3 m long; raschii finds 17.42 m as
-    well.
+    The steep wave of [1]_, 16.3 m long by the linear theory; raschii also finds 17.42 m.
 
     >>> wave = high_stokes_wave(order=5, wave_height=1.25, wave_period=3.57, water_depth=3.0,
     ...                         elevation=0.0)
@@ -699,7 +698,7 @@ def high_stokes_wave(
         ) from None  # fmt: skip
 
     def raschii_wave(number: float) -> Any:
-        # deeper than three lengths nothing changes, but cosh overflows
+        # below three lengths the depth has no effect, but cosh overflows
         depth = min(water_depth, 6 * pi / number)
         return StokesWave(wave_height, depth, 2 * pi / number, N=order, g=gravity)
 
@@ -736,11 +735,11 @@ def high_stokes_wave(
     )
 
 
-_LEAST_HARMONIC = 1e-8  # of a cnoidal surface, over the largest
+_LEAST_HARMONIC = 1e-8  # of a cnoidal surface, relative to the largest
 
 _GREATEST_LOGIT = 600.0  # of m: beyond it the crests are solitary waves, hundreds of depths apart
 
-_MOST_HARMONICS = 100  # of a cnoidal wave: the time of its extremes goes with their cube
+_MOST_HARMONICS = 100  # of a cnoidal wave: the time to find its extremes grows with their cube
 
 
 def cnoidal_wave(
@@ -758,8 +757,8 @@ def cnoidal_wave(
     Raises
     ------
     DataError, FitError
-        If the wave breaks, is too short for a theory of long waves, no length belongs to its
-        period, or the crests are so far apart that each is a solitary wave.
+        If the wave breaks, is too short for a long-wave theory, no length matches its period, or
+        the crests are so far apart that each is a solitary wave.
 
     Notes
     -----
@@ -767,14 +766,14 @@ def cnoidal_wave(
 
     .. math:: a_n = H \frac{2 \pi^2}{m K^2} \frac{n q^n}{1 - q^{2n}}
 
-    down to 1e-8 of the largest.  The horizontal velocity is the same at every depth.  Against the
-    stream function at d/L from 0.045 to 0.083 and heights up to half the depth the length is
-    within 1.4 %, the crest within 4 %, and the velocity under it, at the mean level, from 12 %
-    too low in low waves to 30 % too high in the highest.
+    down to 1e-8 of the largest.  The horizontal velocity is the same at every depth.  Relative to
+    the stream function, at d/L from 0.045 to 0.083 and heights up to half the depth, the length is
+    within 1.4 %, the crest within 4 %, and the velocity under the crest, at the mean level, from
+    12 % too low in low waves to 30 % too high in the highest.
 
     Examples
     --------
-    A solitary wave stands H above still water, which is 2 H / (kappa L) below the mean level, with
+    A solitary wave rises H above still water, which is 2 H / (kappa L) below the mean level, with
     kappa^2 = 3 H / (4 d^3): here 0.298 per m, and so 0.400 m - 0.032 m.
 
     >>> wave = cnoidal_wave(wave_height=0.4, wave_period=20.0, water_depth=1.5, elevation=0.0)
@@ -841,7 +840,7 @@ def _too_far_apart(length: float) -> DataError:
     )
 
 
-_LEAST_OF_STREAM = 1e-9  # of the largest harmonic: below it the series is rounding
+_LEAST_OF_STREAM = 1e-9  # share of the largest harmonic: the series is rounding error below it
 
 
 def stream_wave(
@@ -854,7 +853,7 @@ def stream_wave(
     current_velocity: float = 0.0,
     gravity: float = STANDARD_GRAVITY,
 ) -> WaveHarmonics:
-    """Steady wave by its stream function at one elevation, for any depth up to breaking.
+    """Steady wave from its stream function at one elevation, for any depth up to breaking.
 
     Raises
     ------
@@ -864,12 +863,12 @@ def stream_wave(
     Notes
     -----
     The current is the mean velocity of the water at a point below the trough.  A length that is
-    given beside the period is held; velocities then follow the surface, as in the other theories.
+    given with the period is kept; velocities then follow the surface, as in the other theories.
 
     Examples
     --------
-    The 3.57 s wave of [1]_ over 3 m of water: by the linear theory 16.3 m, with its
-    height 17.4 m.
+    The 3.57 s wave of [1]_ over 3 m of water: 16.3 m long by the linear theory, 17.4 m with its
+    height.
 
     >>> wave = stream_wave(wave_height=1.25, wave_period=3.57, water_depth=3.0, elevation=0.0)
     >>> print(round(2 * np.pi / wave.wave_number, 2))
@@ -884,7 +883,7 @@ def stream_wave(
     )
     _refuse_outside(elevation, water_depth, depth * float(np.sum(steady.surface)))
     order = np.arange(1, steady.surface.size + 1)
-    # j B_j cosh(j k (z + d)) / cosh(j k d) without overflow, as its growing part
+    # j B_j cosh(j k (z + d)) / cosh(j k d) without overflow, as the growing part
     speed = intrinsic / number / steady.speed * steady.velocity
     growing = speed * np.exp(order * number * elevation) / (1 + np.exp(-2 * order * steady.number))
     size = np.abs(np.stack([steady.surface, growing]))
@@ -908,7 +907,7 @@ def _stream_of(
     current: float,
     gravity: float,
 ) -> tuple[SteadyWave, float]:
-    """Steady wave, and the depth in which it was computed: beyond three lengths none is felt."""
+    """Steady wave, and its computational depth: beyond three lengths the depth has no effect."""
     as_positive("wave_height", height)
     linear = number
     if linear is None:
@@ -931,7 +930,7 @@ def _stream_of(
 def _long_number(
     speed_of: Callable[[float], float], period: float, depth: float, current: float, gravity: float
 ) -> float:
-    """Wave number of a theory whose speed depends on the height, from the linear one on."""
+    """Wave number of a theory whose speed depends on the height, starting at the linear one."""
     linear = float(_wave_number(period, depth, current_velocity=current, gravity=gravity))
     try:
         return float(
@@ -1044,7 +1043,7 @@ def _theory_by_depth(relative_depth: float) -> WaveTheoryName:
 
     Notes
     -----
-    Table 1 of [1]_ leaves d/L = 0.1 to nobody; it is given to Stokes here, as in sec. 5
+    Table 1 of [1]_ assigns d/L = 0.1 to no theory; here it is assigned to Stokes, as in sec. 5
     ("between 2 and 4 meters" of a 20 m wave).  Its lowest limit, "0.04~0.05", is taken as 0.04.
     "Conical" and solitary share a row: a solitary wave is a cnoidal one of long period.
 
@@ -1064,12 +1063,12 @@ def _theory_by_depth(relative_depth: float) -> WaveTheoryName:
 
 
 def _printed_theory(relative_depth: float, steepness: float) -> PrintedTheory:
-    """Theory by Table 1 to the letter.
+    """Theory by Table 1 taken literally.
 
     Notes
     -----
-    Table 1 of [1]_ contradicts itself: its row of Stokes asks for H/L of 0.2 or more, where
-    every wave has broken (at most 0.142, and 0.12 at d/L = 0.2), and its row of Airy allows
+    Table 1 of [1]_ contradicts itself: its row for Stokes requires H/L of 0.2 or more, where
+    every wave has broken (at most 0.142, and 0.12 at d/L = 0.2), and its row for Airy allows
     up to 0.2.  The second example of the paper, H/L = 0.0625 at d/L = 0.15, is in no row.
 
     Examples
@@ -1091,45 +1090,44 @@ GREATEST_URSELL_NUMBER = 8 * pi**2 / 3
 
 _SECONDARY_CREST = 0.25
 
-_NEGLIGIBLE = 0.05  # second over first harmonic that the linear theory may leave out
+_NEGLIGIBLE = 0.05  # ratio of second to first harmonic that the linear theory may neglect
 
-_LENGTH_TOLERANCE = 0.01  # given length against that of the period
+_LENGTH_TOLERANCE = 0.01  # of the given length relative to that from the period
 
 
 @dataclass(frozen=True)
 class WaveTheory:
-    """What one wave is and which theory it asks for.
+    """Characteristics of one wave and the theory that it requires.
 
     Parameters
     ----------
     theory : {"airy", "stokes", "cnoidal", "beyond the table"}
-        By relative depth, as [1]_ itself reads its Table 1.
+        By relative depth, as [1]_ applies its Table 1.
     printed : {"airy", "stokes", "cnoidal or solitary", "none"}
-        By both columns of Table 1, to the letter.
+        By both columns of Table 1, taken literally.
     wave_length : float
-        As given, else by the dispersion relation, or of the stream function where it is asked
-        for. [m]
+        As given, else by the dispersion relation, or by the stream function where requested. [m]
     relative_depth, steepness, height_to_depth : float
         d / L, H / L, H / d. [1]
     breaking_ratio : float
-        Height over that at which the wave breaks. [1]
+        Height over breaking height. [1]
     ursell_number : float
         H L^2 / d^3. [1]
     elevation_ratio, velocity_ratio : float
-        Second over first harmonic by Stokes' theory, of the surface and of the horizontal
+        Ratio of second to first harmonic in Stokes' theory, for the surface and for the horizontal
         velocity at the mean level. [1]
     length_mismatch : float
         Given length over that of the period, less one; 0 where none was given. [1]
     is_breaking : bool
         No theory applies, and none is computed.
     is_computed : bool
-        Whether the table names a theory for it.
+        Whether the table has a theory for it.
     is_beyond_stokes : bool
         Ursell number above 8 pi^2 / 3, or a secondary crest in the trough.
     is_second_order_small : bool
         Second harmonics below 5 % of the first.
     reasons : tuple of str
-        What speaks against the theory, in words; empty where nothing does.
+        Objections to the theory, in words; empty where there are none.
     """
 
     theory: WaveTheoryName
@@ -1160,13 +1158,13 @@ def describe_wave(
     gravity: float = STANDARD_GRAVITY,
     asked: WaveTheoryName | None = None,
 ) -> WaveTheory:
-    """Theory, limits and doubts of one wave, and of the theory asked for.
+    """Theory, limits and doubts for one wave and the requested theory.
 
     Notes
     -----
-    Limits of height: `reduction.prediction.wave_theory`.  Number of [6]_, secondary crest after
-    [5]_, ch. 11.  What counts as a small second harmonic (5 %) and as a length that fits its period
-    (1 %) is set by this package.
+    Limits of height: `reduction.prediction.wave_theory`.  Ursell number of [6]_, secondary crest
+    after [5]_, ch. 11.  The limits for a small second harmonic (5 %) and for a length that matches
+    its period (1 %) are set by this package.
 
     Examples
     --------
@@ -1256,11 +1254,11 @@ def regular_wave(
     theory: WaveTheoryName | None = None,
     current_velocity: float = 0.0,
 ) -> WaveHarmonics:
-    """Motion at one elevation by the theory that applies, or by the one asked for.
+    """Motion at one elevation by the applicable theory, or by the requested one.
 
     Notes
     -----
-    Doubts of the description do not stop a prediction: they go with it.  Without a length the
+    Doubts in the description do not stop a prediction: they are passed on.  Without a given length,
     theories of higher order find their own, which grows with the height.
 
     Examples
@@ -1300,11 +1298,11 @@ def regular_wave(
 
 
 def _second_harmonics(height: float, depth: float) -> tuple[float, float]:
-    """Second over first harmonic, from k H and k d, of surface and velocity at the mean level.
+    """Second over first harmonic, from k H and k d, for surface and velocity at the mean level.
 
     kH/8 cosh kd (2 + cosh 2kd) / sinh^3 kd and 3 kH/8 cosh 2kd / (sinh^3 kd cosh kd).
     """
-    if depth > 20:  # all but 1e-17: cosh would overflow later on
+    if depth > 20:  # limit reached to 1e-17; cosh would overflow for greater depths
         return height / 4, 3 * height * exp(-2 * depth)
     sine, cosine, double = sinh(depth), cosh(depth), cosh(2 * depth)
     surface = height / 8 * cosine * (2 + double) / sine**3
@@ -1316,8 +1314,8 @@ def _second_harmonics(height: float, depth: float) -> tuple[float, float]:
 class _ParticleMotion:
     """Surface and water at one place over time; arrays have the shape (n_times,).
 
-    Velocities [m s-1] and accelerations [m s-2] are of the wave alone, without a current;
-    the elevation [m] is of the surface above the mean level.
+    Velocities [m s-1] and accelerations [m s-2] are those of the wave alone, without a current;
+    the elevation [m] is that of the surface above the mean level.
     """
 
     elevation: Floats
@@ -1333,9 +1331,9 @@ def particle_motion(wave: WaveHarmonics, time: ArrayLike, position: float = 0.0)
     Parameters
     ----------
     wave : WaveHarmonics
-        From a theory or by hand.
+        From a theory or user-defined.
     time : array_like, shape (n_times,)
-        When. [s]
+        Times. [s]
     position : float
         Along the wave; the crest is at 0 at time 0. [m]
 
@@ -1351,11 +1349,11 @@ def particle_motion(wave: WaveHarmonics, time: ArrayLike, position: float = 0.0)
 
     Notes
     -----
-    Sums of the harmonics; a current is not in them.
+    Sums of the harmonics, without a current.
 
     Examples
     --------
-    Under the crest the water goes forward and falls fastest a quarter period later.
+    Under the crest the water moves forward; a quarter period later it falls fastest.
 
     >>> from reduction.prediction.wave_theory import airy_wave
     >>> wave = airy_wave(wave_height=1.25, wave_period=4.0, water_depth=6.0, elevation=0.0)

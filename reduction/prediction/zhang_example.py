@@ -1,7 +1,7 @@
 """The printed examples of Zhang (2015).
 
-The numbers come from the paper where it prints them; those that reproduce its tables and differ
-from what it prints were found from the tables and say so.  Nothing here is a recommendation.
+The numbers are those that the paper prints.  Where others are needed to reproduce its tables, they
+were found from the tables, and this is stated.  No number here is a recommendation.
 
 References
 ----------
@@ -30,7 +30,7 @@ INERTIA_COEFFICIENT = 2.0
 """Eq. (12). [1]"""
 
 WATER_DENSITY = 1030.0
-"""Of Tables 5-7; Table 3 prints 1.025 g/cm3, which is used for the immersion. [kg m-3]"""
+"""Density of Tables 5-7; Table 3 prints 1.025 g/cm3, used for the immersion. [kg m-3]"""
 
 _WAVE_HEIGHT = 1.25  # m, Table 4
 
@@ -48,11 +48,11 @@ _AIRY_DEPTH = 6.0  # m, sec. 5.1
 
 _STOKES_DEPTH = 3.0  # m, sec. 5.2
 
-# loads are at z = 0, the mean level; sec. 3 says the centre of the hose, 38 mm below
+# loads are at z = 0, the mean level; sec. 3 states the centre of the hose, 38 mm below
 
 
 def printed_section() -> ImmersedSection:
-    """Hose of the examples with the rounded immersion that the tables use.
+    """Hose of the examples with the rounded immersion used in the tables.
 
     Notes
     -----
@@ -71,15 +71,15 @@ def printed_section() -> ImmersedSection:
 
 
 def printed_airy_wave(load: PrintedLoad = "improved") -> WaveHarmonics:
-    """Linear wave, 6 m deep, as Tables 5 and 7 use it.
+    """Linear wave, 6 m deep, as used in Tables 5 and 7.
 
     Notes
     -----
-    Eq. (13): velocity H g k / (2 omega), acceleration 2 pi^2 H / T^2 coth kd, which would be
-    one the derivative of the other if length and period belonged together.  The vertical
-    velocity of eq. (15) is H g k / (2 omega) tanh kd; the tables have pi H / T tanh kd in the
-    classic column and pi H / T in the improved one.  The 8.4 % between them at the
-    largest vertical loads is that difference; with one velocity for both it is 16.7 %.
+    Eq. (13): velocity H g k / (2 omega), acceleration 2 pi^2 H / T^2 coth kd; one would be the
+    derivative of the other if length and period matched.  The vertical velocity of eq. (15) is
+    H g k / (2 omega) tanh kd; the tables have pi H / T tanh kd in the classic column and
+    pi H / T in the improved one.  This causes the 8.4 % between them at the largest vertical
+    loads; with one velocity for both it is 16.7 %.
 
     Examples
     --------
@@ -109,7 +109,7 @@ def printed_airy_wave(load: PrintedLoad = "improved") -> WaveHarmonics:
 
 
 def printed_stokes_wave() -> WaveHarmonics:
-    """Stokes' wave of second order, 3 m deep, as Tables 6 and 7 use it.
+    """Stokes' wave of second order, 3 m deep, as used in Tables 6 and 7.
 
     Notes
     -----

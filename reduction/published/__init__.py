@@ -1,1 +1,1 @@
-"""What the five reports print, and the same recomputed."""
+"""Printed numbers of the five reports, and their recomputation."""

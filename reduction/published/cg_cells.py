@@ -16,10 +16,10 @@ from reduction.record.measurement import Floats
 from reduction.stages.three_parameter_line.slow_pull import slope_of_cubic
 
 POLYNOMIAL_SCALES = np.array([1e4, 1.0, 1e-3, 1e-7])
-"""Of A, B, C, D of Tables 6 and 7: to pounds."""
+"""Powers of ten of A, B, C, D in Tables 6 and 7, for pounds."""
 
 CUBIC_SCALES = np.array([1e-4, 1e-4, 1e-8, 1e-12])
-"""Of A, B, C, D of Tables 8 and 9: strain, and pounds."""
+"""Powers of ten of A, B, C, D in Tables 8 and 9, for strain and pounds."""
 
 
 def number(cell: Cell) -> float:
@@ -44,11 +44,11 @@ class Pages:
         return found
 
     def printed(self, table: str, row: str, column: str) -> float:
-        """Number of a cell as the page has it."""
+        """Number of a cell as printed."""
         return number(self.cell(table, row, column))
 
     def value(self, table: str, row: str, column: str) -> float:
-        """Number of a cell as corrected, or as printed where nothing is corrected."""
+        """Number of a cell as corrected, or as printed where there is no correction."""
         cell = self.cell(table, row, column)
         return number(cell) if cell.corrected is None else cell.corrected
 
@@ -57,7 +57,7 @@ class Pages:
         return 0.5 * printed_step(self.cell(table, row, column).printed)
 
     def surface(self, table: str, row: str, quantity: str) -> Floats:
-        """B1 .. B10, as corrected; an open coefficient as this table prints it."""
+        """B1 .. B10, as corrected; an open coefficient as printed in this table."""
         return np.array([self.value(table, row, f"{quantity} B{i}") for i in range(1, 11)])
 
     def cubic(self, table: str, row: str) -> Floats:
@@ -70,17 +70,17 @@ class Pages:
         return float(slope_of_cubic(tension, self.cubic(table, row)))
 
     def polynomial(self, table: str, row: str, tension: float) -> float:
-        """K_0 [lb] by the polynomial of Table 6 or 7."""
+        """K_0 [lb] from the polynomial of Table 6 or 7."""
         terms = [self.value(table, row, f"quasi_static_spring_constant {term}") for term in "ABCD"]
         return float(tension ** np.arange(4) @ (np.array(terms) * POLYNOMIAL_SCALES))
 
     def strain(self, table: str, row: str, tension: float) -> float:
-        """Strain at a tension [lb], by the cubic."""
+        """Strain at a tension [lb], from the cubic."""
         return float(tension ** np.arange(4) @ self.cubic(table, row))
 
 
 Check = Callable[[Cell, Pages], ReproducedItem]
-"""Verdict on one claim of the text among all cells."""
+"""Check of one claim of the text against all cells."""
 
 
 def always(why: str) -> Check:
@@ -91,7 +91,7 @@ def always(why: str) -> Check:
 def rounding(
     function: Callable[..., float], values: Sequence[float], halves: Sequence[float]
 ) -> float:
-    """By how much the rounding of its inputs may move a result.
+    """Effect of the rounding of its inputs on a result.
 
     Examples
     --------
@@ -152,7 +152,7 @@ def centre_stiffness(pages: Pages, row: str) -> float:
 
 
 def levels_of(row: str) -> str:
-    """Row of Table 1 that has the levels of a line, in per cent of its strength."""
+    """Row of Table 1 with the levels of a line, in per cent of its strength."""
     large = "| 1 in" in row or "| 1 1/4 in" in row
     sizes = "1 in, 1 1/4 in" if large else "1/2 in, 3/4 in"
     return f"nylon | double braid | {sizes} | new"
@@ -213,7 +213,7 @@ def item_of_level(cell: Cell, pages: Pages) -> ReproducedItem:
 
 
 def _strength(cell: Cell, pages: Pages) -> ReproducedItem:
-    """From the upper mean load; where two strengths are printed, the other one."""
+    """Strength from the upper mean load; where two strengths are printed, the other one."""
     line = cell.row.rpartition(" | ")[0]
     if cell.erratum == "CG-15":
         other = pages.printed("10", f"{line} | new", "tensile_strength mean")

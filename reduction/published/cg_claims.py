@@ -55,7 +55,7 @@ SETTING = "a setting of the tests"
 
 PRINTED_IN = {"sec 4.3": "sec 4.4.2", "sec 4.4.2": "sec 4.3", "sec 6.3.1": "App G",
               "App G": "sec 6.3.1"}  # fmt: skip
-"""Where a setting stands again."""
+"""Place where a setting is printed again."""
 
 
 def _design(cell: Cell, pages: Pages) -> ReproducedItem:
@@ -98,7 +98,7 @@ def _samples(cell: Cell, pages: Pages) -> ReproducedItem:
 
 
 def _levels(cell: Cell, pages: Pages) -> ReproducedItem:
-    """Levels of the screening stand in Table A-1, those of the design in Table 1."""
+    """Levels of the screening are in Table A-1, those of the design in Table 1."""
     if cell.row == "screening":
         column = "duration high" if cell.column == "cycles" else cell.column
         return judge_repeat(cell, pages.printed("A-1", SCREEN, column), "Table A-1")
@@ -113,7 +113,7 @@ def _never_slack(cell: Cell, pages: Pages) -> ReproducedItem:
 
 
 def _period(cell: Cell, pages: Pages) -> ReproducedItem:
-    """The reciprocal of the other end of the frequencies, in words."""
+    """The reciprocal of the other end of the frequency range, in words."""
     other = "high" if cell.column.endswith("low") else "low"
     period = 1 / pages.printed("A-1", SCREEN, f"frequency {other}")
     return judge_word(cell, period, "reciprocal of a frequency of Table A-1")
@@ -223,7 +223,7 @@ CLAIMS_OF_SETTINGS: dict[str, Check] = {
     "table of the screening design": always("Table 1 is of the nylon braids; see its erratum"),
     "section of the tensile strengths": always("there is no section 4.6; see its erratum"),
 }
-"""By the column of the claim."""
+"""Checks by the column of the claim."""
 
 STRENGTH_OF_SPEED = {
     NYLON_BRAID: ("2", f"{NYLON_BRAID} | all", "rated_break_strength"),
@@ -274,7 +274,7 @@ def _rest_of_polyester(cell: Cell, pages: Pages) -> ReproducedItem:
             ratio < 0.5,
             f"read as below half; K_0 at 840 lb is {ratio:.2f} times that of new line",
         )
-    # of both prints of the new cubic, since it is open which one is right
+    # with both prints of the new cubic, since it is open which one is right
     ratios = {
         table: sorted(
             pages.slope("9", cell.row, load)
@@ -348,7 +348,7 @@ CLAIMS_OF_PULLS: dict[str, Check] = {
     "quasi_static_strain ratio high": _strain_of_materials,
     "quasi_static_strain at 30 %RBS": _strain,
 }
-"""By the column of the claim."""
+"""Checks by the column of the claim."""
 
 CYCLES = "abrasion_cycles"
 
@@ -364,7 +364,7 @@ def _changes(pages: Pages, quantity: str) -> list[float]:
 
 
 def _half(cell: Cell, pages: Pages) -> ReproducedItem:
-    """About 50 % for every line: the one that is farthest from it."""
+    """About 50 % for every line: the line that differs most from it."""
     quantity = cell.column.partition(" ")[0]
     sizes = [abs(change) for change in _changes(pages, quantity)]
     farthest = max(sizes, key=lambda size: abs(size - number(cell)))
@@ -372,7 +372,7 @@ def _half(cell: Cell, pages: Pages) -> ReproducedItem:
 
 
 def strength_over_years(pages: Pages) -> tuple[list[float], ...]:
-    """Braided polyester: years in the sea, mean strength, deviation (NaN of one) and samples."""
+    """Braided polyester: years in the sea, mean strength, deviation (NaN for one) and samples."""
     mean, deviation = f"{STRENGTH} mean", f"{STRENGTH} standard deviation"
     new, later = (f"{POLYESTER_BRAID} | {age}" for age in ("new", "3 years"))
     strengths = [
@@ -419,7 +419,7 @@ def _screened(cell: Cell, pages: Pages) -> ReproducedItem:
     high = pages.printed("A-1", SCREEN, "tension_amplitude high")
     if not cell.column.startswith("least"):
         peak = pages.printed("A-1", SCREEN, "mean_tension high") + high
-        # said to be approximate there, and there alone
+        # called approximate there, and only there
         held = judge_round if cell.table == "sec 3.4" else judge
         return held(cell, peak, "mean load and amplitude of Table A-1")
     least = pages.printed("A-1", SCREEN, "mean_tension low") - high
@@ -448,7 +448,7 @@ def _over_polypropylene(cell: Cell, pages: Pages) -> ReproducedItem:
         / pages.value("20", f"polypropylene | {how} | 1/2 in | new", f"{CYCLES} mean")
         for how in ("8-strand plaited", "3-strand twisted")
     ]
-    # plaited line is as claimed; a claim on the material has to hold of twisted line too
+    # plaited line agrees with the claim; a claim on the material must hold for twisted line too
     return judge_word(
         cell, ratios[1],
         "twisted line of Table 20; plaited and twisted are "
@@ -530,7 +530,7 @@ CLAIMS_OF_TESTS: dict[str, Check] = {
     "relaxation_time mean": always("the runs of the screening are not printed"),
     "H over greatest H": always("the runs of the screening are not printed"),
 }
-"""By the column of the claim."""
+"""Checks by the column of the claim."""
 
 CLAIMS_OF_TESTS |= {
     f"{quantity} significant factors": _significant
@@ -583,7 +583,7 @@ def _change(cell: Cell, pages: Pages) -> ReproducedItem:
 APPROXIMATE = {
     (section, f"{POLYESTER_PLAITED} | 4 years") for section in ("sec 4.4.1", "sec 4.4.8")
 }
-"""Changes of K_ap that the text gives as approximately so much."""
+"""Changes of K_ap that the text gives as approximate."""
 
 
 def _figure_4(cell: Cell, pages: Pages) -> ReproducedItem:
@@ -656,7 +656,7 @@ def _stiffness_of_materials(cell: Cell, pages: Pages) -> ReproducedItem:
 
 
 def _limit(cell: Cell, pages: Pages) -> ReproducedItem:
-    """Eqs. 2 and 3 from eq. 1, with the numbers of a line."""
+    """Eqs. 2 and 3 from eq. 1, with the values of a line."""
     line = {"quasi_static_spring_constant": 2.0, "dissipation_spring_constant": 4.0,
             "relaxation_time": 1.0}  # fmt: skip
     high = cell.column.endswith("high frequency")
@@ -665,7 +665,7 @@ def _limit(cell: Cell, pages: Pages) -> ReproducedItem:
 
 
 def _constant(cell: Cell, pages: Pages) -> ReproducedItem:
-    """What multiplies K_1 in eq. 4, from the seven centre points."""
+    """Factor of K_1 in eq. 4, from the seven centre points."""
     found = []
     for row, (_, _, amplitude) in CENTRE_LINES.items():
         rest, spring = centre_stiffness(pages, row), 1e4 * pages.value("14", row, f"{K_1} B1")
@@ -752,4 +752,4 @@ CLAIMS_OF_STIFFNESS: dict[str, Check] = {
     TIME: _times,
     f"{TIME} passes the F test": _fails,
 }
-"""By the column of the claim."""
+"""Checks by the column of the claim."""

@@ -1,15 +1,15 @@
-r"""CG-D-39-80: K_1 and tau of a column against the K_ap, H and K_0 of the same line.
+r"""CG-D-39-80: K_1 and tau of a column compared with K_ap, H and K_0 of the same line.
 
-At the 15 runs of the design K_1 and tau are solved from the printed surfaces of K_ap and H and from
-a slow pull, and the quadratic is fitted to them again.  A printed coefficient differs from that one
-by its standard error at most, which follows from the r2 of its own column:
+At the 15 runs of the design, K_1 and tau are solved from the printed surfaces of K_ap and H and
+from a slow pull, and the quadratic is fitted to them again.  A printed coefficient differs from the
+refitted one by at most its standard error, which follows from the r2 of its own column:
 
 .. math:: u_j = s \sqrt{[(X^T X)^{-1}]_{jj}}, \qquad
           s^2 = \frac{1 - r^2}{r^2 \, \nu} \sum_i (\hat y_i - \bar{\hat y})^2, \quad \nu = 5
 
-What the runs scatter about K_ap and H is orthogonal to the quadratic to first order: the error is
-rather too great, and a closure finds rather more than it says.  Where the quadratic cannot follow
-the solved values, as tau of runs whose H is near zero, what it leaves is added to s.
+The scatter of the runs about K_ap and H is orthogonal to the quadratic to first order, so the error
+is rather too large, and a closure detects slightly more than it states.  Where the quadratic cannot
+follow the solutions, as for tau of runs with H near zero, its residual is added to s.
 
 References
 ----------
@@ -56,7 +56,7 @@ _FREEDOM = 5
 @dataclass(frozen=True)
 @read_only_arrays
 class Closure:
-    """Coefficients that one slow pull asks for, and their standard errors; shape (10,).
+    """Coefficients that follow from one slow pull, and their standard errors; shape (10,).
 
     In the printed unit.
     """
@@ -68,14 +68,14 @@ class Closure:
 
 @lru_cache(maxsize=1024)
 def closure_of(pages: Pages, row: str, quantity: str) -> tuple[Closure, ...] | None:
-    """What K_ap, H and each K_0 of a line ask of a column.
+    """Coefficients of a column that follow from K_ap, H and each K_0 of a line.
 
     Parameters
     ----------
     pages : Pages
         All cells of the report.
     row : str
-        A new line, or the polyester braid of five years.
+        A new line, or the polyester braid after five years.
     quantity : str
         K_1 or tau.
 
@@ -86,7 +86,7 @@ def closure_of(pages: Pages, row: str, quantity: str) -> tuple[Closure, ...] | N
 
     Examples
     --------
-    B6 of K_1 of new plaited nylon, .756 on the page:
+    B6 of K_1 of new plaited nylon, printed as .756:
 
     >>> from reduction.published.printed_cells import cells_of
     >>> pages = Pages(cells_of("CG-D-39-80"))
@@ -153,13 +153,13 @@ def _slow_pulls(pages: Pages, row: str) -> dict[str, Callable[[float], float]]:
         "slope of load": lambda tension: pages.slope("8", row, tension)
     }
     if table == "slope":
-        # two prints of this cubic differ, and nothing says which is right
+        # two prints of this cubic differ, and it is open which is right
         return by_slope | {"slope of load, Table 9": lambda tension: pages.slope("9", row, tension)}
     return {"cubic of K_0": lambda tension: pages.polynomial(table, row, tension)} | by_slope
 
 
 def _scatter(terms: Floats, printed: Floats, r2: float) -> float:
-    """Standard deviation of a run about a column with this r2; NaN where that is no share."""
+    """Standard deviation of a run about a column with this r2; NaN where r2 is not a share."""
     if not 0 < r2 < 1:
         return float("nan")
     fitted = terms @ printed

@@ -1,4 +1,4 @@
-"""CG-D-39-80, nylon and polyester line: every printed number again."""
+"""CG-D-39-80, nylon and polyester line: recomputation of every printed number."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def items() -> list[ReproducedItem]:
 
 
 def _items_of(cells: Sequence[Cell]) -> list[ReproducedItem]:
-    """Verdicts on cells that need not be those of the package."""
+    """Verdicts on given cells, not necessarily those of the package."""
     pages = Pages(cells)
     return [_item_of(cell, pages) for cell in cells]
 

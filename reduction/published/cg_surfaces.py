@@ -1,8 +1,8 @@
 """CG-D-39-80: K_0 polynomials and response surfaces, Tables 3 to 9 and 11 to 19.
 
-A coefficient that two tables print is held against the other print; one that only one table
-prints comes from runs that are not printed.  B1 is the mean of the centre runs, so that the
-equations of the line can be put beside it.
+A coefficient printed in two tables is compared with the other print; one printed in only one table
+comes from runs that are not printed.  B1 is the mean of the centre runs, so it can be compared
+with the equations of the line.
 """
 
 from __future__ import annotations
@@ -81,7 +81,7 @@ def item_of_static(cell: Cell, pages: Pages) -> ReproducedItem:
 
 
 def _static_twin(cell: Cell, pages: Pages) -> tuple[float, str] | None:
-    """The number of the other table, corrected where that is wrong on its own account."""
+    """The number in the other table, corrected where that table is wrong by itself."""
     table = {"6": "7", "7": "6", "8": "9", "9": "8"}[cell.table]
     other = pages.by_key.get((table, cell.row, cell.column))
     if other is None or (other.erratum and other.erratum != cell.erratum):
@@ -89,7 +89,7 @@ def _static_twin(cell: Cell, pages: Pages) -> tuple[float, str] | None:
     if other.corrected is None:
         return number(other), f"Table {table}"
     if cell.erratum == "CG-9" and cell.table == "6":
-        # C of Table 7 has lost its sign, for reasons of its own
+        # C of Table 7 has lost its sign, for other reasons
         return other.corrected, f"Table {table}, C with its sign"
     return None
 
@@ -104,7 +104,7 @@ def _slopes(cell: Cell, pages: Pages, tension: float) -> float | None:
 
 
 def _coefficient_of_stiffness(cell: Cell, pages: Pages, term: str) -> ReproducedItem:
-    """Beside a coefficient: what it has to be for the others to meet the slope at mid range."""
+    """Value of a coefficient for which the others give the slope at mid range."""
     tension = 0.7 * pages.value(cell.table, cell.row, f"{REST} {RANGE}")
     slope = _slopes(cell, pages, tension)
     if slope is None:
@@ -120,7 +120,7 @@ def _coefficient_of_stiffness(cell: Cell, pages: Pages, term: str) -> Reproduced
 
 
 def _curvature_of_strain(cell: Cell, pages: Pages) -> float:
-    """C [1e-8/lb2] with which the slope of the cubic meets K_0 at the centre of the levels."""
+    """C [1e-8/lb2] for which the slope of the cubic equals K_0 at the centre of the levels."""
     tension = 1470.0
     rest = pages.polynomial("7", cell.row.replace(EXPOSED_YEARS, "field exposure"), tension)
     _, linear, _, cubic = pages.cubic("9", cell.row)
@@ -128,7 +128,7 @@ def _curvature_of_strain(cell: Cell, pages: Pages) -> float:
 
 
 def _head(cell: Cell, pages: Pages, term: str) -> ReproducedItem:
-    """The form of the polynomial: powers of T, and the power of ten in front."""
+    """The form of the polynomial: powers of T, and the leading power of ten."""
     row, tension = "nylon | double braid | 1/2 in | new", 1344.0
     if term == "power of ten":
         ratio = pages.slope("8", row, tension) / (pages.polynomial("7", row, tension) / 1e4)
@@ -173,7 +173,7 @@ def _levels(row: str, pages: Pages) -> list[float]:
 
 
 def _departures(row: str, pages: Pages) -> list[float]:
-    """Distance of the polynomial from the slope of the cubic at each level, as a share."""
+    """Difference of the polynomial from the slope of the cubic at each level, as a share."""
     table = CENTRE_LINES[row][0]
     return [
         abs(pages.polynomial(table, row, tension) / pages.slope("8", row, tension) - 1)
@@ -182,7 +182,7 @@ def _departures(row: str, pages: Pages) -> list[float]:
 
 
 def _range_of_strength(cell: Cell, pages: Pages) -> ReproducedItem:
-    """Two rows print a break strength where the others have 30 % of it."""
+    """Two rows print a break strength where the others print 30 % of it."""
     if cell.row.startswith("polyester"):
         strength = pages.printed("10", cell.row, "tensile_strength mean")
         return judge(cell, 0.30 * strength, "30 % of the strength of Table 10")
@@ -251,7 +251,7 @@ def _twin(cell: Cell, pages: Pages, quantity: str) -> Cell | None:
     """The same number in another table, unless that print is known to be wrong."""
     tables = TABLES_OF[quantity]
     if quantity == K_1 and cell.row == f"{POLYESTER_BRAID} | new":
-        # three prints: Table 11 repeats this column under the head of the energy
+        # three prints: Table 11 repeats this column under the heading of the energy
         copied = pages.by_key[("11", cell.row, cell.column.replace(K_1, ENERGY))]
         own = pages.by_key.get(("14" if cell.table == "16" else "16", cell.row, cell.column))
         return own if own is not None and number(own) == number(copied) else copied
@@ -271,7 +271,7 @@ def _coefficient(cell: Cell, pages: Pages, quantity: str, term: str) -> Reproduc
 
 
 def _closed(item: ReproducedItem, closure: Sequence[Closure], place: int) -> ReproducedItem:
-    """A coefficient by the slow pull that is nearest to it; which of them is right is not known."""
+    """A coefficient compared by the nearest slow pull, since it is open which pull is right."""
     own = number(item.cell)
     best = min(closure, key=lambda one: abs(own - one.coefficient[place]))
     beside = " or ".join(f"{one.coefficient[place]:.3f} ({one.slow_pull})" for one in closure)
@@ -285,7 +285,7 @@ def _closed(item: ReproducedItem, closure: Sequence[Closure], place: int) -> Rep
 
 
 def _by_other_prints(cell: Cell, pages: Pages, quantity: str, term: str) -> ReproducedItem:
-    """A coefficient by its other print, or beside what the equations give at the centre."""
+    """A coefficient compared with its other print, or with the equations at the centre."""
     twin = _twin(cell, pages, quantity)
     if twin is not None:
         return judge_repeat(cell, number(twin), f"Table {twin.table}")
@@ -303,7 +303,7 @@ def _by_other_prints(cell: Cell, pages: Pages, quantity: str, term: str) -> Repr
 
 
 def _centre(pages: Pages, row: str, quantity: str) -> float:
-    """What eqs. 1 and 4 as corrected make of the three other printed means."""
+    """Result of eqs. 1 and 4, as corrected, from the three other printed means."""
     _, _, amplitude = CENTRE_LINES[row]
     rest = centre_stiffness(pages, row)
     table = {K_AP: "3", ENERGY: "11", K_1: "14", TIME: "17"}
@@ -355,7 +355,7 @@ def _solved(stiffness: float, energy: float, amplitude: float, rest: float) -> t
 
 
 def _exposed_time(cell: Cell, pages: Pages, quantity: str, term: str) -> ReproducedItem:
-    """K_1 and tau of exposed lines beside those solved from their own K_ap and H."""
+    """K_1 and tau of exposed lines compared with those solved from their own K_ap and H."""
     exposed = {
         f"{NYLON_PLAITED} | 5 years": ("4", "12", 1209.6, 489.6),
         f"{POLYESTER_BRAID} | 5 years": ("5", "13", 1470.0, 595.0),
@@ -423,7 +423,7 @@ def _statistic(cell: Cell, pages: Pages) -> ReproducedItem:
 
 
 def _also_closed(repeated: ReproducedItem, by_share: ReproducedItem) -> ReproducedItem:
-    """A statistic that stands twice, with what r2 says of it."""
+    """A statistic printed twice, with its value from r2."""
     if repeated.verdict != "repeated" or by_share.verdict != "closed":
         return repeated
     return replace(repeated, verdict="closed", z=by_share.z, power=by_share.power)
@@ -460,7 +460,7 @@ def _change(cell: Cell, pages: Pages) -> ReproducedItem:
 
 
 def change_of_mean(pages: Pages, table: str, row: str, quantity: str) -> tuple[float, str] | None:
-    """Per cent by which B1 of an exposed line is above that of the new one."""
+    """Percentage by which B1 of an exposed line exceeds that of the new line."""
     new = row.rpartition(" | ")[0] + " | new"
     column, lines = f"{quantity} B1", f"{quantity} number of lines"
     if (table, row, column) not in pages.by_key:
@@ -485,7 +485,7 @@ def _range(cell: Cell, pages: Pages) -> ReproducedItem:
 
 
 def _strength(cell: Cell, pages: Pages) -> tuple[float, str]:
-    """Rated break strength that the levels are of; the other one where two are printed."""
+    """Rated break strength to which the levels refer; the other one where two are printed."""
     if cell.row.startswith(POLYESTER_BRAID):
         if cell.table in ("3", "11"):
             return pages.printed("2", f"{POLYESTER_BRAID} | all", "rated_break_strength"), "Table 2"

@@ -44,12 +44,12 @@ GROUPS = {
     "dry against wet, not cycled": (DRY, UNCYCLED),
 }
 
-# nine wet samples (sec. A-2.1); six of twelve runs a diameter, three a mean load
+# nine wet samples (sec. A-2.1); six of twelve runs per diameter, three per mean load
 SAMPLES = {DRY: 13, WET: 9, UNCYCLED: 9, AFTER: 6, LOW: 3, HIGH: 3}
 
 
 def _common_step(pages: Pages, kind: str) -> int:
-    """What every number of a column of Table A-3 is a multiple of: ten pounds."""
+    """Common divisor of the numbers in a column of Table A-3: ten pounds."""
     numbers = [
         int(number(cell)) for cell in pages.by_key.values()
         if cell.table == "A-3" and cell.column == f"{STRENGTH} {kind}"
@@ -139,7 +139,7 @@ def item_of_test(cell: Cell, pages: Pages) -> ReproducedItem:
 
 
 def change_of_table_10(pages: Pages, row: str, quantity: str) -> float:
-    """Per cent by which an exposed line differs from the new one."""
+    """Percentage by which an exposed line differs from the new one."""
     new = row.rpartition(" | ")[0] + " | new"
     mean, reference = (pages.printed("10", one, f"{quantity} mean") for one in (row, new))
     nothing = float("nan")
@@ -167,7 +167,7 @@ def _of_table_10(cell: Cell, pages: Pages) -> ReproducedItem:
 
 
 def _elsewhere(cell: Cell, pages: Pages) -> tuple[float, float, str] | None:
-    """The same number in another place: value, half its last digit, where."""
+    """The same number in another place: value, half its last digit, place."""
     line, _, condition = cell.row.rpartition(" | ")
     kind = cell.column.partition(" ")[2]
     if line.startswith("polyester | double") and ("21", cell.row, cell.column) in pages.by_key:
@@ -186,7 +186,7 @@ def _elsewhere(cell: Cell, pages: Pages) -> tuple[float, float, str] | None:
         for table, what in (("13", "hysteresis_energy"), ("12", "hysteresis_energy"),
                             ("5", "apparent_spring_constant")):  # fmt: skip
             key = (table, cell.row, f"{what} number of lines")
-            # a count that is open itself tells nothing
+            # a count that is open itself is no evidence
             if key in pages.by_key and pages.cell(*key).confidence != "open":
                 return pages.printed(*key), 0.5, f"lines of Table {table}"
     return None
@@ -253,7 +253,7 @@ def _of_table_20(cell: Cell, pages: Pages) -> ReproducedItem:
 
 
 def _variability(cell: Cell, pages: Pages, quantity: str, kind: str) -> ReproducedItem:
-    """Mean, deviation and relative variability bind each other."""
+    """Mean, deviation and relative variability determine each other."""
     mean, deviation, relative = (
         f"{quantity} mean", f"{quantity} standard deviation", f"{quantity} relative variability",
     )  # fmt: skip
@@ -269,7 +269,7 @@ def _variability(cell: Cell, pages: Pages, quantity: str, kind: str) -> Reproduc
             lambda d, m: d / m, [value(deviation), value(mean)], [half(deviation), half(mean)]
         )
         return judge(cell, value(deviation) / value(mean), "deviation over mean", tolerance=allowed)
-    # the variability of one line is misprinted, with three digits in place of two
+    # the variability of one line is misprinted, with three digits instead of two
     share = 0.5 * printed_step(f"{value(relative):g}")
     if kind == "mean":
         inputs, halves = [value(deviation), value(relative)], [half(deviation), share]

@@ -14,7 +14,7 @@ from reduction.record.errors import DataError
 ReportId = Literal["WHOI-2004-06", "Zhang-2015", "WHOI-2005-10", "CG-D-39-80", "Wang-2022"]
 
 Confidence = Literal["", "certain", "high", "open"]
-"""Of a correction; open: the page is wrong or doubtful, and nothing says what is right."""
+"""Confidence of a correction; open: the page is wrong or doubtful, the right value not known."""
 
 _NUMBER = re.compile(r"[-+]?(?:\d[\d,]*\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 
@@ -28,25 +28,25 @@ class Cell:
     Parameters
     ----------
     report : str
-        Which of the five.
+        One of the five.
     table : str
         ``3``, ``A-2``, or the section of a claim of the text, ``sec 4.4.1``.
     row, column : str
-        Which line or specimen, and which quantity.
+        Line or specimen, and quantity.
     printed : str
         The text as printed.
     unit : str
         As printed.
     corrected : float or None
-        Value in the printed unit where the page is wrong; None where it stands, or is open.
+        Value in the printed unit where the page is wrong; None where it is right, or open.
     erratum : str
-        Id of `Erratum`; empty where nothing is known against the cell.
+        Id of `Erratum`; empty where no error is known.
     confidence : str
-        Of the correction.
+        Confidence of the correction.
     page : str
         Page or section.
     note : str
-        What else to know.
+        Other remarks.
     """
 
     report: ReportId
@@ -68,7 +68,7 @@ class Cell:
 
     @property
     def value(self) -> float | None:
-        """What to use: corrected, or as printed; None of text and of what is open."""
+        """Value to use: corrected, or as printed; None for text and open cells."""
         if self.corrected is not None:
             return self.corrected
         return None if self.confidence == "open" else number_of(self.printed)
@@ -76,7 +76,7 @@ class Cell:
 
 @dataclass(frozen=True)
 class Erratum:
-    """A fault of a page: what it prints, what is right, and why."""
+    """An error of a page: the printed text, the right one, and the reason."""
 
     id: str
     report: ReportId
@@ -88,7 +88,7 @@ class Erratum:
 
 
 def number_of(text: str) -> float | None:
-    """The number that a printed text holds; None where there is none.
+    """The number in a printed text; None where there is none.
 
     Examples
     --------
@@ -108,7 +108,7 @@ def number_of(text: str) -> float | None:
 
 
 def printed_step(text: str) -> float:
-    """One unit of the last printed digit; 0 where there is no number, or a fraction.
+    """One unit of the last printed digit; 0 where there is no number, and for a fraction.
 
     Examples
     --------
@@ -181,7 +181,7 @@ def _read(report: ReportId, name: str, text: str) -> list[Cell]:
 
 @cache
 def errata_of(report: ReportId) -> tuple[Erratum, ...]:
-    """Every known fault of a report, in the order of its ids."""
+    """Every known error of a report, in the order of its ids."""
     text = (files("reduction.published") / "data" / report / "errata.csv").read_text("utf-8")
     return tuple(
         Erratum(

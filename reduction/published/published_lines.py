@@ -40,7 +40,7 @@ from reduction.record.settings import StrainMethod
 
 POUND, INCH = scale_to_si("lbf", "force")[0], scale_to_si("in", "length")[0]
 
-# tables of a response, the one of new lines first, and the SI value of its printed unit
+# tables of a response, that of new lines first, and the SI value of its printed unit
 RESPONSES = {
     "apparent_spring_constant": (("3", "4", "5"), 1e4 * POUND),
     "hysteresis_energy": (("11", "12", "13"), POUND),
@@ -61,7 +61,7 @@ EXPOSED = "field exposure"
 
 CRITICAL_F = 3.436
 
-# of a whole surface, not of one of its cells
+# erratum of a whole surface, not of one of its cells
 OF_SURFACE = {("nylon | double braid | 1 1/4 in | new", "dissipation_spring_constant"): ("CG-17",)}
 
 NOT_MEASURED = "not printed for this line"
@@ -111,30 +111,30 @@ class _LineCells:
 
 
 def _number_printed(cell: Cell) -> float:
-    """As printed; NaN of words."""
+    """Number as printed; NaN for words."""
     value = number_of(cell.printed)
     return float("nan") if value is None else value
 
 
 def _number_used(cell: Cell | None) -> float:
-    """As corrected; NaN where open or absent."""
+    """Number as corrected; NaN where open or absent."""
     value = None if cell is None else cell.value
     return float("nan") if value is None else value
 
 
 def _errata_of_cells(cells: Sequence[Cell]) -> tuple[str, ...]:
-    """Ids that touch some cells, in their order."""
+    """Ids of the errata of some cells, in their order."""
     return _in_order({cell.erratum for cell in cells if cell.erratum})
 
 
 def _in_order(ids: Iterable[str]) -> tuple[str, ...]:
-    """Ids by their number."""
+    """Ids ordered by number."""
     return tuple(sorted(ids, key=lambda one: int(one.partition("-")[2])))
 
 
 @dataclass(frozen=True)
 class _OpenTerm:
-    """A coefficient of which nothing says what is right."""
+    """A coefficient whose right value is not known."""
 
     term: str
     index: int
@@ -168,17 +168,17 @@ class PublishedSurface:
         B1 .. B10: mean, squares, linear, interactions of frequency, mean tension and tension
         amplitude; NaN where open. [N], of relaxation time [s]
     open_terms : tuple of OpenTerm
-        What stands in the place of NaN.
+        Possible values in place of NaN.
     boxes : tuple of LevelBox
-        One; two where the levels are open, the better supported first.
+        One, or two where the levels are open, the better supported first.
     r2 : float
         NaN where open.
     passes_f_test : bool
         At 5 %, with 9 and 5 degrees of freedom.
     n_lines : int or None
-        Lines tested; None where no table says, or tables disagree.
+        Number of tested lines; None where no table states it, or tables disagree.
     tables, errata : tuple of str
-        Where the column is printed, and what touches it.
+        Tables of the column, and errata that affect it.
     """
 
     response: str
@@ -204,16 +204,16 @@ class PublishedCubic:
     coefficient : ndarray, shape (4,)
         A, B, C, D; NaN where open. [N N-k] or [N-k]
     open_terms : tuple of OpenTerm
-        What stands in the place of NaN.
+        Possible values in place of NaN.
     tension_high : float
         End of the range of use, which begins at zero; the smaller where tables differ, NaN where
         open. [N]
     n_samples : int or None
-        Pulls.
+        Number of pulls.
     tables, errata : tuple of str
-        Where it is printed, and what touches it.
+        Tables of the cubic, and errata that affect it.
     note : str
-        Of which lines, where the row is of several.
+        Lines of the row, where it covers several.
     """
 
     quantity: str
@@ -228,7 +228,7 @@ class PublishedCubic:
 
 @dataclass(frozen=True)
 class _StatedStrength:
-    """One statement of a strength; there are several for most lines, and they differ."""
+    """One stated strength; most lines have several, and they differ."""
 
     value: float
     table: str
@@ -258,25 +258,25 @@ class PublishedLine:
     name : str
         ``nylon-double-braid-0.5in-new``.
     material, construction, condition : str
-        In the words of the tables: ``nylon``, ``8-strand plaited``, ``4 years``.
+        As worded in the tables: ``nylon``, ``8-strand plaited``, ``4 years``.
     diameter : float
         Nominal. [m]
     rated_break_strength : float
-        That the tested levels are shares of, or, for a line without, the measured one; of the
-        better supported two where that is open. [N]
+        Reference of the tested levels, or the measured strength for a line without them; where
+        two are possible, the better supported one. [N]
     stated_strengths : tuple of StatedStrength
-        Everything that is printed as strength of the new line.
+        All strengths printed for the new line.
     surfaces : mapping of str to PublishedSurface
-        By response.
+        Surfaces by response.
     stiffness : PublishedCubic or None
         K_0 against mean tension.
     load_strain : PublishedCubic or None
         Strain against tension, whose slope is 1/K_0.
     strength : PublishedStrength or None
-        Breaks.
+        Results of breaks.
     absent : mapping of str to str
         Why a response, ``quasi_static_spring_constant``, ``quasi_static_strain`` or
-        ``tensile_strength`` is not there.
+        ``tensile_strength`` is missing.
     """
 
     name: str
@@ -294,7 +294,7 @@ class PublishedLine:
 
     @property
     def errata(self) -> tuple[str, ...]:
-        """Everything that touches a number of the line, in the order of the ids."""
+        """Every erratum that affects a number of the line, in the order of the ids."""
         parts = [*self.surfaces.values(), self.stiffness, self.load_strain, self.strength]
         found = {one for part in parts if part is not None for one in part.errata}
         found |= {one.erratum for one in self.stated_strengths if one.erratum}
@@ -305,7 +305,7 @@ def _terms(
     cells: _LineCells, tables: Sequence[str], row: str, quantity: str, names: Sequence[str],
     scale: Sequence[float],
 ) -> tuple[list[float], tuple[_OpenTerm, ...], list[Cell]]:  # fmt: skip
-    """Coefficients in SI, those that are open, and the cells."""
+    """Coefficients in SI, open coefficients, and the cells."""
     values, opened, used = [], [], []
     for index, (name, factor) in enumerate(zip(names, scale, strict=True)):
         prints = cells.prints(tables, row, f"{quantity} {name}")
@@ -358,7 +358,7 @@ def _surface(cells: _LineCells, row: str, response: str) -> PublishedSurface | N
 
 
 def _ends(cells: _LineCells, table: str, row: str, what: str) -> list[Cell]:
-    """Low and high level, of the line itself or of all its conditions."""
+    """Low and high level, for the line itself or for all its conditions."""
     whole = row.rpartition(" | ")[0] + " | all"
     found = [
         cells.get(table, one, f"{what} {end}") for end in ("low", "high") for one in (row, whole)
@@ -378,9 +378,9 @@ def _range_cells(cells: _LineCells, row: str, response: str, tables: Sequence[st
 def _boxes(
     cells: _LineCells, row: str, response: str, tables: Sequence[str]
 ) -> tuple[_LevelBox, ...]:
-    """One box; of a new line with open levels both, the smaller strength first."""
+    """One box; for a new line with open levels both, the smaller strength first."""
     is_new = row.endswith("new")
-    # levels are those of one programme, whatever the response
+    # levels are those of one programme, independent of the response
     places = [(table, response) for table in tables]
     if is_new:
         places += [(table, other) for other in RESPONSES for table in RESPONSES[other][0]]
@@ -416,14 +416,14 @@ def _strength_of_level(row: str, mean_high: float) -> float:
 def _cubic(cells: _LineCells, row: str, quantity: str) -> PublishedCubic | None:
     tables, scale = SCALE_OF_CUBIC[quantity]
     combined = row.rpartition(" | ")[0] + f" | {EXPOSED}"
-    # K_0 of four and five years stands in one row
+    # K_0 of four and five years is in one row
     place = combined if quantity == REST and not row.endswith("new") else row
     printed = tuple(table for table in tables if cells.get(table, place, f"{quantity} A"))
     if not printed:
         return None
     values, opened, used = _terms(cells, printed, place, quantity, "ABCD", scale)
     ranges = cells.prints(printed, place, f"{quantity} mean_tension high")
-    # tables of new and of exposed lines have ranges of their own: both vouch for the smaller one
+    # tables of new and of exposed lines have separate ranges: both confirm the smaller one
     known = [_number_used(cell) for cell in ranges if not np.isnan(_number_used(cell))]
     counts = cells.prints(printed, place, f"{quantity} number of samples")
     return PublishedCubic(
@@ -459,7 +459,7 @@ def _strength(cells: _LineCells, row: str) -> _PublishedStrength | None:
 
 
 def _strengths_when_new(cells: _LineCells, row: str) -> tuple[_StatedStrength, ...]:
-    """Rated and measured strengths of the new line, as the tables have them."""
+    """Rated and measured strengths of the new line, as in the tables."""
     line = row.rpartition(" | ")[0]
     places = (
         ("1", f"{line} | new", "rated_break_strength", "rated"),
@@ -514,7 +514,7 @@ def published_lines() -> tuple[PublishedLine, ...]:
 
     Examples
     --------
-    The surface of the polyester braid is that of Table 13, not its misprint in Table 11:
+    The surface of the polyester braid is that of Table 13, not the misprinted one in Table 11:
 
     >>> lines = {line.name: line for line in published_lines()}
     >>> surface = lines["polyester-double-braid-0.5in-new"].surfaces["hysteresis_energy"]
@@ -527,20 +527,20 @@ def published_lines() -> tuple[PublishedLine, ...]:
 
 _LARGEST_OF_ITS_OWN = 0.026
 
-"""Lines above an inch were loaded in shares of the strength of the one of an inch. [m]"""
+"""Lines above an inch were loaded in shares of the strength of the one-inch line. [m]"""
 
 _SAME_STRENGTH = 1.0
 
-"""Difference of two strengths that are one. [N]"""
+"""Difference within which two strengths are equal. [N]"""
 
 
 def _place(table: str) -> str:
-    """Where a number is printed: ``Table 2``, ``sec. 6.3.2``."""
+    """Place of a printed number: ``Table 2``, ``sec. 6.3.2``."""
     return table.replace("sec ", "sec. ") if table.startswith("sec ") else f"Table {table}"
 
 
 def strength_notes(line: PublishedLine) -> tuple[str, ...]:
-    """What is said of the strength, where the tables do not agree."""
+    """Notes on the strength, where the tables do not agree."""
     found = sorted({round(one.value) for one in line.stated_strengths})
     if len(found) < 2:
         return ()
@@ -552,13 +552,13 @@ def strength_notes(line: PublishedLine) -> tuple[str, ...]:
 
 
 def strength_of(line: PublishedLine) -> str:
-    """Whose strength the levels are shares of: Table 1, footnote 3."""
+    """Line whose strength is the reference of the levels: Table 1, footnote 3."""
     is_largest = line.construction == "double braid" and line.diameter > _LARGEST_OF_ITS_OWN
     return "the 1 in line" if is_largest else ""
 
 
 def own_strength(line: PublishedLine) -> tuple[float, tuple[str, ...]]:
-    """What a line has left after years in the sea, and what is said of it; NaN of a new one."""
+    """Residual strength of a line after years in the sea, with notes; NaN for a new line."""
     if strength_of(line):
         return float("nan"), (
             f"the break strength is that of {strength_of(line)} (Table 1, footnote 3), of which "
@@ -575,7 +575,7 @@ def own_strength(line: PublishedLine) -> tuple[float, tuple[str, ...]]:
         and one.strength is not None
         and np.isfinite(one.strength.tensile_strength)
     ]
-    # its own before that of another age
+    # its own value is preferred to that of another age
     broken.sort(key=lambda one: one.condition != line.condition)
     if not broken or broken[0].strength is None:
         return float("nan"), ("no break of a line in this condition is printed",)
@@ -590,14 +590,14 @@ def own_strength(line: PublishedLine) -> tuple[float, tuple[str, ...]]:
 
 
 def line_scatter(line: PublishedLine) -> float:
-    """Standard deviation between lines over their mean, of K_ap: sec. 4.4.1."""
+    """Standard deviation between lines over their mean, for K_ap: sec. 4.4.1."""
     row = "new" if line.condition == "new" else "field exposure"
     cell = table_of("CG-D-39-80", "sec 4.4.1")[row, "relative variability"]
     return scale_to_si("%", "strain")[0] * _number_used(cell)
 
 
 def scatter_notes(line: PublishedLine) -> tuple[str, ...]:
-    """How alike lines are after years in the sea; nothing of a new one."""
+    """Notes on the similarity of lines after years in the sea; none for a new line."""
     if line.condition == "new":
         return ()
     return (
@@ -607,7 +607,7 @@ def scatter_notes(line: PublishedLine) -> tuple[str, ...]:
 
 
 def level_notes(line: PublishedLine) -> tuple[str, ...]:
-    """Of an exposed line whose levels are shares of another strength than those of the new one."""
+    """Note on an exposed line whose levels refer to another strength than those of the new line."""
     for new in published_lines():
         if line.condition == "new" or new.name != line.name.replace(
             line.condition.replace(" ", "-"), "new"
@@ -622,7 +622,7 @@ def level_notes(line: PublishedLine) -> tuple[str, ...]:
 
 
 def is_documentation(line: PublishedLine) -> bool:
-    """Plaited nylon after years in the sea."""
+    """Whether a line is plaited nylon after years in the sea."""
     return (line.material, line.construction) == ("nylon", "8-strand plaited") and (
         line.condition != "new"
     )
@@ -639,7 +639,7 @@ _SEGMENT = re.compile(
 
 
 class _SegmentName(NamedTuple):
-    """What the heading of a row of Tables 5 and 6 says."""
+    """Content of the heading of a row in Tables 5 and 6."""
 
     test: str
     condition: Literal["ten cycles", "after 3000 cycles"]
@@ -655,7 +655,7 @@ class TetherSegment:
     Parameters
     ----------
     name : SegmentName
-        Test, condition, tether, which of the two tables, place from the lowest strain.
+        Test, condition, tether, table, place counted from the lowest strain.
     branch : str
         ``ascending``: no descending modulus is tabulated.
     strain_low, strain_high : float
@@ -663,16 +663,16 @@ class TetherSegment:
     tension_low, tension_high : float
         NaN where open. [N]
     modulus : float
-        On the area at zero tension; NaN where open. [Pa]
+        With the area at zero tension; NaN where open. [Pa]
     strain_method : StrainMethod
-        Of the report; in T-1 it gives moduli 1.145 (new) and 1.163 (used) times those of the
+        Method of the report; in T-1 its moduli are 1.145 (new) and 1.163 (used) times those of the
         marks.
     is_open : bool
         Whether a number of the row is open.
     errata : tuple of str
-        Ids of what touches the row.
+        Ids of errata that affect the row.
     notes : tuple of str
-        Alternatives, and what else to know.
+        Alternatives and other remarks.
     """
 
     name: _SegmentName
@@ -700,7 +700,7 @@ class _TetherTest:
 
 @dataclass(frozen=True)
 class PublishedTether:
-    """What the report holds of one tether.
+    """Data of the report on one tether.
 
     Parameters
     ----------
@@ -708,15 +708,15 @@ class PublishedTether:
     specimen : Specimen
         Diameter as corrected, hence area; stretched diameters; break strength of the text.
     printed_diameter : float
-        Of Table 2. [m]
+        From Table 2. [m]
     marks : SpliceMarks
-        Of test T-1, the only ones printed.
+        For test T-1, the only ones printed.
     tests : tuple of TetherTest
         In the order they were run.
     segments : tuple of TetherSegment
         Raw (Table 5), then consolidated (Table 6).
     errata : tuple of str
-        Ids of what touches all of it.
+        Ids of errata that affect all of it.
     """
 
     name: TetherName
@@ -746,7 +746,7 @@ class PublishedTether:
 
 
 def _name_of_segment(row: str) -> _SegmentName:
-    """What the heading of a row of Tables 5 and 6 says.
+    """Content of the heading of a row in Tables 5 and 6.
 
     Examples
     --------
@@ -798,7 +798,7 @@ def published_tethers() -> tuple[PublishedTether, PublishedTether]:
 
 
 def published_static_test() -> StepReadings:
-    """Table 4, with the length at 1325 as corrected.
+    """Table 4, with the corrected length at 1325.
 
     Examples
     --------
@@ -872,7 +872,7 @@ def _tether(name: TetherName) -> PublishedTether:
 
 
 def _faults(ids: list[str], *, keep: str = "") -> tuple[str, ...]:
-    """Ids of errata in their order, without those that only say that a number stands."""
+    """Ids of errata in their order, without those that only confirm a number."""
     stands = {one.id for one in errata_of(TETHER_REPORT) if not one.confidence} - {keep}
     return tuple(one for one in dict.fromkeys(ids) if one and one not in stands)
 

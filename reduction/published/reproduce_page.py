@@ -1,6 +1,6 @@
-"""The reports that are reproduced, and the page of them.
+"""The reproduced reports, and their page.
 
-It opens from disk and fetches nothing; its style is that of the reports of campaigns.
+The page opens from disk and fetches nothing; its style is that of the reports of campaigns.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from reduction.published.reproduced_item import ReproducedItem, Verdict
 VERDICTS: tuple[Verdict, ...] = get_args(Verdict)
 
 Counts = dict[str, int]
-"""``cells``, then one number a verdict."""
+"""``cells``, then the number for each verdict."""
 
 _ITEMS: Mapping[ReportId, Callable[[], list[ReproducedItem]]] = {
     "WHOI-2004-06": whoi_2004_06.items,
@@ -45,7 +45,7 @@ def reproduce(report: ReportId | None = None) -> dict[ReportId, list[ReproducedI
     Parameters
     ----------
     report : ReportId, optional
-        Which of the five; all where nothing is said.
+        One of the five; default all.
 
     Returns
     -------
@@ -56,12 +56,12 @@ def reproduce(report: ReportId | None = None) -> dict[ReportId, list[ReproducedI
 
 
 def counts_of(items: Iterable[ReproducedItem]) -> Counts:
-    """How many cells there are, and how many of each verdict.
+    """Number of cells, and number for each verdict.
 
     Parameters
     ----------
     items : iterable of Item
-        Of a table, a report or all.
+        Items of a table, of a report or of all.
 
     Returns
     -------
@@ -76,17 +76,17 @@ def counts_of(items: Iterable[ReproducedItem]) -> Counts:
 
 
 def counts_by_table(items: Iterable[ReproducedItem]) -> dict[str, Counts]:
-    """Counts of each table, in the order in which the tables come.
+    """Counts of each table, in the order of the tables.
 
     Parameters
     ----------
     items : iterable of Item
-        Of one report.
+        Items of one report.
 
     Returns
     -------
     counts : dict of str to dict of str to int
-        By table, or section of a claim.
+        By table, or by section of a claim.
     """
     tables: dict[str, list[ReproducedItem]] = {}
     for item in items:
@@ -96,21 +96,21 @@ def counts_by_table(items: Iterable[ReproducedItem]) -> dict[str, Counts]:
 
 @dataclass(frozen=True)
 class _TouchedErratum:
-    """A fault of a page, and the items whose cells name it."""
+    """An error of a report, and the items whose cells name it."""
 
     erratum: Erratum
     items: tuple[ReproducedItem, ...]
 
 
 def touched_errata(report: ReportId, items: Iterable[ReproducedItem]) -> list[_TouchedErratum]:
-    """Every known fault of a report with its cells.
+    """Every known error of a report with its cells.
 
     Parameters
     ----------
     report : ReportId
-        Which of the five.
+        One of the five.
     items : iterable of Item
-        Of this report.
+        Items of this report.
 
     Returns
     -------
@@ -124,17 +124,17 @@ def touched_errata(report: ReportId, items: Iterable[ReproducedItem]) -> list[_T
 
 
 def csv_of(items: Iterable[ReproducedItem]) -> str:
-    """Items as a table, a line a cell.
+    """Items as a table, one line per cell.
 
     Parameters
     ----------
     items : iterable of Item
-        Of one report or of several.
+        Items of one or several reports.
 
     Returns
     -------
     text : str
-        CSV; what is not known is empty.
+        CSV; unknown values are empty.
     """
     text = io.StringIO()
     writer = csv.writer(text)
@@ -188,7 +188,7 @@ _LEAST_FIXED, _MOST_FIXED = 1e-4, 1e9
 
 @dataclass(frozen=True)
 class _Row:
-    """One cell as it is shown."""
+    """One cell as shown."""
 
     item: ReproducedItem
     corrected: str
@@ -219,7 +219,7 @@ def render_reproduction(reports: Mapping[ReportId, Sequence[ReproducedItem]]) ->
     Parameters
     ----------
     reports : mapping of ReportId to sequence of Item
-        As `reduction.published.reproduce_page.reproduce` gives them.
+        As returned by `reduction.published.reproduce_page.reproduce`.
 
     Returns
     -------
@@ -269,12 +269,12 @@ def _report(report: ReportId, items: Sequence[ReproducedItem]) -> _Report:
 
 
 def _title(table: str) -> str:
-    """A table has a number on its page; equations, sections and parts have a name."""
+    """Title of a table by its printed number; equations, sections and parts have a name."""
     return table if table[0].islower() or table.startswith("App ") else f"Table {table}"
 
 
 def number_beside(value: float, printed: str) -> str:
-    """A recomputed number with two digits more than the printed one.
+    """A recomputed number with two more digits than the printed one.
 
     Examples
     --------
@@ -286,7 +286,7 @@ def number_beside(value: float, printed: str) -> str:
     if not math.isfinite(value):
         return ""
     if value and not _LEAST_FIXED <= abs(value) < _MOST_FIXED:
-        # round-off of a number that is nothing beside the printed digits
+        # a rounding error that is negligible relative to the printed digits
         step = printed_step(printed)
         return "0" if abs(value) < 1e-9 * step else f"{value:.6g}"
     step = printed_step(printed)

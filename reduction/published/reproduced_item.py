@@ -1,4 +1,4 @@
-"""A printed number beside the recomputed one, with its verdict."""
+"""A printed number and the recomputed one, with a verdict."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ class ReproducedItem:
     """One cell of a report.
 
     ``recomputed`` is in the printed unit, NaN where nothing can be computed; ``how`` says from
-    what, or why not. ``tolerance`` is by how much the two may differ, in the printed unit; NaN
-    where no number was held against another: words, bounds, what nothing else determines. ``z`` and
-    ``power`` are of a number that equations close with a partner: how far off it is, and how far
-    one unit of its leading digit would be, in standard errors; NaN of any other.
+    which data, or why not. ``tolerance`` is the allowed difference in the printed unit; NaN
+    where no number was compared: words, bounds, numbers that nothing else determines. ``z`` and
+    ``power`` apply to a number that equations relate to a partner: its deviation, and one unit of
+    its leading digit, in standard errors; NaN for any other number.
     """
 
     cell: Cell
@@ -39,13 +39,13 @@ class ReproducedItem:
 
 
 DETECTED = 3.0
-"""Standard errors at which a closure tells a wrong number from a right one. [1]"""
+"""Standard errors at which a closure distinguishes a wrong number from a right one. [1]"""
 
 
 def judge_repeat(
     cell: Cell, other: float, how: str, *, tolerance: float | None = None
 ) -> ReproducedItem:
-    """Hold a printed number against another print of the same number.
+    """Compare a printed number with another print of the same number.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def judge_repeat(
     other : float
         The other print, in the printed unit.
     how : str
-        Where it stands.
+        Place of the other print.
     tolerance : float, optional
         As of `judge`.
 
@@ -71,26 +71,26 @@ def judge_repeat(
 def closed_item(
     item: ReproducedItem, standard_error: float, *, spread: float = 0.0, how: str = ""
 ) -> ReproducedItem:
-    """What is known of a number that equations join to a partner.
+    """Judge a number that equations relate to a partner.
 
     Parameters
     ----------
     item : Item
-        With the number that the partner asks for; known faults stay as they are.
+        With the number that follows from the partner; known errors stay as they are.
     standard_error : float
-        Of the printed number less that one; NaN or zero where nothing is known of it.
+        Of the printed number less that one; NaN or zero where not known.
     spread : float
-        How far apart the numbers are that the partner may ask for, of which the nearest is taken:
-        so much of a fault it hides. [printed unit]
+        Range of the numbers that may follow from the partner, of which the nearest is used: it
+        hides errors up to this size. [printed unit]
     how : str
-        From what; that of the item where nothing is said.
+        Source data; by default that of the item.
 
     Returns
     -------
     item : Item
-        ``open`` where the number is farther off than `DETECTED` standard errors; ``closed`` where
-        it is not, and one unit of its leading digit would be; where so coarse a fault would not be
-        seen, ``measured`` in place of ``derived``, and else as it is.
+        ``open`` where the deviation exceeds `DETECTED` standard errors; ``closed`` where it does
+        not, but one unit of the leading digit would; where such a coarse error would not be
+        detected, ``measured`` in place of ``derived``, and otherwise unchanged.
 
     Examples
     --------
@@ -118,7 +118,7 @@ def closed_item(
 def judge(
     cell: Cell, recomputed: float, how: str, *, tolerance: float | None = None
 ) -> ReproducedItem:
-    """Hold a printed number against what it ought to be.
+    """Compare a printed number with the expected one.
 
     Parameters
     ----------
@@ -127,18 +127,18 @@ def judge(
     recomputed : float
         In the printed unit.
     how : str
-        From what it was computed.
+        Source data of the computation.
     tolerance : float, optional
-        Half the last printed digit where nothing is said; wider only where the inputs are
-        rounded too, by what their rounding does.
+        By default half the last printed digit; wider only where the inputs are rounded too, by the
+        effect of their rounding.
 
     Returns
     -------
     item : Item
         ``derived`` where the printed number is within the tolerance; else ``erratum`` or
-        ``open`` where the cell says so, and the corrected value, where there is one, is within it;
-        else ``unexplained``. An erratum that lets the printed number stand, and has no confidence
-        therefore, explains no difference from it.
+        ``open`` where the cell says so and the corrected value, if any, is within it; else
+        ``unexplained``. An erratum that confirms the printed number, and therefore has no
+        confidence, explains no difference.
     """
     half = 0.5 * printed_step(cell.printed)
     allowed = (half if tolerance is None else max(tolerance, half)) * (1 + 1e-9)
@@ -151,16 +151,16 @@ def judge(
 
 
 def agree(cell: Cell, holds: bool, how: str) -> ReproducedItem:
-    """A claim in words that numbers bear out or not.
+    """Judge a claim in words by whether the numbers support it.
 
     Parameters
     ----------
     cell : Cell
         As printed.
     holds : bool
-        Whether they do.
+        Whether they support it.
     how : str
-        From what.
+        Source data.
 
     Returns
     -------
@@ -173,34 +173,34 @@ def agree(cell: Cell, holds: bool, how: str) -> ReproducedItem:
 
 
 def measured_item(cell: Cell, why: str) -> ReproducedItem:
-    """A cell that nothing else in the report determines.
+    """Item for a cell that nothing else in the report determines.
 
     Parameters
     ----------
     cell : Cell
         As printed.
     why : str
-        Measured, a figure that the text lacks, a setting, ...
+        Reason: measured, a figure missing in the text, a setting, ...
 
     Returns
     -------
     item : Item
-        ``erratum`` or ``open`` where the cell says so: that much is known of it.
+        ``erratum`` or ``open`` where the cell says so, since that is known.
     """
     return ReproducedItem(cell, math.nan, _known_of(cell, "measured"), why)
 
 
 def compared_item(cell: Cell, recomputed: float, why: str) -> ReproducedItem:
-    """A cell that nothing determines to its last digit, with a number to hold against it.
+    """Item for a cell that is not determined to its last digit, with a number for comparison.
 
     Parameters
     ----------
     cell : Cell
         As printed.
     recomputed : float
-        The number beside it, in the printed unit.
+        The number for comparison, in the printed unit.
     why : str
-        What it is, and why the cell does not follow from it.
+        Its meaning, and why the cell does not follow from it.
 
     Returns
     -------
@@ -211,7 +211,7 @@ def compared_item(cell: Cell, recomputed: float, why: str) -> ReproducedItem:
 
 
 def _known_of(cell: Cell, otherwise: Verdict) -> Verdict:
-    """What is said against a cell; nothing where its erratum lets the printed number stand."""
+    """Verdict from the erratum of a cell; none where it confirms the printed number."""
     if not cell.erratum or not cell.confidence:
         return otherwise
     return "open" if cell.confidence == "open" else "erratum"
@@ -229,7 +229,7 @@ _WORDS = {
 
 
 def last_counted_place(text: str) -> float:
-    """One unit of the last digit of a round number that is not zero.
+    """One unit of the last nonzero digit of a round number.
 
     Parameters
     ----------
@@ -239,7 +239,7 @@ def last_counted_place(text: str) -> float:
     Returns
     -------
     place : float
-        0 where there is no number, and where it is zero.
+        0 where there is no number, and for zero.
 
     Examples
     --------
@@ -255,7 +255,7 @@ def last_counted_place(text: str) -> float:
 
 
 def judge_round(cell: Cell, recomputed: float, how: str) -> ReproducedItem:
-    """Hold a round number, that the text itself calls one, against what it ought to be.
+    """Compare a number that the text itself calls round with the expected one.
 
     Parameters
     ----------
@@ -264,30 +264,30 @@ def judge_round(cell: Cell, recomputed: float, how: str) -> ReproducedItem:
     recomputed : float
         In the printed unit.
     how : str
-        From what it was computed.
+        Source data of the computation.
 
     Returns
     -------
     item : Item
-        By `judge`, within half of the last digit that is not zero.
+        By `judge`, within half of the last nonzero digit.
     """
     place = last_counted_place(cell.printed)
     return judge(cell, recomputed, f"{how}; round to {place:g}", tolerance=0.5 * place)
 
 
 def judge_limit(cell: Cell, recomputed: float, how: str, *, is_upper: bool) -> ReproducedItem:
-    """Hold a printed limit against what it is said to bound.
+    """Compare a printed limit with the number that it bounds.
 
     Parameters
     ----------
     cell : Cell
         Printed with less than, below, up to; or with over, above, at least.
     recomputed : float
-        What is bounded, in the printed unit.
+        The bounded number, in the printed unit.
     how : str
-        From what it was computed.
+        Source data of the computation.
     is_upper : bool
-        Whether the printed number bounds it from above.
+        Whether the printed number is an upper bound.
 
     Returns
     -------
@@ -304,7 +304,7 @@ def judge_limit(cell: Cell, recomputed: float, how: str, *, is_upper: bool) -> R
 def judge_as(
     cell: Cell, text: str, recomputed: float, how: str, *, tolerance: float | None = None
 ) -> ReproducedItem:
-    """Hold another writing of a printed number against what it ought to be.
+    """Compare another notation of a printed number with the expected one.
 
     Parameters
     ----------
@@ -313,39 +313,39 @@ def judge_as(
     text : str
         Its number in digits.
     recomputed : float
-        What it ought to be.
+        Expected value.
     how : str
-        From what it was computed.
+        Source data of the computation.
     tolerance : float, optional
         As of `judge`.
 
     Returns
     -------
     item : Item
-        By `judge`; of the cell as printed.
+        By `judge`, for the cell as printed.
     """
     item = judge(replace(cell, printed=text), recomputed, how, tolerance=tolerance)
     return replace(item, cell=cell)
 
 
 def judge_word(cell: Cell, recomputed: float, how: str, *, step: float = 1.0) -> ReproducedItem:
-    """Hold a number in words against what it ought to be.
+    """Compare a number in words with the expected one.
 
     Parameters
     ----------
     cell : Cell
         Printed as ``twice``, ``two samples each``.
     recomputed : float
-        What it ought to be.
+        Expected value.
     how : str
-        From what it was computed.
+        Source data of the computation.
     step : float
-        In which it is said: 0.5 for ``one-and-a-half``.
+        Resolution of the words: 0.5 for ``one-and-a-half``.
 
     Returns
     -------
     item : Item
-        By `judge`, within half a step; words that are no number are never reproduced.
+        By `judge`, within half a step; words without a number are never reproduced.
     """
     said = next((_WORDS[word] for word in cell.printed.lower().split() if word in _WORDS), None)
     if said is None:
@@ -361,20 +361,20 @@ Key = tuple[str, str, str]
 
 @dataclass(frozen=True)
 class Answer:
-    """What a cell ought to be, in the printed unit, and from what.
+    """Expected value of a cell, in the printed unit, and its source data.
 
     Parameters
     ----------
     value : float
         Recomputed.
     how : str
-        From what.
+        Source data.
     tolerance : float, optional
-        What the rounding of the inputs does, where they are rounded.
+        Effect of the rounding of the inputs, where they are rounded.
     bound : {"", "below", "above"}
-        The page says that a number is below, or above, the printed one: ``less than 2 %``.
+        The report says that a number is below, or above, the printed one: ``less than 2 %``.
     meaning : float, optional
-        Of printed words that hold no number: 1 for ``the same``.
+        Value of printed words without a number: 1 for ``the same``.
     """
 
     value: float
@@ -385,7 +385,7 @@ class Answer:
 
 
 Answers = dict[Key, Answer | str]
-"""By cell; a text says why nothing in the report determines it."""
+"""Answers by cell; a text says why nothing in the report determines the cell."""
 
 
 def items_from(report: ReportId, answers: Mapping[Key, Answer | str]) -> list[ReproducedItem]:
@@ -394,7 +394,7 @@ def items_from(report: ReportId, answers: Mapping[Key, Answer | str]) -> list[Re
     Parameters
     ----------
     report : ReportId
-        Which of the five.
+        One of the five reports.
     answers : mapping of Key to Answer or str
         By cell.
 
@@ -406,7 +406,7 @@ def items_from(report: ReportId, answers: Mapping[Key, Answer | str]) -> list[Re
     Raises
     ------
     DataError
-        If a cell has no answer, or an answer no cell.
+        If a cell has no answer, or an answer has no cell.
     """
     cells = cells_of(report)
     unknown = answers.keys() - {cell.key for cell in cells}
@@ -448,7 +448,7 @@ def item_of(cell: Cell, answers: Mapping[Key, Answer | str]) -> ReproducedItem:
         return judge_limit(cell, answer.value, answer.how, is_upper=is_upper)
     tolerance = answer.tolerance
     if tolerance is None and printed is None and cell.corrected is not None:
-        # words have no digits: those of the corrected number are judged
+        # words have no digits: the corrected number is used
         tolerance = 0.5 * printed_step(repr(cell.corrected))
     elif tolerance is None and printed_step(cell.printed) == 0:
         tolerance = _ROUND_OFF  # a fraction is exact
@@ -456,7 +456,7 @@ def item_of(cell: Cell, answers: Mapping[Key, Answer | str]) -> ReproducedItem:
 
 
 def log_slope(variable: Floats | list[float], value: Floats | list[float]) -> float:
-    """Power with which a value grows with a variable, from the first point to the last.
+    """Exponent with which a value grows with a variable, from the first point to the last.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Wang (2022) again: equations, and what the text says of angles, peaks and errors.
+"""Recomputation of Wang (2022): equations, and claims on angles, peaks and errors.
 
 The forces of the paper are finite-element results in figures, and the core radius, on which every
 moment depends, is not given.
@@ -39,7 +39,7 @@ _BENDING, _TORSION = "bending moment G'", "torsion moment H"
 
 
 def _armour(degrees: float | Floats, *, wire: float = _WIRE) -> ArmourDesign:
-    """Steel wires of the paper on a core that it does not give."""
+    """Steel wires of the paper on a core of assumed radius."""
     return ArmourDesign(
         np.radians(degrees), wire, _HELIX - wire, ELASTIC_MODULUS, poisson_ratio=POISSON_RATIO
     )
@@ -228,7 +228,7 @@ def items() -> list[ReproducedItem]:
 
 
 def _answers() -> Answers:
-    """What every printed number ought to be."""
+    """Expected value of every printed number."""
     return _settings() | _trends() | _errors() | _complementary() | _equation_answers()
 
 

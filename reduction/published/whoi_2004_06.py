@@ -1,7 +1,7 @@
-"""WHOI-2004-06 again: the equations, and what the text says of cords, angles and hoses.
+"""Recomputation of WHOI-2004-06: equations, and claims on cords, angles and hoses.
 
-The report gives neither the curve of a cord nor the size of a hose, so that no load of a hose can
-be recomputed, and no stretch at a load.
+The report gives neither the curve of a cord nor the size of a hose, so no load of a hose and no
+stretch at a load can be recomputed.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ _HOSE = HoseDesign(
 
 _STRAIN = np.array([1.2, 1.6, 2.0])
 
-_AXIAL = 1e-4  # rad: a wrap angle at which the second term of (8) is nothing
+_AXIAL = 1e-4  # rad: a wrap angle at which the second term of (8) is negligible
 
 
 def _equation_answers() -> Answers:
@@ -82,7 +82,7 @@ def _kinematics() -> Answers:
 
 
 def _sheave() -> Answers:
-    """Cord of unit tension on a cylinder: its line load is one over the radius."""
+    """Cord of unit tension on a cylinder: its line load is the inverse radius."""
     node, weight = np.polynomial.legendre.leggauss(24)
     contact = 1.0
     resultant = float(np.sum(contact / 2 * weight * np.cos(contact / 2 * node)))
@@ -164,13 +164,13 @@ def _pressure() -> Answers:
 
 
 def _spread(found: HosePrediction) -> float:
-    """Pressure, freed of all that (24) has beside the sine and the factor."""
+    """Pressure without the factors of (24) other than the sine and the constant."""
     whole = found.fill_pressure * (1 + found.strain) * (1 + found.cord_strain) / found.cord_tension
     return float(whole[0])
 
 
 def _powers_over_stretch() -> tuple[Floats, Floats, float]:
-    """Of the squared sine in lambda_c with dw, then with lambda_h; of dw squared in lambda_c."""
+    """Exponents: squared sine in lambda_c with dw, then with lambda_h; dw squared in lambda_c."""
     angle, stretch = np.meshgrid(np.radians([40.0, 55.0, 70.0]), [1.2, 1.7, 2.5])
     current = current_wrap_angle(stretch, angle)
     cord = cord_stretch_ratio(stretch, angle).ravel()
@@ -223,7 +223,7 @@ def items() -> list[ReproducedItem]:
 
 
 def _answers() -> Answers:
-    """What every printed number ought to be."""
+    """Expected value of every printed number."""
     return _equation_answers() | _cords() | _angles() | _tests()
 
 
@@ -315,7 +315,7 @@ def _tests() -> Answers:
 
 
 def _stretch(degrees: float, percent: float) -> str:
-    """Say what a measured stretch is worth: it is possible, and no more can be said."""
+    """Say that a measured stretch is possible, which is all that can be said."""
     angle = np.radians(degrees)
     cord = 100 * (float(cord_stretch_ratio(1 + percent / 100, angle)) - 1)
     pick_up = 100 * (float(pick_up_stretch_ratio(angle)) - 1)

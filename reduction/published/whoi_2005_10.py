@@ -1,4 +1,4 @@
-"""Every printed number of WHOI-2005-10 again."""
+"""Recomputation of every printed number of WHOI-2005-10."""
 
 from __future__ import annotations
 
@@ -48,12 +48,12 @@ class _Row:
 
     @property
     def tether(self) -> str:
-        """Which of the two."""
+        """Tether of the row, one of two."""
         return "new" if "tether new" in self.name else "used"
 
     @property
     def branch(self) -> str:
-        """Of the static test."""
+        """Branch of the static test."""
         return "descending" if "descending" in self.name else "ascending"
 
 
@@ -165,7 +165,7 @@ def _items_of_weights(cells: Sequence[Cell]) -> Iterator[ReproducedItem]:
                     else:
                         yield measured_item(cell, _TIMES)
                 case "tension":
-                    # what was hung is taken off again, in the opposite order
+                    # weights are removed in the opposite order
                     twin = rows[-1 - place]
                     if twin is row:
                         yield measured_item(cell, "the greatest weight, printed once")
@@ -208,7 +208,7 @@ _HALF_A_PSI = 0.5
 
 _COPIED = "WH5-6"
 
-# of each number from the other four and the area, pound-force, inch and psi throughout
+# each number from the other four and the area, in pound-force, inch and psi throughout
 _FROM_OTHERS: dict[str, Callable[[dict[str, float]], float]] = {
     HIGH: lambda at: at[LOW] + at[MODULUS] * at["area"] * (at[UPPER] - at[LOWER]),
     LOW: lambda at: at[HIGH] - at[MODULUS] * at["area"] * (at[UPPER] - at[LOWER]),
@@ -221,7 +221,7 @@ _FROM_OTHERS: dict[str, Callable[[dict[str, float]], float]] = {
 
 
 def _shared_area(rows: Sequence[_Row]) -> tuple[float, float]:
-    """Range of area on which every row rounds to its printed modulus."""
+    """Range of area for which every row rounds to its printed modulus."""
     low, high = 0.0, float("inf")
     for row in rows:
         slope = (row[HIGH] - row[LOW]) / (row[UPPER] - row[LOWER])
@@ -231,7 +231,7 @@ def _shared_area(rows: Sequence[_Row]) -> tuple[float, float]:
 
 
 def _sound(rows: Sequence[_Row], tether: str) -> list[_Row]:
-    """Rows of which no number is corrected or open."""
+    """Rows in which no number is corrected or open."""
     return [
         row
         for row in rows
@@ -285,7 +285,7 @@ _SECTION = {
     "T-4 Extended": "4.7",
 }  # fmt: skip
 
-# rows of claims that name no test
+# rows of claims that do not name a test
 _TEST_OF_CLAIM = {
     "typical design": "T-2",
     "typical design, least": "T-2",
@@ -405,7 +405,7 @@ def _columns(row: _Row) -> dict[str, float]:
 
 
 def _item_printed_twice(cell: Cell, book: Mapping[Key, Cell]) -> ReproducedItem | None:
-    """A claim of the text against where the text makes it again."""
+    """A claim of the text compared with its repetition elsewhere in the text."""
     return _as_elsewhere(cell, _TWIN[cell.key], book) if cell.key in _TWIN else None
 
 
@@ -423,13 +423,13 @@ _INCH = scale_to_si("inch", "length")[0]
 
 _PSI = scale_to_si("psi", "stress")[0]
 
-_NEAR = 0.1  # of strain: how far the line of a first segment is carried down to 100 %
+_NEAR = 0.1  # of strain: how far the line of a first segment is extrapolated down to 100 %
 
 _SPREAD = 0.1  # of 1 in: the material varied from 0.9 to 1.1 in (sec. 2.3.1)
 
 
 def _items_of_claims(book: Mapping[Key, Cell]) -> Iterator[ReproducedItem]:
-    """Every claim that a table decides."""
+    """Every claim that a table can decide."""
     tables = {
         table: _rows_of([cell for cell in book.values() if cell.table == table])
         for table in "123456"
@@ -475,7 +475,7 @@ def _of_lengths(
 def _of_time(
     book: Mapping[Key, Cell], plan: Sequence[_Row], marks: Sequence[_Row]
 ) -> Iterator[ReproducedItem]:
-    """The extended test: stroke, velocity, rate and duration say the same."""
+    """The extended test: stroke, velocity, rate and duration are consistent."""
     new = [row for row in marks if "far_thimble" in row.cells and row.tether == "new"]
     low, high = new[1], new[-1]
     per_point = (high["far_thimble"] - low["far_thimble"]) / (
@@ -496,7 +496,7 @@ def _of_time(
 
 
 def _of_tension(book: Mapping[Key, Cell], rows: Sequence[_Row]) -> Iterator[ReproducedItem]:
-    """Tension of one tether at 100 %, by every test that comes near it."""
+    """Tension of one tether at 100 %, from every test that comes near it."""
     first: dict[str, tuple[float, _Row]] = {}
     for row in rows:
         if any(cell.confidence == "open" for cell in row.cells.values()):
@@ -530,7 +530,7 @@ def _of_tension(book: Mapping[Key, Cell], rows: Sequence[_Row]) -> Iterator[Repr
 def _of_strain(
     book: Mapping[Key, Cell], marks: Sequence[_Row], raw: Sequence[_Row]
 ) -> ReproducedItem:
-    """Which stretch of Table 3 the strains of Table 5 go by: where T-1 ends on both tethers."""
+    """Stretch of Table 3 used for the strains of Table 5: where T-1 ends on both tethers."""
     misses = {"interpolated": 0.0, "actual": 0.0}
     for tether in ("new", "used"):
         top = max(row[UPPER] for row in raw if row.name.startswith("T-1 ") and row.tether == tether)
@@ -651,7 +651,7 @@ def _of_static_test(
     waited, between = (
         ", ".join(f"{one:.0f}" for one in some) for some in (minutes[:top], minutes[top:])
     )
-    # the time between two readings holds the wait and the next weight: a wait is at most the least
+    # the time between two readings is the wait plus the next weight: a wait is at most the least
     yield judge(
         book["sec 4.8", row_name.format("added"), "hold duration"],
         float(np.min(minutes[:top])),

@@ -1,6 +1,6 @@
-"""Zhang (2015) again: what goes into its tables, and what its text says.
+"""Recomputation of Zhang (2015): input of its tables, and claims of its text.
 
-Settings follow from the tables that were made with them.
+Settings were found from the tables that were computed with them.
 """
 
 from __future__ import annotations
@@ -36,10 +36,10 @@ LENGTH, PERIOD, SPEED, HEIGHT = 20.0, 3.57, 5.6, 1.25
 """Table 4. [m], [s], [m/s], [m]."""
 
 NUMBER, FREQUENCY = 2 * pi / LENGTH, 2 * pi / PERIOD
-"""Of the wave in space [rad/m], and in time [rad/s]; Table 4 prints 1.93 for the latter."""
+"""Wave number [rad/m] and angular frequency [rad/s]; Table 4 prints 1.93 for the latter."""
 
 DEPTH = 6.0
-"""Of the example of the Airy theory. [m]."""
+"""Depth in the example of the Airy theory. [m]."""
 
 GRAVITY = 9.8
 """Not printed. [m/s2]."""
@@ -221,7 +221,7 @@ def _extreme(cell: Cell, last: float) -> Answer:
 
 
 def _ratio(cell: Cell) -> Answer:
-    """From Table 7 as it ought to be, rounded as there."""
+    """From Table 7 as corrected, rounded as there."""
     direction, theory = cell.column[4:-1].split(", ")
     values = np.array(
         [
@@ -262,7 +262,7 @@ _AIRY, _STOKES = "Airy wave theory", "Stokes wave theory"
 
 _EXAMPLES = {"example of the Airy theory": 6.0, "example of the Stokes theory": 3.0}
 
-_HALF_DIGIT = 0.005  # of the loads of Table 7
+_HALF_DIGIT = 0.005  # in the loads of Table 7
 
 
 def items() -> list[ReproducedItem]:
@@ -271,7 +271,7 @@ def items() -> list[ReproducedItem]:
 
 
 def _answers() -> Answers:
-    """What every printed number ought to be."""
+    """Expected value of every printed number."""
     tables = _conditions() | _hose() | _waves() | _coefficients() | _table_answers()
     return tables | _equation_answers() | _depths() | _claims()
 
@@ -398,7 +398,7 @@ def _coefficients() -> Answers:
     share = float(np.sqrt(along / _drag(crest)))
     deep = NUMBER * 6.0
     level = (float(np.arccosh(share * np.cosh(deep))) - deep) / NUMBER
-    # a load goes with the squared velocity
+    # a load is proportional to the squared velocity
     slack = _HALF_DIGIT / (2 * along) / (NUMBER * float(np.tanh(deep)))
     return {
         ("eq 12", "all examples", "drag_coefficient C_D"): Answer(

@@ -72,9 +72,9 @@ _SMALL = 0.005
 
 @dataclass(frozen=True)
 class AnswerBudget:
-    """One answer of a test: what it is, of which specimen, in which unit, and its budget.
+    """One answer of a test: name, specimen, unit, and budget.
 
-    ``drawn`` is its interval where that was found by Monte Carlo; the shares are of first order.
+    ``drawn`` is its interval where found by Monte Carlo; the shares are of first order.
     """
 
     words: str
@@ -85,7 +85,7 @@ class AnswerBudget:
 
     @staticmethod
     def sources_of(answers: Sequence[AnswerBudget]) -> list[str]:
-        """Every source that has a part in any of the answers, in fixed order."""
+        """Every source that contributes to any of the answers, in fixed order."""
         return in_order({row.source for one in answers for row in one.budget.rows if row.share > 0})
 
     @property
@@ -103,11 +103,11 @@ class AnswerBudget:
         return f"{self.cell.text}{unit}"
 
     def share(self, source: str) -> float:
-        """Share of a source in the variance; several errors of one source together. [1]."""
+        """Share of a source in the variance, over all errors of the source. [1]."""
         return float(sum(row.share for row in self.budget.rows if row.source == source))
 
     def in_words(self) -> str:
-        """Sources with their shares, largest first; what is below half a percent is left out."""
+        """Sources with their shares, largest first; those below half a percent are left out."""
         shares = {name: self.share(name) for name in self.sources_of([self])}
         ordered = sorted(shares, key=lambda name: -shares[name])
         return ", ".join(
@@ -141,7 +141,7 @@ def answer_budgets(view: TestView) -> list[AnswerBudget]:
 
 
 def _words_of(view: TestView, one: Budget) -> str:
-    """Which segment it is, or between which readings."""
+    """Number of the segment, or the readings at its ends."""
     if "segment" in one.place:
         return f"segment {one.place['segment']}, {one.place['branch_name']}"
     after = int(one.place["interval"])
@@ -150,7 +150,7 @@ def _words_of(view: TestView, one: Budget) -> str:
 
 
 def budget_table(view: TestView, answers: Sequence[AnswerBudget]) -> PageTable | None:
-    """Return the numbers of the bars: value, uncertainty, factor, and the share of each source."""
+    """Return the values behind the bars: value, uncertainty, factor, and share of each source."""
     if not answers:
         return None
     sources = AnswerBudget.sources_of(answers)
@@ -184,7 +184,7 @@ def _share(value: float) -> TableCell:
 
 
 def budget_sentences(view: TestView, answers: Sequence[AnswerBudget]) -> list[str]:
-    """Say where nothing is stated of the instruments: a bar without them is not all there is."""
+    """Say where no instrument errors are stated, since a bar without them is incomplete."""
     return instrument_sentences([view]) if answers else []
 
 
@@ -240,9 +240,9 @@ def design_modulus_table(tests: Sequence[TestView]) -> PageTable | None:
 
 
 def pull_table(tests: Sequence[TestView]) -> PageTable | None:
-    """Return strain and load that pulls, breaks and weights reached, and the stiffness on the way.
+    """Return strain and load reached in pulls, breaks and by weights, and the stiffness.
 
-    None where no test is of such a kind.
+    None where no test is of this kind.
     """
     own = [view for view in tests if view.kind in _PULLS]
     is_of_lines = bool(own) and all(view.is_rope or view.is_hose for view in own)
@@ -274,7 +274,7 @@ _KIND_OF_ROPE = ("kind", "material", "construction", "condition")
 
 
 def _sets_of_breaks(tests: Sequence[TestView]) -> list[str]:
-    """Say what the breaks of specimens of one kind give together, where there are several."""
+    """Summarise the breaks of specimens of one kind, where there are several."""
     force = shown("tension", tests[0].units)
     sets: dict[tuple[str, ...], list[tuple[str, float]]] = {}
     for view in tests:
@@ -316,7 +316,7 @@ def _pull_rows(view: TestView, *, is_of_lines: bool) -> Iterator[list[TableCell]
         curve = _rise(view, place)
         is_break = broke is not None and broke[place] == 1
         known = [_pull_peak(view, peak, place) for peak in ("strain", "tension")]
-        if curve is None and not all(known):  # a break is one without a curve before it, too
+        if curve is None and not all(known):  # a break also has no curve before it
             continue
         ends = [TableCell(NOT_GIVEN, is_number=True)] * 2
         line = material = ends[0]
@@ -324,12 +324,12 @@ def _pull_rows(view: TestView, *, is_of_lines: bool) -> Iterator[list[TableCell]
             strain, load, stiffness, is_modulus = curve
             at_end = int(np.nanargmax(load.values))
             reached = known[0].values[0] if known[0] else strain[at_end]
-            if not is_break:  # whose own strain is not known where it is not given
+            if not is_break:  # its own strain is unknown where it is not given
                 ends = [_Series.known(strain).cell(at_end, strain_unit), load.cell(at_end, force)]
             usable = np.flatnonzero(np.isfinite(stiffness.values))
             if usable.size:
                 half_way = reached / 2
-                if strain[usable[0]] > half_way:  # the pull begins under a load
+                if strain[usable[0]] > half_way:  # the pull begins under load
                     half_way = (strain[usable[0]] + reached) / 2
                 middle = int(usable[np.argmin(np.abs(strain[usable] - half_way))])
                 area = float("nan") if areas is None else float(np.ravel(areas)[place])
@@ -347,7 +347,7 @@ def _pull_rows(view: TestView, *, is_of_lines: bool) -> Iterator[list[TableCell]
 
 
 def _pull_peak(view: TestView, of: str, place: int) -> _Series | None:
-    """Return the strain or tension at which a pull ended; None where it is not known."""
+    """Return the strain or tension at the end of a pull; None where it is not known."""
     values = view.array(f"pull_peak_{of}")
     if values is None or not np.isfinite(values[place]):
         return None
@@ -359,7 +359,7 @@ def _pull_peak(view: TestView, of: str, place: int) -> _Series | None:
 
 @dataclass(frozen=True)
 class _Series:
-    """Numbers along a rise with their half-widths and coverage factors."""
+    """Values along a first loading with their half-widths and coverage factors."""
 
     values: Floats
     half: Floats
@@ -367,18 +367,18 @@ class _Series:
 
     @classmethod
     def known(cls, values: Floats) -> _Series:
-        """Numbers without an uncertainty."""
+        """Values without an uncertainty."""
         unknown = np.full(values.shape, np.nan)
         return cls(values, unknown, unknown)
 
     def cell(self, place: int, unit: Shown, times: float = 1.0) -> TableCell:
-        """One of them, times a number."""
+        """One value, multiplied by a number."""
         value, half = times * self.values[place], times * self.half[place]
         return measured(value, half, unit, factor=float(self.factor[place]))
 
 
 def _rise(view: TestView, place: int) -> tuple[Floats, _Series, _Series, bool] | None:
-    """Return strains of a first rise, loads and stiffness there, and whether that is a modulus."""
+    """Return strains of a first loading, loads, stiffness, and whether that is a modulus."""
 
     def series(name: str, *own: int) -> _Series | None:
         values = view.array(name)
@@ -392,7 +392,7 @@ def _rise(view: TestView, place: int) -> tuple[Floats, _Series, _Series, bool] |
     if pulled is not None and strain is not None and np.isfinite(pulled.values).any():
         load = _Series.known(np.asarray(view.array("tension_grid")))
         cubic = strain.values, load, pulled, False
-        if view.is_rope:  # of which it is the law; the curve of a rubber bends twice
+        if view.is_rope:  # the cubic is a law for ropes only; the curve of a rubber bends twice
             return cubic
         if any(
             one.code == "pull-misfit" and _is_of(one, view.specimens[place]) for one in view.notes
@@ -405,7 +405,7 @@ def _rise(view: TestView, place: int) -> tuple[Floats, _Series, _Series, bool] |
         strains, loads, secants = (
             view.array_like(key, np.zeros(0)) for key in ("strain", "tension", "secant_modulus")
         )
-        # a reading without a secant is one that others contradict
+        # a reading without a secant is contradicted by others
         is_sound = np.isfinite(secants) if np.isfinite(secants).any() else np.isfinite(loads)
         top = np.argmax(np.where(is_sound, loads, -np.inf))
         at = np.append(middles[rising], strains[top])
@@ -448,7 +448,7 @@ def hold_table(tests: Sequence[TestView]) -> PageTable | None:
 def _about_spread(
     rows: Sequence[Sequence[TableCell]], tests: Sequence[TestView], names: Sequence[str]
 ) -> list[str]:
-    """Say what ± holds, where a number has one."""
+    """Describe what ± includes, if any value has one."""
     factors = factors_of(rows)
     return [plus_minus_of_tests(factors, tests, names)] if factors else []
 
@@ -486,7 +486,7 @@ def _hold_rows(view: TestView) -> Iterator[list[TableCell]]:
 def _without_empty(
     columns: list[str], rows: list[list[TableCell]], names: Collection[str]
 ) -> tuple[list[str], list[list[TableCell]]]:
-    """Leave out those of some columns that have no number in any row."""
+    """Leave out those of some columns that have no value in any row."""
     kept = [
         place
         for place, name in enumerate(columns)
@@ -496,21 +496,21 @@ def _without_empty(
 
 
 _SAME_STRAINS = 0.8
-"""Strains that two tests have in common, over all that either has: so much is the same range."""
+"""Common strains of two tests over all strains of either, from which on ranges are the same."""
 
 _UNLIKE = 1.25
-"""Ratio of two values of EA that a reader would not expect over the same strains."""
+"""Ratio of two values of EA that is unexpected over the same strains."""
 
 _LIKE_CONDITIONS = 1.15
-"""Amplitudes or frequencies that are this near explain no such ratio."""
+"""Amplitudes or frequencies within this ratio do not explain such a difference."""
 
 
 def unlike_tests_table(tests: Sequence[TestView]) -> PageTable | None:
     """Return pairs of tests of one specimen that differ over the same strains; None without any.
 
-    Beside each pair stands what the log shows to be different between them: amplitude, frequency,
-    surroundings, and what the specimen went through in between.  Parts of a test that is compared
-    as a whole are left out.
+    For each pair the differences found in the log are given: amplitude, frequency, environment, and
+    the history of the specimen in between.  Parts of a test that is compared as a whole are left
+    out.
     """
     by_specimen: dict[str, list[_Level]] = {}
     for view in tests:
@@ -539,7 +539,7 @@ def unlike_tests_table(tests: Sequence[TestView]) -> PageTable | None:
 
 @dataclass(frozen=True)
 class _Level:
-    """EA of a test with its half-width [N], and the strains that it is of [1]."""
+    """EA of a test with its half-width [N], and its range of strain [1]."""
 
     view: TestView
     place: int
@@ -560,7 +560,7 @@ class _Level:
         )
 
     def of(self, name: str) -> float:
-        """A number of the test, of this specimen; not a number where the archive has none."""
+        """A value of the test for this specimen; NaN where the archive has none."""
         found = self.view.array(name)
         if found is None:
             return float("nan")
@@ -594,7 +594,7 @@ def _unlike_row(name: str, first: _Level, second: _Level) -> list[TableCell]:
 
 
 def _differences(first: _Level, second: _Level) -> Iterator[str]:
-    """Say what differs between two tests, and what does not."""
+    """Describe the differences between two tests, and what is equal."""
     ratios = {
         "strain amplitude": (second.high - second.low) / (first.high - first.low),
         "frequency": second.of("test_frequency") / first.of("test_frequency"),
@@ -666,7 +666,7 @@ def _rows(view: TestView, *, is_of_lines: bool) -> Iterator[list[TableCell]]:
 
 
 def _status(view: TestView, specimen: str) -> TableCell:
-    """Return whether a warning is of the specimen, or of the whole test."""
+    """Return whether a warning concerns the specimen or the whole test."""
     others = [name for name in view.specimens if name != specimen]
     is_doubted = any(
         one.severity == "warning" and not any(_is_of(one, name) for name in others)
@@ -676,7 +676,7 @@ def _status(view: TestView, specimen: str) -> TableCell:
 
 
 def _is_of(note: Note, specimen: str) -> bool:
-    """Return whether a note is of one specimen: by its first words, or by its stage."""
+    """Return whether a note concerns one specimen: by its first words, or by its stage."""
     return str(note).startswith(f"{specimen}: ") or note.stage.endswith(f" {specimen}")
 
 
@@ -709,7 +709,7 @@ def _tangents(
 
 
 def _used(n_cycles: int, counts: Sequence[int]) -> str:
-    """Return how many cycles stand behind a row: one number where it is the same of all.
+    """Return the number of cycles used in a row: one number where all are equal.
 
     Examples
     --------
@@ -725,7 +725,7 @@ _FEWEST_TO_SETTLE = 4  # cycles, of which the last half is a mean
 
 
 def _which(view: TestView, place: int, mean: float, half: float) -> str:
-    """Return which cycles stand behind a row, and whether its stiffness had settled over them."""
+    """Return the cycles used in a row, and whether its stiffness had settled over them."""
     single = view.array("apparent_spring_constant")
     if single is None or single.ndim != 2:
         return ""
@@ -734,7 +734,7 @@ def _which(view: TestView, place: int, mean: float, half: float) -> str:
 
 
 def _cycles_in_words(single: Floats, first: int, mean: float, half: float) -> str:
-    """Return the numbers of cycles that have a value, and how the last half of them stands.
+    """Return the numbers of cycles that have a value, and how the mean of the last half compares.
 
     Examples
     --------
@@ -830,7 +830,7 @@ def _row(
 
 
 def _why(error: Exception) -> str:
-    """Return what is wrong with a limit and what it needs, in the words of campaign.toml."""
+    """Return what is wrong with a limit and what it needs, in the terms of campaign.toml."""
     needed = getattr(error, "needed", None)
     what = str(getattr(error, "problem", error))
     return what if needed is None else f"{what}; needed {needed.replace('--at', 'at')}"
@@ -855,7 +855,7 @@ def _place(one: ReportLimit) -> str:
 
 
 def _label(key: str, value: str) -> str:
-    """A strain in percent and a tension with its unit; any other label as it is."""
+    """A strain in percent, a tension with its unit; any other label unchanged."""
     if key.endswith(("strain", "strain_bin")):
         return f"{100 * float(value):g} %"
     return f"{value} N" if key in ("tension", "tension_grid") else value
@@ -874,7 +874,7 @@ def _limits(one: ReportLimit, unit: Shown) -> TableCell:
 
 
 def _plain(value: float) -> str:
-    """A limit as it was written, without the zeros behind it."""
+    """A limit as it was written, without trailing zeros."""
     digits, mark, power = number_text(value, 6).partition("e")
     plain = digits.rstrip("0").rstrip(".") if "." in digits else digits
     return f"{plain}{mark}{power}"

@@ -79,26 +79,26 @@ from reduction.report.test_view import (
 from reduction.report.text_style import PageTable
 
 MOST_BYTES = 9_000_000
-"""Of the sections on a page: with the program that draws (4.9 MB) it stays below 15 MB. [1]"""
+"""Greatest size of the sections on a page: with plotly (4.9 MB) it stays below 15 MB. [1]"""
 
 MOST_IN_ALL = 14_500_000
-"""Of a page with all that stands on it. [1]"""
+"""Greatest size of a page with all its content. [1]"""
 
 _NAME = "tests-{:02}.html"
 
 _OWN = re.compile(r"tests-\d{2,}\.html")
-"""Names that are given here: a page of somebody else beside them stays."""
+"""File names that are written here: pages of others in the folder are kept."""
 
 
 def _is_page_of_tests(name: str) -> bool:
-    """Whether a file of this name holds sections for which the page of a campaign has no room."""
+    """Whether a file name is that of a page of sections that the campaign page has no room for."""
     return _OWN.fullmatch(name) is not None
 
 
 def _over_pages(
     sections: Sequence[RenderedSection], most: int = MOST_BYTES
 ) -> list[Sequence[RenderedSection]]:
-    """Part sections into pages, in their order.
+    """Split sections into pages, in their order.
 
     Examples
     --------
@@ -130,14 +130,14 @@ def _write_pages(
     most: int = MOST_BYTES,
     most_in_all: int = MOST_IN_ALL,
 ) -> Path:
-    """Write the page of a campaign, and those beside it where it has no room for all sections."""
+    """Write the page of a campaign, and further pages where it has no room for all sections."""
     pages = _over_pages(sections, most)
     index = out / "index.html"
     kept: set[Path] = set()
     pieces: list[bytes] = []
     if len(pages) == 1:
         pieces = render_page(replace(content, sections=pages[0], links=_links(pages[0])))
-    # tables and figures over all tests take room, too
+    # tables and figures over all tests also take room
     if len(pages) > 1 or (pages[0] and sum(map(len, pieces)) > most_in_all):
         names = [_NAME.format(number) for number in range(1, len(pages) + 1)]
         beside = [Link(name, _words(page)) for name, page in zip(names, pages, strict=True)]
@@ -150,7 +150,7 @@ def _write_pages(
         content = replace(content, links=links, beside=beside)
         pieces = render_page(content)
         if content.segments is not None and sum(map(len, pieces)) > most_in_all:
-            # of many tests they are the largest table, and each has its own in its section
+            # with many tests these tables are the largest, and each is also in its test's section
             about = (*content.about, _SEGMENTS_ELSEWHERE)
             pieces = render_page(replace(content, segments=None, about=about))
     write_text_atomically(index, *pieces)
@@ -222,7 +222,7 @@ def write_report(
 class CampaignPage:
     """The page of a campaign, to which archives are added one by one, in any order.
 
-    Those that nobody added are opened when it is written.
+    Other archives are opened when the page is written.
     """
 
     def __init__(
@@ -265,7 +265,7 @@ class CampaignPage:
             view = view.without_samples()
             self._tests.append(view.of_campaign(self._known) if self._details is None else view)
         except ArchiveError as error:
-            # the page is the same wherever the archives lie
+            # the page does not depend on the location of the archives
             self._not_shown[path.name] = str(error).replace(str(path), path.name)
 
     def write(
@@ -276,7 +276,7 @@ class CampaignPage:
         unreadable: Callable[[str, str], None] | None = None,
         only: Collection[str] | None = None,
     ) -> tuple[Path, CampaignAnswers]:
-        """Write the page, and give its answers for the tests in ``only``."""
+        """Write the page, and return its answers for the tests in ``only``."""
         tests, not_shown = self._tests, self._not_shown
         self._add_others()
         by_id = {view.id: view for view in tests}
@@ -299,7 +299,7 @@ class CampaignPage:
         page = _write_pages(content, [*outcomes, *own], out)
         beside = out / CLIENT_PAGE_NAME
         if self._details is None:
-            take_away(beside)  # of an earlier run: the campaign has no such report now
+            take_away(beside)  # from an earlier run: the campaign no longer has such a report
         else:
             of_client = ClientContent(
                 self._details, tests, whole, [self._sections[view.key] for view in tests],
@@ -309,7 +309,7 @@ class CampaignPage:
         return page, _answers(tests, whole, self._statuses, not_shown, only)
 
     def _add_others(self) -> None:
-        """Open the archives that nobody added."""
+        """Open the archives that were not added."""
         if not (self._keys or self._statuses or is_there(self._processed)):
             raise ArchiveError(
                 "there is nothing to report on",
@@ -329,7 +329,7 @@ class CampaignPage:
 
 @dataclass(frozen=True)
 class CampaignAnswers:
-    """The answers of a campaign, and what needs a person's eye, most serious first.
+    """The answers of a campaign, and the points that a person has to check, most serious first.
 
     ``answered`` are the tests that have a row in the tables.
     """
@@ -347,7 +347,7 @@ def _answers(
     not_shown: Mapping[str, str],
     only: Collection[str] | None,
 ) -> CampaignAnswers:
-    """Return what stands first on the page."""
+    """Return the first content of the page."""
     if only is not None:
         tests = [view for view in tests if view.id in only]
         statuses = [row for row in statuses if row.test in only]
@@ -366,7 +366,7 @@ def _answers(
 
 
 def _answers_of(tests: Sequence[TestView]) -> list[PageTable]:
-    """Return design moduli, pairs of tests that are unlike over the same strains, pulls, holds."""
+    """Return design moduli, pairs of tests that differ over the same strains, pulls, holds."""
     makers = (design_modulus_table, unlike_tests_table, pull_table, hold_table)
     return [table for make in makers if (table := make(tests)) is not None]
 
@@ -436,20 +436,20 @@ def _page_of(
 
 
 _FIRST_HEIGHT = 380
-"""So that the answers begin on the first screen. [px]"""
+"""Height that keeps the answers on the first screen. [px]"""
 
 
 def _first_figure(
     tests: Sequence[TestView], comparisons: Sequence[Part]
 ) -> tuple[Figure | None, list[Part]]:
-    """Take what stands on the first screen out of the figures over several tests or hoses."""
+    """Take the figure for the first screen out of the figures over several tests or hoses."""
     levels = draw_stiffness_levels(tests)
     if levels:
         return replace(levels[0], height=_FIRST_HEIGHT), list(comparisons)
     found = [place for place, part in enumerate(comparisons) if part.figures]
     if not found:
         return None, list(comparisons)
-    # of hoses that were compared with their tests the comparison, which stands last
+    # for hoses compared with their tests the comparison, which is the last figure
     place = found[-1] if comparisons[found[-1]].heading == ALL_COMPARISONS else found[0]
     part = comparisons[place]
     rest = [
@@ -473,7 +473,7 @@ def _read_statuses(path: Path) -> list[Status]:
 
 
 def _place(view: TestView, by_id: Mapping[str, TestView], starts: Mapping[str, float]) -> Place:
-    """Return where a test stands: by its order, the parts of a test behind it as they began."""
+    """Return the sort key of a test: by its order, followed by its parts in order of start."""
     name = view.attribute("part_of")
     whole = by_id.get(name or view.id)
     order = "" if whole is None else whole.attribute("test_order")
@@ -489,5 +489,5 @@ def _place(view: TestView, by_id: Mapping[str, TestView], starts: Mapping[str, f
 
 
 def _log_of(view: TestView) -> str:
-    """Return the test whose log this is: of a step, its name before the step's."""
+    """Return the test that the log belongs to: for a step, its name before that of the step."""
     return view.id.partition(".")[0] if view.attribute("step") else view.id

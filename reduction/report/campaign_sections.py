@@ -238,7 +238,7 @@ _HOLDS = (
 
 
 def _make_hose_section(view: HoseView) -> TestSection:
-    """Return the section of one hose; parts with nothing in them are left out."""
+    """Return the section of one hose; empty parts are left out."""
     parts = [
         make_part(
             "Tension and fill pressure",
@@ -270,7 +270,7 @@ def _make_hose_section(view: HoseView) -> TestSection:
 
 
 def _hose_findings(view: HoseView) -> list[SummaryFinding]:
-    """Return what a reader must know of a hose before its numbers."""
+    """Return what a reader must know about a hose before its numbers."""
     return [
         SummaryFinding(one.severity, (f"hose {view.name}",), str(one), urgency(one))
         for one in view.notes
@@ -278,7 +278,7 @@ def _hose_findings(view: HoseView) -> list[SummaryFinding]:
 
 
 def _hose_tiles(views: Sequence[HoseView]) -> list[Tile]:
-    """Return how many hoses are predicted; of one alone what it bears, too."""
+    """Return the number of predicted hoses; for a single one its loads, too."""
     if not views:
         return []
     noun = "predicted hose" if len(views) == 1 else "predicted hoses"
@@ -316,7 +316,7 @@ _TAKE_NONE = ". Other values fit as well; the intervals of the fitted values do 
 
 
 def _make_comparison_section(view: ComparisonView) -> TestSection:
-    """Return the section of one comparison; parts with nothing in them are left out."""
+    """Return the section of one comparison; empty parts are left out."""
     parts = [
         make_part(
             "Measured and predicted tension", draw_comparison(view),
@@ -354,7 +354,7 @@ def _make_comparison_section(view: ComparisonView) -> TestSection:
 
 
 def _comparison_findings(view: ComparisonView) -> list[SummaryFinding]:
-    """Return what a reader must know of a comparison before its numbers."""
+    """Return what a reader must know about a comparison before its numbers."""
     of = (f"comparison {view.name}",)
     found = []
     if view.short_verdict == "differs":
@@ -369,7 +369,7 @@ def _comparison_findings(view: ComparisonView) -> list[SummaryFinding]:
 
 
 def _comparison_tiles(views: Sequence[ComparisonView]) -> list[Tile]:
-    """Return how many comparisons there are, and how many of them differ."""
+    """Return the number of comparisons, and of those that differ."""
     if not views:
         return []
     noun = "comparison" if len(views) == 1 else "comparisons"
@@ -382,13 +382,13 @@ def _comparison_tiles(views: Sequence[ComparisonView]) -> list[Tile]:
 
 
 def _other_notes(view: ComparisonView) -> list[Note]:
-    """Notes but the one whose words stand beside the fitted numbers."""
+    """Notes other than the one shown with the fitted parameters."""
     said = view.text("identifiability")
     return [one for one in view.notes if not (said and said in str(one))]
 
 
 def _shape(view: ComparisonView) -> str:
-    """Say what chi square says, which sees a wrong shape inside the band."""
+    """Describe the result of chi square, which detects a wrong shape inside the band."""
     probability = view.scalar("chi_square_probability")
     if not np.isfinite(probability):
         return "No uncertainty is stated, so the shape of the difference cannot be judged."
@@ -402,7 +402,7 @@ def _shape(view: ComparisonView) -> str:
 
 
 def _identified(view: ComparisonView) -> list[str]:
-    """Say whether the curve tells the fitted numbers apart; nothing without a calibration."""
+    """Say whether the curve identifies the fitted parameters; empty without a calibration."""
     if view.is_identified is None:
         return []
     needed = 100 * view.scalar("needed_change")
@@ -419,7 +419,7 @@ def _identified(view: ComparisonView) -> list[str]:
 
 
 def _outcome_findings(view: OutcomeView) -> list[SummaryFinding]:
-    """Return which outcomes are unlike the others of their group."""
+    """Return the outcomes that differ from the others of their group."""
     return [
         SummaryFinding(one.severity, ("outcomes",), str(one), urgency(one))
         for one in odd_outcomes(view.outcomes)
@@ -427,7 +427,7 @@ def _outcome_findings(view: OutcomeView) -> list[SummaryFinding]:
 
 
 def _make_outcome_section(view: OutcomeView) -> TestSection:
-    """Return the section; parts with nothing in them are left out."""
+    """Return the section; empty parts are left out."""
     parts = [
         make_part(
             "Strength", (),
@@ -456,7 +456,7 @@ def _make_outcome_section(view: OutcomeView) -> TestSection:
 
 
 def _make_rope_section(view: RopeView) -> TestSection:
-    """Return the section of one rope; parts with nothing in them are left out."""
+    """Return the section of one rope; empty parts are left out."""
     parts = [
         make_part(
             "Change in length", draw_stiffness(view), [property_table(view)],
@@ -481,7 +481,7 @@ def _make_rope_section(view: RopeView) -> TestSection:
 
 
 def _rope_tiles(views: Sequence[RopeView]) -> list[Tile]:
-    """Return how many ropes have a programme."""
+    """Return the number of ropes with a programme."""
     if not views:
         return []
     noun = "rope with a programme" if len(views) == 1 else "ropes with a programme"
@@ -511,7 +511,7 @@ class CampaignView:
 
     @property
     def views(self) -> list[OutcomeView | ExperimentView | HoseView | ComparisonView | RopeView]:
-        """All of them; the first speaks for the campaign where there is no test."""
+        """All views; the first represents the campaign where there is no test."""
         return [
             *(view for view, _ in self.experiments),
             *(view for view, _ in self.outcomes),
@@ -522,18 +522,18 @@ class CampaignView:
 
     @property
     def chapters(self) -> list[TestSection]:
-        """Sections that stand before those of the tests."""
+        """Sections placed before those of the tests."""
         pairs = (*self.experiments, *self.ropes, *self.hoses, *self.compared)
         return [section for _, section in pairs]
 
     @property
     def is_synthetic(self) -> bool:
-        """True where any of them says so."""
+        """True where any of the views is synthetic."""
         return any(view.is_synthetic for view in self.views)
 
     @property
     def summary(self) -> str:
-        """Say what there is, where no test does."""
+        """Summarise the content where there is no test."""
         if self.outcomes:
             return f"{self.outcomes[0][0].summary}."
         if self.hoses and not self.experiments:
@@ -542,7 +542,7 @@ class CampaignView:
 
     @property
     def findings(self) -> list[SummaryFinding]:
-        """What a reader must know first."""
+        """Findings that a reader must know first."""
         found = [SummaryFinding("warning", (name,), _STRAY) for name in self.stray]
         found += [one for view, _ in self.experiments for one in experiment_findings(view)]
         found += [one for view, _ in self.outcomes for one in _outcome_findings(view)]
@@ -551,7 +551,7 @@ class CampaignView:
 
     @property
     def answers(self) -> list[PageTable]:
-        """Tables that answer on the first screen."""
+        """Tables of answers on the first screen."""
         found = [
             answer_table(view, view.surfaces)
             for view, _ in self.experiments
@@ -564,7 +564,7 @@ class CampaignView:
 
     @property
     def comparisons(self) -> list[Part]:
-        """Figures over several of a kind."""
+        """Figures over several items of a kind."""
         hoses = draw_all_hoses([view for view, _ in self.hoses])
         compared = draw_all_comparisons([view for view, _ in self.compared])
         return [
@@ -589,7 +589,7 @@ class CampaignView:
 
 
 def is_there(processed: Path) -> bool:
-    """Return whether a folder holds an archive of a whole campaign that the page can show."""
+    """Return whether a folder has an archive of a whole campaign that the page can show."""
     return any((processed / f"{name}.nc").is_file() for name in _SHOWN)
 
 
@@ -601,7 +601,7 @@ def read_campaign(
     stray: Collection[str] = (),
     opener: Opener = reading,
 ) -> CampaignView:
-    """Read what there is; a file that cannot be read is told in ``unreadable``."""
+    """Read the existing archives; unreadable files are listed in ``unreadable``."""
 
     def read(name: str, views: Callable[[xr.Dataset], list[_Read]]) -> tuple[_Read, ...]:
         path = processed / f"{name}.nc"

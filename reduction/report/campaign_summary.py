@@ -47,17 +47,17 @@ _NO_TEST = (
 )
 
 _MOST_NAMES = 200
-"""Characters of the list of specimens under the title."""
+"""Greatest number of characters of the list of specimens under the title."""
 
 _FIRST = (0, float("-inf"))
 
-# an archive counts the holds of each specimen apart, the page goes by time
+# an archive counts the holds of each specimen separately, the page orders them by time
 _NUMBER = re.compile(r"[-+]?\d[\d.,]*(e[-+]?\d+)?")
 
 
 @dataclass(frozen=True)
 class SummaryFinding:
-    """One thing that a reader must know, with the tests it concerns; the urgent ones first."""
+    """One finding for the reader, with the tests it concerns; urgent ones first."""
 
     severity: Severity
     tests: tuple[str, ...]
@@ -67,7 +67,7 @@ class SummaryFinding:
 
 @dataclass(frozen=True)
 class Tile:
-    """One number at the top of the page, and where it leads."""
+    """One number at the top of the page, and the target of its link."""
 
     number: str
     words: str
@@ -81,10 +81,10 @@ def find_faults(
     unreadable: Mapping[str, str],
     others: Sequence[SummaryFinding] = (),
 ) -> list[SummaryFinding]:
-    """Return failures, then warnings, notes and refusals, by how far each could move an answer.
+    """Return failures, then warnings, notes and refusals, by their possible effect on an answer.
 
-    Texts that differ in numbers alone stand once: that of the test in which it matters most, under
-    the name of that test, then the names of the others.
+    Texts that differ only in numbers appear once: that of the test in which it matters most, under
+    the name of that test, followed by the names of the others.
     """
     gathered: dict[tuple[Severity, str], list[SummaryFinding]] = {}
     for pattern, one in _all_faults(tests, statuses, unreadable):
@@ -102,7 +102,7 @@ def _names(findings: Iterable[SummaryFinding]) -> tuple[str, ...]:
 
 
 def _similar(shown: SummaryFinding, alike: Sequence[SummaryFinding]) -> str:
-    """Return which tests have the text of a finding with other numbers; empty if none."""
+    """Return the tests that have the text of a finding with other numbers; empty if none."""
     others = [one for one in alike if one.text != shown.text]
     if not others:
         return ""
@@ -111,7 +111,7 @@ def _similar(shown: SummaryFinding, alike: Sequence[SummaryFinding]) -> str:
 
 
 def grouped_notes(view: TestView) -> list[tuple[str, list[str]]]:
-    """Return the notes of a test under headings, most serious first; no empty heading."""
+    """Return the notes of a test under headings, most serious first; empty headings left out."""
     groups = [
         (
             _HEADINGS[kind],
@@ -123,7 +123,7 @@ def grouped_notes(view: TestView) -> list[tuple[str, list[str]]]:
 
 
 def brief(view: TestView) -> str:
-    """Return what a line says of a test: its cycles, its strain, whether there is a doubt."""
+    """Return the short description of a test: cycles, strain, whether there is a doubt."""
     n_cycles = view.n_cycles
     rows = [f"{n_cycles:,} {'cycle' if n_cycles == 1 else 'cycles'}"] if n_cycles else []
     reached = _reached(view).text
@@ -135,7 +135,7 @@ def brief(view: TestView) -> str:
 
 
 def summary_sentence(tests: Sequence[TestView]) -> str:
-    """Return what the campaign says of itself; else how many tests of what it holds."""
+    """Return the description of the campaign, else the number of its tests by kind."""
     if not tests:
         return ""
     summaries = {view.attribute("summary") for view in tests}
@@ -153,7 +153,7 @@ def summary_sentence(tests: Sequence[TestView]) -> str:
 
 
 def test_table(tests: Sequence[TestView], statuses: Sequence[Status]) -> PageTable:
-    """Return what was tested: target, cycles found, status; a test without archive too."""
+    """Return the tests with target, cycles found and status, including those without archive."""
     is_by_load = _is_by_load(tests)
     rows = [_test_row(view, is_by_load=is_by_load) for view in tests]
     shown_ids = {view.id for view in tests}
@@ -180,7 +180,7 @@ def tiles(
     n_failures = sum(one.severity == "failure" for one in faults)
     n_tests = len({view.id for view in tests} | {row.test for row in statuses})
     n_specimens = len({name for view in tests for name in view.specimens})
-    # the cycles of a part are in the log of the whole test too
+    # the cycles of a part are also in the log of the whole test
     whole = {view.id for view in tests}
     n_cycles = sum(view.n_cycles for view in tests if view.attribute("part_of") not in whole)
     found = [
@@ -198,7 +198,7 @@ def _tile(number: int, noun: str, target: str, *, is_bad: bool = False) -> Tile:
 def _all_faults(
     tests: Sequence[TestView], statuses: Sequence[Status], unreadable: Mapping[str, str]
 ) -> Iterator[tuple[str, SummaryFinding]]:
-    """Give what makes two findings alike, and the finding of one test."""
+    """Yield the key by which findings are similar, and the finding of one test."""
 
     def of_file(severity: Severity, name: str, text: str) -> tuple[str, SummaryFinding]:
         return text, SummaryFinding(severity, (name,), text, _FIRST)
@@ -231,14 +231,14 @@ def _all_faults(
 
 
 def _pattern(view: TestView, note: str) -> str:
-    """Return a note without its numbers and specimens: of those alike one is enough on top."""
+    """Return a note without its numbers and specimens: of similar ones, one is shown on top."""
     for specimen in view.specimens:
         note = re.sub(rf"\b{re.escape(specimen)}\b", "#", note)
     return _NUMBER.sub("#", note)
 
 
 def _is_by_load(tests: Sequence[TestView]) -> bool:
-    """Return whether the tests are of ropes, which are planned by tension and not by strain."""
+    """Return whether the tests are of ropes, which are planned by tension instead of strain."""
     return bool(tests) and all(view.is_rope and not _target(view) for view in tests)
 
 
@@ -251,7 +251,7 @@ def _tension(view: TestView) -> TableCell:
 
 
 def _reached(view: TestView) -> TableCell:
-    """Return the strain of the cycles, mean least to mean greatest; without one, of the record."""
+    """Return the strain range of the cycles, mean of least and greatest, else of the record."""
     strain = view.array("strain")
     mean, amplitude = view.array("mean_strain"), view.array("strain_amplitude")
     percent = shown("strain", view.units)
@@ -264,7 +264,7 @@ def _reached(view: TestView) -> TableCell:
 
 
 def _up_to(view: TestView, name: str, unit: Shown, *, places: int) -> TableCell:
-    """Return where a pull ended, mean over its specimens; empty of a test that is none."""
+    """Return the end of a pull, mean over its specimens; empty for other tests."""
     peak = view.array(name)
     if peak is None or not np.isfinite(peak).any():
         return words("")
@@ -291,7 +291,7 @@ def _target(view: TestView) -> str:
 
 
 def _status(view: TestView) -> str:
-    """Return what became of a test, whichever run made its archive: the page is the same then."""
+    """Return the status of a test, independent of the run that made its archive."""
     if view.status is None:
         return "archived"
     if view.status.status == "unchanged":

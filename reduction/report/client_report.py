@@ -1,7 +1,7 @@
-"""The report of a laboratory to its client: one page for paper, with what [1]_ asks of it.
+"""The report of a laboratory to its client: one page for print, with the content required by [1]_.
 
 It opens from disk, needs no script, and prints to A4 or Letter with the number of the report and
-of the page on each sheet.  What was not stated is shown as not stated.
+of the page on each sheet.  Missing information is shown as not stated.
 
 References
 ----------
@@ -64,7 +64,7 @@ NOT_STATED = "not stated"
 
 @dataclass(frozen=True)
 class _Entry:
-    """One field; an empty text was not stated."""
+    """One field; an empty text means not stated."""
 
     label: str
     given: str
@@ -76,12 +76,12 @@ class _Entry:
 
     @property
     def text(self) -> str:
-        """What the report shows."""
+        """Text in the report."""
         return self.given or NOT_STATED
 
 
 def _identification(details: ReportDetails, tests: Sequence[TestView]) -> list[_Entry]:
-    """Return which report this is, who made it for whom, and when."""
+    """Return number, author, client and date of the report."""
     found = [
         _Entry("Report number", details.number),
         _Entry("Revision", _revision(details)),
@@ -112,14 +112,14 @@ def _lines(party: Laboratory | Client) -> str:
 
 
 def _received(items: Mapping[str, ReportItem]) -> str:
-    """Say when each item came in, where each has a date of its own."""
+    """State when each item was received, where the dates differ by item."""
     if not items or not all(one.received for one in items.values()):
         return ""
     return "; ".join(f"{specimen}: {one.received}" for specimen, one in items.items())
 
 
 def _dates(tests: Sequence[TestView]) -> str:
-    """Give the first and the last date that the archives know, where each test has one."""
+    """Return the first and the last date in the archives, where each test has one."""
     dates = [view.attribute("date") for view in tests]
     if not dates or not all(dates):
         return ""
@@ -128,7 +128,7 @@ def _dates(tests: Sequence[TestView]) -> str:
 
 
 def _method(details: ReportDetails, tests: Sequence[TestView]) -> list[_Entry]:
-    """Return by which method, what was done otherwise, and how the items were chosen."""
+    """Return the method, deviations from it, and how the items were chosen."""
     return [
         _Entry("Method", details.method or _of_tests(tests, "procedure")),
         _Entry("Deviations from the method", details.deviations),
@@ -155,7 +155,7 @@ def _environment(details: ReportDetails, tests: Sequence[TestView]) -> list[_Ent
 
 
 def _authorisation(details: ReportDetails) -> list[_Entry]:
-    """Return who answers for the report."""
+    """Return who is responsible for the report."""
     return [
         _Entry("Authorised by", details.authorised.by),
         _Entry("Function", details.authorised.function),
@@ -164,12 +164,12 @@ def _authorisation(details: ReportDetails) -> list[_Entry]:
 
 
 def _missing_of(groups: Iterable[Sequence[_Entry]]) -> list[str]:
-    """Return the labels of what is not stated, in the order of the report."""
+    """Return the labels of missing fields, in the order of the report."""
     return [one.label for group in groups for one in group if one.is_missing]
 
 
 def _of_tests(tests: Sequence[TestView], name: str) -> str:
-    """Give an attribute of the tests: once where they agree, by test where they do not."""
+    """Return an attribute of the tests: once where they agree, by test where they differ."""
     by_text: dict[str, list[str]] = {}
     for view in tests:
         by_text.setdefault(view.attribute(name), []).append(view.id)
@@ -181,7 +181,7 @@ def _of_tests(tests: Sequence[TestView], name: str) -> str:
 
 
 def _item_table(details: ReportDetails, tests: Sequence[TestView]) -> PageTable:
-    """Return what came in: every specimen that was tested, stated or not."""
+    """Return the received items: every tested specimen, stated or not."""
     names = dict.fromkeys([*all_specimens(tests), *details.items])
     given = {name: details.items.get(name, ReportItem()) for name in names}
     rows = [
@@ -199,7 +199,7 @@ def _item_table(details: ReportDetails, tests: Sequence[TestView]) -> PageTable:
 
 
 def _calibration_table(details: ReportDetails, tests: Sequence[TestView]) -> PageTable:
-    """Return the instruments with their calibration: as stated, then as the tests name them."""
+    """Return the instruments with their calibration: those stated, then those named in tests."""
     stated = list(details.instruments)
     known = {one.name for one in stated}
     for view in tests:
@@ -244,7 +244,7 @@ _FIGURES = ("Modulus against strain", "Loops", "Slow pull", "Stepwise readings",
 
 @dataclass(frozen=True)
 class _Drawing:
-    """A figure with its caption; a wide one takes the whole width of the page."""
+    """A figure with its caption; a wide one uses the full width of the page."""
 
     vector: Markup
     caption: str
@@ -252,19 +252,19 @@ class _Drawing:
 
 
 def _drawings(figures: Collection[tuple[Figure, bool]]) -> list[_Drawing]:
-    """Return the figures that can be drawn; ``True`` beside one asks for the whole width."""
+    """Return the figures that can be drawn; ``True`` with one requests the full width."""
     return [_drawing(one, is_wide=wide) for one, wide in figures if can_be_drawn(one)]
 
 
 def _not_drawn(figures: Collection[tuple[Figure, bool]]) -> list[str]:
-    """Return the titles of the others."""
+    """Return the titles of the figures that cannot be drawn."""
     return [one.title for one, _ in figures if not can_be_drawn(one)]
 
 
 def _chosen_figures(
     tests: Sequence[TestView], sections: Sequence[TestSection]
 ) -> Iterator[tuple[Figure, bool]]:
-    """Give what is to be drawn, and whether it takes the whole width."""
+    """Yield the figures to draw, and whether each uses the full width."""
     for one in draw_all_moduli(tests):
         yield one, True
     for _, part in _chosen_parts(tests, sections, _FIGURES):
@@ -278,7 +278,7 @@ def _drawing(figure: Figure, *, is_wide: bool) -> _Drawing:
         height *= _TWO_PANELS
     caption, *about = figure.caption.split(" Inner band:")
     caption += _BANDS if about else ""
-    # the drawing escapes what it is given
+    # the drawing escapes its input
     drawn = Markup(vector_of(figure, width=width, height=height))  # noqa: S704
     return _Drawing(drawn, caption, is_wide)
 
@@ -286,7 +286,7 @@ def _drawing(figure: Figure, *, is_wide: bool) -> _Drawing:
 def _chosen_parts(
     tests: Sequence[TestView], sections: Sequence[TestSection], headings: Collection[str]
 ) -> Iterator[tuple[TestSection, Part]]:
-    """Give parts of the sections of the tests; of holds those that a test was made for."""
+    """Yield parts of the sections of the tests; holds only for tests that were made for them."""
     kinds = {view.key: view.kind for view in tests}
     for section in sections:
         for part in section.parts:
@@ -313,7 +313,7 @@ _STATEMENTS = (
 
 @dataclass(frozen=True)
 class ClientContent:
-    """What a report to a client is made from: all of it out of the folder of the archives."""
+    """Content of a report to a client, all from the folder of the archives."""
 
     details: ReportDetails
     tests: Sequence[TestView]
@@ -350,7 +350,7 @@ def render_client_report(content: ClientContent) -> str:
     return template.render(
         **groups,
         missing=_missing_of(groups.values()),
-        style=Markup(  # noqa: S704  # the style of the package; what stands on each sheet is quoted
+        style=Markup(  # noqa: S704  # the style of the package; texts on each sheet are quoted
             _sheet_style(details, label, synthetic=synthetic)
             + (room / "static" / "client.css").read_text("utf-8")
         ),
@@ -400,7 +400,7 @@ def _results(content: ClientContent) -> list[PageTable]:
 
 def _answers(view: TestView) -> PageTable | None:
     answers = answer_budgets(view)
-    if not answers or view.is_stepwise:  # whose intervals stand in a table of their own
+    if not answers or view.is_stepwise:  # its intervals are in a separate table
         return None
     rows = [
         [
@@ -420,7 +420,7 @@ def _answers(view: TestView) -> PageTable | None:
 
 
 def _in_full(view: TestView, one: AnswerBudget) -> str:
-    """Return what an answer is, for a reader who has nothing but this report."""
+    """Return the full name of an answer, for a reader who has only this report."""
     place = one.budget.place
     if "segment" not in place:
         return _IN_FULL.get(one.words, one.words)
@@ -435,7 +435,7 @@ def _in_full(view: TestView, one: AnswerBudget) -> str:
 
 
 def _by_columns(table: PageTable) -> list[PageTable]:
-    """Return a table in parts that fit the width of a page, the first column in each."""
+    """Return a table in parts that fit the page width, each with the first column."""
     rest = range(1, len(table.columns))
     parts = [rest[start : start + _MOST_COLUMNS] for start in range(0, len(rest), _MOST_COLUMNS)]
     if len(parts) < 2:
@@ -443,7 +443,7 @@ def _by_columns(table: PageTable) -> list[PageTable]:
     found = []
     for order, part in enumerate(parts):
         places = [0, *part]
-        # a row of nothing but marks says nothing
+        # a row of placeholders only has no information
         rows = [
             [row[place] for place in places]
             for row in table.rows
@@ -461,7 +461,7 @@ def _by_columns(table: PageTable) -> list[PageTable]:
 
 
 def _tests(content: ClientContent) -> PageTable | None:
-    """Return the tests; of what the software did with each only that it failed."""
+    """Return the tests; the status of each is given only where it failed."""
     if not (content.tests or content.statuses):
         return None
     table = test_table(content.tests, content.statuses)
@@ -474,7 +474,7 @@ def _tests(content: ClientContent) -> PageTable | None:
 
 
 def _without_status(table: PageTable) -> PageTable:
-    """Return a table without its last column, what the software did with each test."""
+    """Return a table without its last column, the status of each test."""
     rows = tuple(row[:-1] for row in table.rows)
     return replace(table, columns=table.columns[:-1], rows=rows)
 
@@ -498,7 +498,7 @@ def _raw_file_table(tests: Sequence[TestView], *, synthetic: bool) -> PageTable 
 
 
 def _sheet_style(details: ReportDetails, label: str, *, synthetic: bool) -> str:
-    """Return what stands in the margins of each sheet."""
+    """Return the content of the margins of each sheet."""
     laboratory = shorten(details.laboratory.name, 60) or f"Laboratory {NOT_STATED}"
     amended = " (amended)" if details.revision or details.amendment else ""
     boxes = {
@@ -512,7 +512,7 @@ def _sheet_style(details: ReportDetails, label: str, *, synthetic: bool) -> str:
 
 
 def _quoted(text: str) -> str:
-    r"""Return text as a string of CSS, from which nothing can break out.
+    r"""Return text as a string of CSS that cannot be escaped from.
 
     Examples
     --------

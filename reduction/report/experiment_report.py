@@ -90,7 +90,7 @@ from reduction.uncertainty.surface_errors import with_shared_at_points
 
 POINTS = 31
 
-"""Points along each side of a plane: finer is not seen, and makes the page heavy."""
+"""Points along each side of a plane: more would not be visible, and would enlarge the page."""
 
 HELD = (-1.0, 0.0, 1.0)
 
@@ -99,7 +99,7 @@ HELD = (-1.0, 0.0, 1.0)
 
 _NEAR = 0.5
 
-"""A run belongs to a plane where its held factor is nearer to it than to the next one. [1]"""
+"""A run belongs to the plane that is nearest to the level of its held factor. [1]"""
 
 
 @dataclass(frozen=True)
@@ -134,14 +134,14 @@ def make_planes(view: ExperimentView, surfaces: ResponseSurfaces) -> _Planes | N
 
 
 def _leverage_ratio(view: ExperimentView, surfaces: ResponseSurfaces, at: SurfaceValues) -> Floats:
-    """Leverage of points over the greatest of a tested level, shape (n_responses, n_points)."""
+    """Leverage of points over the greatest leverage of a tested level, (n_responses, n_points)."""
     plan = view.array("run_plan")[:, : len(view.factors)]
     ratio: Floats = at.variance_factor / greatest_leverage(surfaces, plan)[:, None]
     return ratio
 
 
 def _runs_on_plane(view: ExperimentView, planes: _Planes, level: float) -> Bools:
-    """Which runs were made on a plane."""
+    """Whether each run was made on a plane."""
     coded = view.array("run_coded_level")
     others = [k for k in range(coded.shape[1]) if k not in (*planes.across, planes.held)]
     on_plane = np.abs(coded[:, planes.held] - level) < _NEAR
@@ -149,7 +149,7 @@ def _runs_on_plane(view: ExperimentView, planes: _Planes, level: float) -> Bools
 
 
 def negative_inside(surfaces: ResponseSurfaces) -> dict[str, tuple[float, Floats]]:
-    """Return least value and its place of each surface that goes below zero and cannot be."""
+    """Return least value and its place of each surface that is negative although it cannot be."""
     least, _, place = extremes_in_box(surfaces)
     return {
         name: (float(least[index]), place[index])
@@ -192,7 +192,7 @@ def _expanded_of_coefficients(
 
 
 def _shared_by_runs(view: ExperimentView, surfaces: ResponseSurfaces) -> list[str]:
-    """Return the sources that the runs share and that reach a surface, in fixed order."""
+    """Return the shared sources of the runs that affect a surface, in fixed order."""
     sources = view.texts("uncertainty_source")
     found: set[str] = set()
     for name in surfaces.response_names:
@@ -250,7 +250,7 @@ def _freedom(view: ExperimentView) -> Floats:
 
 _SCALE = [[0.0, "#e4eef6"], [0.5, "#97c4e3"], [1.0, "#3a8fc8"]]
 
-"""Light enough everywhere for dark labels upon it."""
+"""Light enough everywhere for dark labels on it."""
 
 _INK, _GREY = "#1b1f23", "#8C8C8C"
 
@@ -258,7 +258,7 @@ _DIGITS = 4
 
 
 def _base_response(name: str) -> str:
-    """Return the response that a surface is of, before any transform.
+    """Return the response of a surface, before any transform.
 
     Examples
     --------
@@ -379,7 +379,7 @@ def _at(view: ExperimentView, place: int, level: float) -> str:
 
 
 def _scale_words(name: str) -> str:
-    """Say on what scale a surface was fitted where it was not the response itself."""
+    """Describe the scale of a surface that was not fitted to the response itself."""
     if name == _base_response(name):
         return ""
     return f", fitted to the {in_words(name)} and transformed back (medians)"
@@ -426,7 +426,7 @@ def _points_in_space(
 def _points_on_plane(
     view: ExperimentView, planes: _Planes, own: Bools
 ) -> tuple[list[Trace], list[Trace]]:
-    """Return the runs of a plane at the levels they reached, and their labels; repeats have one."""
+    """Return the runs of a plane at the levels they reached, and their labels, one for repeats."""
     if not own.any():
         return [], []
     cells = view.per_run("run_cell")
@@ -438,7 +438,7 @@ def _points_on_plane(
         mates = [j for j in places if cells[j] == cells[k] and cells[k] > 0] or [k]
         if mates[0] != k:
             continue
-        # a veil behind it, or the numbers of the contours run through it
+        # a background patch, since otherwise the contour labels run through it
         is_left = bool(x[k] < middle)
         labels.append(
             {
@@ -459,7 +459,7 @@ def _points_on_plane(
 
 
 def _thin_region(x: Floats, y: Floats, ratio: Floats) -> Trace:
-    """Return a grey veil with a dashed edge where the leverage is above that of every run."""
+    """Return a grey patch with a dashed edge where the leverage exceeds that of every run."""
     return {
         "type": "contour", "name": "runs say little", "showlegend": False, "showscale": False,
         "x": plain_numbers(x), "y": plain_numbers(y),
@@ -473,7 +473,7 @@ _CUBE_GREY = "#8C8C8C"
 
 _DEPTH = (0.46, 0.34)
 
-"""By which the back of the cube is shifted right and up."""
+"""Shift of the back of the cube to the right and up."""
 
 
 def draw_cube(view: ExperimentView, surfaces: ResponseSurfaces, index: int) -> list[Figure]:
@@ -483,12 +483,12 @@ def draw_cube(view: ExperimentView, surfaces: ResponseSurfaces, index: int) -> l
         return []
     unit = response_unit(_base_response(name), view.units)
     words = in_words(_base_response(name))
-    # x across, y up, z away: mean tension, the last factor and the held one
+    # x across, y up, z backwards: mean tension, the last factor and the held factor
     order = [k for k in range(3) if view.factors[k] != "frequency"][:2]
     order.append(next(k for k in range(3) if k not in order))
     grid = np.array(list(product((-1.0, 0.0, 1.0), repeat=3)))
     n_middle = (grid == 0).sum(axis=1)
-    grid = grid[n_middle != 2]  # no middle of a face
+    grid = grid[n_middle != 2]  # without centres of faces
     coded = np.empty_like(grid)
     coded[:, order] = grid
     at = evaluate_surfaces(surfaces, coded, units="coded")
@@ -529,7 +529,7 @@ def draw_cube(view: ExperimentView, surfaces: ResponseSurfaces, index: int) -> l
 
 
 def _projected(grid: Floats) -> Floats:
-    """Return places on paper of points of the cube, shape (n_points, 2)."""
+    """Return positions on paper of points of the cube, shape (n_points, 2)."""
     unit = (grid + 1) / 2
     flat: Floats = unit[:, :2] + unit[:, 2:] * np.array(_DEPTH)
     return flat
@@ -578,7 +578,7 @@ def _cube_points(place: Floats, text: list[str], is_thin: Bools) -> list[Trace]:
 
 
 def _away(view: ExperimentView, place: int) -> dict[str, Any]:
-    """Return the name of the factor that leads away, at the lower right edge."""
+    """Return the name of the factor that leads backwards, at the lower right edge."""
     return {
         "x": 1 + _DEPTH[0] * 0.75, "y": _DEPTH[1] * 0.5, "xanchor": "left", "yanchor": "top",
         "text": plot_text(view.factor_label(place), 60).replace(" [", "<br>["), "showarrow": False,
@@ -592,7 +592,7 @@ _CHECK_GREY = "#8C8C8C"
 
 
 def _term_words(powers: Integers, factors: tuple[str, ...]) -> str:
-    """Return a term as a reader says it.
+    """Return a term in words.
 
     Examples
     --------
@@ -610,7 +610,7 @@ def _term_words(powers: Integers, factors: tuple[str, ...]) -> str:
 
 
 def draw_pareto(view: ExperimentView, surfaces: ResponseSurfaces, index: int) -> list[Figure]:
-    """Draw each term over its scatter, the largest on top, and the least that counts."""
+    """Draw each term over its scatter, the largest on top, and the significance limit."""
     name = surfaces.response_names[index]
     size = np.abs(surfaces.t[index])
     chosen = np.flatnonzero(np.isfinite(size) & (surfaces.exponents.sum(axis=1) > 0))
@@ -633,7 +633,7 @@ def draw_pareto(view: ExperimentView, surfaces: ResponseSurfaces, index: int) ->
         )
         if own.any()
     ]  # fmt: skip
-    # a term with an error term of its own has a line of its own
+    # a term with an error term of its own has its own limit
     ends = np.stack([height - 0.5, height + 0.5, np.full(height.size, np.nan)], axis=1)
     data.append(
         line(
@@ -664,7 +664,7 @@ def draw_pareto(view: ExperimentView, surfaces: ResponseSurfaces, index: int) ->
 
 _WIDE = 50.0
 
-"""Largest over critical |t| from which small terms need a logarithmic axis to be seen."""
+"""Ratio of largest to critical |t| above which small terms need a logarithmic axis."""
 
 
 def draw_checks(
@@ -742,7 +742,7 @@ def _normal(view: ExperimentView, surfaces: ResponseSurfaces, index: int) -> Fig
     inner = surfaces.diagnostics.studentized_residual[index]
     known = np.flatnonzero(np.isfinite(inner))
     own = known[np.argsort(inner[known], kind="stable")]
-    # Blom's places, as in the straightness that is given beside them
+    # Blom's plotting positions, as for the straightness that is given with them
     score = ndtri((np.arange(1, own.size + 1) - 0.375) / (own.size + 0.25))
     straight = surfaces.diagnostics.probability_plot_correlation[index]
     ends = np.array([-2.0, 2.0])
@@ -778,7 +778,7 @@ _OF_DUMMIES, _OF_FACTORS, _SEEN = _SCREENING_GREY, COLOURS[5], COLOURS[0]
 
 
 def draw_effects(view: ExperimentView, name: str) -> list[Figure]:
-    """Draw the effects by size with the least that counts, and their half-normal plot."""
+    """Draw the effects by size with the significance limit, and their half-normal plot."""
     effect = view.array(f"{name}_effect")
     if effect.size == 0 or not np.isfinite(effect).any():
         return []
@@ -790,7 +790,7 @@ def draw_effects(view: ExperimentView, name: str) -> list[Figure]:
 
 
 def confounding_words(view: ExperimentView) -> list[str]:
-    """Say what stands in each main effect beside the factor itself."""
+    """Name the effects that are confounded with each main effect."""
     plan = view.array("run_plan")[:, : len(view.factors)]
     _, alias = alias_matrix(np.where(plan < 0, -1.0, 1.0))
     of_factors = np.abs(alias[1:])
@@ -903,11 +903,11 @@ _ONE_LINE = "differences between lines (one was tested)"
 
 NOT_OF_RUNS = "errors common to all runs: calibration, gauge length, the one line tested"
 
-"""What no scatter of runs has in it."""
+"""Errors that no scatter of runs includes."""
 
 _LARGE = 1e9
 
-"""From here on a column of squares has powers of ten in every row, not in some."""
+"""From this value on, all rows of a column of squares have powers of ten."""
 
 _ON_SCALE = {
     "log": ", by its logarithm",
@@ -919,7 +919,7 @@ _ON_SCALE = {
 def run_table(
     view: ExperimentView, tests: Mapping[str, TestView] | None = None
 ) -> PageTable | None:
-    """Return the runs as planned and as reached, with what each gave."""
+    """Return the runs as planned and as reached, with the responses of each."""
     own = {} if tests is None else tests
     strength = view.per_run("run_rated_break_strength")
     is_share = bool(np.isfinite(strength).any())
@@ -958,7 +958,7 @@ def _about_runs(view: ExperimentView, sheet: Sheet, tests: Mapping[str, TestView
 
 
 def _fixed(value: float, factor: float, places: int) -> TableCell:
-    """Return a cell of a number to so many places; the archive's own value is beside it."""
+    """Return a cell with a number to so many places; it also keeps the value of the archive."""
     if not np.isfinite(value * factor):
         return TableCell(NOT_GIVEN, is_number=True)
     text = f"{round(value * factor, places) + 0.0:,.{places}f}"
@@ -970,7 +970,7 @@ def _coded(levels: Floats) -> str:
 
 
 def caution_table(view: ExperimentView) -> PageTable | None:
-    """Return what the runs as reached warn of."""
+    """Return the warnings about the runs as reached."""
     own = view.own_rows("caution")
     return (
         Sheet(view)
@@ -987,7 +987,7 @@ def effect_table(view: ExperimentView, name: str) -> PageTable | None:
     effect = view.array(f"{name}_effect")
     if effect.size == 0:
         return None
-    # without dummies the error is Lenth's, of a third as many degrees of freedom as effects
+    # without dummies the error is Lenth's, with a third as many degrees of freedom as effects
     freedom = effect.size - len(view.factors) or effect.size / 3
     spread = expand(view.scalar(f"{name}_effect_standard_uncertainty"), degrees_of_freedom=freedom)
     order = np.argsort(-np.abs(effect), kind="stable")
@@ -1013,13 +1013,13 @@ def effect_table(view: ExperimentView, name: str) -> PageTable | None:
 
 
 def answer_table(view: ExperimentView, surfaces: ResponseSurfaces) -> PageTable | None:
-    """Return each response in the middle of the tested range, and from where to where it goes."""
+    """Return each response in the middle of the tested range, and its range over it."""
     least, greatest, _ = extremes_in_box(surfaces)
     centre = np.zeros((1, len(view.factors)))
     middle = evaluate_surfaces(surfaces, centre, units="coded")
     lows, highs = _interval_of_surfaces(view, surfaces, centre)
     names = surfaces.response_names
-    # of several surfaces of a response, the one that a look-up uses
+    # of several surfaces of a response, the one used for look-ups
     used = {
         next(f"{scale}{base}" for scale in (*SCALES, "") if f"{scale}{base}" in names)
         for base in map(_base_response, names)
@@ -1176,7 +1176,7 @@ def anova_table(view: ExperimentView, surfaces: ResponseSurfaces, index: int) ->
 
 
 def _held(sources: Sequence[str]) -> str:
-    """Say what the uncertainty of a surface holds."""
+    """Describe the uncertainty of a surface."""
     told = ", ".join(source_words(one) for one in sources)
     return f"{_OF_RUNS}; and errors common to all runs: {told}" if told else _OF_RUNS
 
@@ -1186,7 +1186,7 @@ def _left_out(sources: Sequence[str]) -> str:
 
 
 def _to_compute_with(value: float, spread: float, unit: Shown) -> TableCell:
-    """Return a coefficient of seven digits and its uncertainty of two."""
+    """Return a coefficient to seven digits and its uncertainty to two."""
     if not np.isfinite(value):
         return TableCell(NOT_GIVEN, is_number=True)
     half = f" ± {number_text(spread * unit.factor, 2)}" if np.isfinite(spread) else ""
@@ -1199,7 +1199,7 @@ def _squared(unit: str) -> str:
 
 
 def line_of_runs_table(view: ExperimentView, tests: Mapping[str, TestView]) -> PageTable | None:
-    """Return the parameters of the line of each run, and those derived from surfaces beside."""
+    """Return the line parameters of each run, with those derived from surfaces."""
     constant, time = (
         view.per_run(f"derived_{name}")
         for name in ("dissipation_spring_constant", "relaxation_time")
@@ -1224,7 +1224,7 @@ def line_of_runs_table(view: ExperimentView, tests: Mapping[str, TestView]) -> P
 
 
 def _forms(view: ExperimentView, *dims: str) -> Sheet:
-    """A row a form, or a coefficient of one; none without any fit."""
+    """One row per form, or per coefficient of a form; none without any fit."""
     sheet = Sheet(view, ("stiffness_form", *dims))
     if not np.isfinite(view.array("stiffness_n_coefficients")).any():
         sheet.keep(np.zeros(sheet.n_rows, dtype=bool))
@@ -1263,7 +1263,7 @@ def form_table(view: ExperimentView) -> PageTable | None:
 
 
 def form_quality_table(view: ExperimentView) -> PageTable | None:
-    """Return how well each form fits the runs, beside the quadratic surface."""
+    """Return how well each form fits the runs, compared with the quadratic surface."""
     sheet = _forms(view)
     if not sheet.n_rows:
         return None
@@ -1291,7 +1291,7 @@ _RUN_TO_RUN, _REGRESSION = "run_to_run", "regression"
 def coefficient_budgets(
     view: ExperimentView, surfaces: ResponseSurfaces, index: int
 ) -> list[AnswerBudget]:
-    """Return the budget of each coded coefficient of a surface: what runs share, and what not."""
+    """Return the budget of each coded coefficient of a surface, with shared and random errors."""
     name = surfaces.response_names[index]
     unit = response_unit(name, view.units)
     share = _share_of_repeats(surfaces, index)
@@ -1312,7 +1312,7 @@ def coefficient_budgets(
 
 
 def _share_of_repeats(surfaces: ResponseSurfaces, index: int) -> float:
-    """Share of the variance about a surface that repeated runs have; NaN where there are none."""
+    """Share of repeated runs in the variance about a surface; NaN without repeats."""
     anova = surfaces.anova
     row = anova.source.index("pure error")
     freedom = float(anova.degrees_of_freedom[index, row])
@@ -1323,7 +1323,7 @@ def _share_of_repeats(surfaces: ResponseSurfaces, index: int) -> float:
 
 
 def _apart(budget: Budget, share: float) -> Budget:
-    """Budget with the scatter about the surface in two parts; in one where runs have no twin."""
+    """Budget with the scatter about the surface in two parts; in one without repeated runs."""
     parts = {_REGRESSION: 1.0} if np.isnan(share) else {
         _RUN_TO_RUN: share, _REGRESSION: 1 - share,
     }  # fmt: skip
@@ -1342,7 +1342,7 @@ def _apart(budget: Budget, share: float) -> Budget:
 def coefficient_budget_table(
     view: ExperimentView, name: str, answers: Sequence[AnswerBudget]
 ) -> PageTable | None:
-    """Return the numbers of the bars: value, uncertainty, factor, and the share of each source."""
+    """Return the values behind the bars: value, uncertainty, factor, and share of each source."""
     if not answers:
         return None
     sources = AnswerBudget.sources_of(answers)
@@ -1370,7 +1370,7 @@ def _percent(value: float) -> TableCell:
 
 
 def experiment_findings(view: ExperimentView) -> list[SummaryFinding]:
-    """Return what a reader must know of an experiment before its numbers."""
+    """Return what a reader must know about an experiment before its numbers."""
     name = f"experiment {view.name}"
     found = [
         SummaryFinding("warning", (name,), row["caution"] + _of_runs(row))
@@ -1395,7 +1395,7 @@ def negative_words(
     name: str,
     negative: Mapping[str, tuple[float, Floats]],
 ) -> list[str]:
-    """Warn of a surface that goes where its response cannot."""
+    """Warn of a surface with values that its response cannot have."""
     if name not in negative:
         return []
     least, place = negative[name]
@@ -1420,7 +1420,7 @@ def negative_words(
 
 
 def quality_words(view: ExperimentView, surfaces: ResponseSurfaces, index: int) -> str:
-    """Say how well a surface fits, and that the report would print another F."""
+    """Describe the fit of a surface, and that the report would print another F."""
     lack = surfaces.lack_of_fit
     unit = response_unit(surfaces.response_names[index], view.units)
     freedom = int(surfaces.degrees_of_freedom[index])
@@ -1463,7 +1463,7 @@ _SIGNIFICANCE = 0.05
 
 
 def stationary_words(view: ExperimentView, surfaces: ResponseSurfaces, index: int) -> str:
-    """Say whether the surface has a summit or a hollow, and where."""
+    """Describe a maximum or minimum of the surface, and its place."""
     canonical = surfaces.canonical
     reason = STATIONARY_REASONS[int(canonical.reason[index])]
     if reason:
@@ -1489,7 +1489,7 @@ def stationary_words(view: ExperimentView, surfaces: ResponseSurfaces, index: in
 
 
 def block_words(view: ExperimentView, surfaces: ResponseSurfaces, index: int) -> list[str]:
-    """Say how the specimens differ where there are several."""
+    """Describe the differences between specimens where there are several."""
     blocks = surfaces.blocks
     if blocks is None:
         return []
@@ -1510,7 +1510,7 @@ def block_words(view: ExperimentView, surfaces: ResponseSurfaces, index: int) ->
 
 
 def single_time_words(view: ExperimentView) -> list[str]:
-    """Say whether one relaxation time holds over frequency."""
+    """Describe whether one relaxation time holds over frequency."""
     verdict = view.text("single_time_verdict")
     if not verdict:
         return []
@@ -1529,7 +1529,7 @@ def single_time_words(view: ExperimentView) -> list[str]:
 
 
 def form_words(view: ExperimentView) -> list[str]:
-    """Say each form in words, and how it does against the quadratic surface."""
+    """Describe each form in words, and its fit compared with the quadratic surface."""
     equations = view.array_of_texts("stiffness_equation")
     if not equations.size or not any(equations):
         return []
@@ -1629,7 +1629,7 @@ def draw_single_time(
     times = time[known]
     span: dict[str, Any] = {}
     if times.max() < 3 * times.min():
-        # a straight level would fill the height otherwise, and noise would look like a law
+        # a constant would fill the height otherwise, and noise would look like a law
         middle = np.log10(centre[1])
         span["range"] = [float(middle - 0.5), float(middle + 0.5)]
     return [
@@ -1694,7 +1694,7 @@ def draw_forms(view: ExperimentView) -> list[Figure]:
 
 
 def draw_derived(view: ExperimentView) -> list[Figure]:
-    """Draw K_1 and tau from surfaces of E' and E'' against those of the runs' own loops."""
+    """Draw K_1 and tau from surfaces of E' and E'' against those from the loops of the runs."""
     found = []
     for name, symbol in (("dissipation_spring_constant", "K_1"), ("relaxation_time", "tau")):
         unit = response_unit(name, view.units)
@@ -1737,7 +1737,7 @@ def _by_form(view: ExperimentView, place: int, name: str, x: Floats, y: Floats) 
 
 
 def _groups(view: ExperimentView, known: Bools) -> dict[tuple[str, ...], Integers]:
-    """Runs at equal loads as planned, of one specimen: places by what they have in common."""
+    """Runs at equal planned loads of one specimen: places by their common levels."""
     frequency = view.factors.index("frequency")
     others = np.delete(view.array("run_plan"), frequency, axis=1)
     specimens = view.texts("run_specimen")
@@ -1748,7 +1748,7 @@ def _groups(view: ExperimentView, known: Bools) -> dict[tuple[str, ...], Integer
 
 
 def _loads(view: ExperimentView, own: Integers) -> str:
-    """Say the levels of a group of runs but for the frequency."""
+    """Give the levels of a group of runs, except the frequency."""
     level = view.array("run_level")[own].mean(axis=0)
     parts = [
         f"{number_text(float(level[j]) * unit.factor, 3)} {unit.unit}"
@@ -1779,7 +1779,7 @@ def _timed(
 
 
 def _decade_ticks(reach: Floats) -> dict[str, Any]:
-    """Return ticks at 1, 2 and 5 of each decade: plotly labels the digits between them bare."""
+    """Return ticks at 1, 2 and 5 of each decade: plotly labels others with bare digits."""
     powers = np.arange(np.floor(np.log10(reach[0])) - 1, np.ceil(np.log10(reach[1])) + 1)
     ticks = [
         digit * 10.0**power

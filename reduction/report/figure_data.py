@@ -1,8 +1,8 @@
 """Figures as plain plotly dictionaries, thinned without losing extremes.
 
-A record of millions of rows is cut into intervals of equal width along its axis; of
-each interval the least and the greatest sample stay, at their own places.  A single
-spike therefore cannot disappear, however long the record is.
+A record of millions of rows is divided into intervals of equal width along its axis; the least and
+the greatest sample of each interval are kept, at their own places.  A single spike therefore
+cannot disappear, however long the record is.
 """
 
 from __future__ import annotations
@@ -27,15 +27,15 @@ _DIGITS = 6
 _TITLE_LENGTH = 60
 
 _SMALLEST_EVEN, _LARGEST_EVEN = 1e-7, 1e22
-"""Between these the power of ten that leaves up to 12 digits before the point is exact."""
+"""Between these exponents the power of ten that leaves up to 12 integer digits is exact."""
 
 
 @dataclass(frozen=True)
 class Figure:
-    """One figure: what plotly draws, and the words around it.
+    """One figure: data for plotly, and the text around it.
 
     ``key`` is the anchor on the page, ``title`` and ``caption`` are plain text; ``spoken`` is
-    what a screen reader says besides, in place of what only the eye reads off.
+    additional text for a screen reader, in place of details that are only visible.
     """
 
     key: str
@@ -55,12 +55,12 @@ class Figure:
 
     @property
     def is_in_space(self) -> bool:
-        """True where it is drawn in three dimensions, which plotly does as a picture."""
+        """True for a three-dimensional figure, which plotly draws as an image."""
         return "scene" in self.layout
 
     @property
     def label(self) -> str:
-        """What a screen reader says."""
+        """Text for a screen reader."""
         names = [trace["name"] for trace in self.data if trace.get("showlegend", True)]
         flat = {**self.layout, **self.layout.get("scene", {})}
         axes = [
@@ -74,12 +74,12 @@ class Figure:
         return f"{shorten(about, 600)} {self.spoken}".rstrip()
 
     def compact(self) -> Figure:
-        """The same figure in less memory, for those that have lines of each of many tests."""
+        """The same figure in less memory, for figures with lines of many tests each."""
         points = [{name: _Points(one[name]) for name in ("x", "y")} for one in self.data]
         return replace(self, data=[one | own for one, own in zip(self.data, points, strict=True)])
 
     def json(self) -> str:
-        """The figure for a script element: no markup can close it, no line end can break it."""
+        """JSON of the figure for a script element: no markup or line end can break out of it."""
         return script_json({"data": self.data, "layout": self.layout})
 
 
@@ -102,7 +102,7 @@ def _as_list(one: object) -> list[float | None]:
 
 
 class _Points(Sequence[float | None]):
-    """Numbers in a quarter of the memory of a list; None where one is not there."""
+    """Numbers in a quarter of the memory of a list; None for missing ones."""
 
     def __init__(self, numbers: Sequence[float | None]) -> None:
         self._numbers = np.array(numbers, dtype=np.float64)
@@ -124,7 +124,7 @@ class _Points(Sequence[float | None]):
 
 
 def plain_numbers(values: Floats, digits: int = _DIGITS) -> list[float | None]:
-    """Return numbers of a few digits, at most 12, None where one is not finite.
+    """Return numbers rounded to a few digits, at most 12; None for those not finite.
 
     Examples
     --------
@@ -228,7 +228,7 @@ def make_figure(
     spoken: str = "",
     **layout: Any,
 ) -> Figure:
-    """Return a figure; ``synthetic`` puts the words into the figure itself."""
+    """Return a figure; ``synthetic`` writes the words into the figure itself."""
     heading: dict[str, Any] = {"text": plot_text(title, _TITLE_LENGTH)}
     if synthetic:
         heading["subtitle"] = {"text": "SYNTHETIC DATA"}
@@ -242,7 +242,7 @@ def make_figure(
 
 
 POINTS = 2000
-"""Most points of one trace; a screen has fewer columns than that."""
+"""Greatest number of points of one trace; a screen has fewer columns."""
 
 
 def keep_extremes(coordinate: Floats, *channels: Floats, limit: int = POINTS) -> NDArray[np.intp]:
@@ -257,7 +257,7 @@ def keep_extremes(coordinate: Floats, *channels: Floats, limit: int = POINTS) ->
     """
     n_samples = coordinate.shape[0]
     gaps = [~np.isfinite(channel) for channel in channels]
-    # least, greatest, and where a channel has gaps one sample of a gap, for each interval
+    # least, greatest, and, where a channel has gaps, one sample of a gap for each interval
     share = sum(2 + bool(gap.any()) for gap in gaps)
     n_intervals = (limit - 2) // share if share else 0
     if n_intervals < 1:
@@ -283,7 +283,7 @@ def keep_extremes(coordinate: Floats, *channels: Floats, limit: int = POINTS) ->
 def least_and_greatest(
     coordinate: Floats, channel: Floats, *, n_intervals: int = POINTS // 4
 ) -> tuple[Floats, Floats, Floats]:
-    """Return the edges of what a channel does in intervals of equal width.
+    """Return the least and greatest values of a channel in intervals of equal width.
 
     Examples
     --------
@@ -302,7 +302,7 @@ def least_and_greatest(
 
 
 def with_gaps(piece: Integers, *series: Floats) -> list[Floats]:
-    """Put a sample that is not there between pieces, so that no line is drawn across.
+    """Insert a missing sample between pieces, so that no line is drawn across.
 
     Examples
     --------
@@ -314,15 +314,15 @@ def with_gaps(piece: Integers, *series: Floats) -> list[Floats]:
 
 
 def _intervals(coordinate: Floats, n_intervals: int) -> NDArray[np.int64]:
-    """Return the number of the interval of each sample, never falling."""
+    """Return the interval number of each sample, never decreasing."""
     finite = np.isfinite(coordinate)
     rising = np.maximum.accumulate(np.where(finite, coordinate, -np.inf))
     if not finite.any() or rising[-1] <= coordinate[finite][0]:
-        # no axis to go by: equal numbers of samples instead
+        # without a usable axis: equal numbers of samples instead
         rank = np.arange(coordinate.shape[0], dtype=np.int64)
         return np.asarray(rank * n_intervals // coordinate.shape[0])
     first = coordinate[finite][0]
-    # in this order a sample on an edge of whole numbers is on its upper side
+    # in this order a sample on a whole-number edge belongs to the upper interval
     place = np.maximum(rising - first, 0.0) * n_intervals / (rising[-1] - first)
     return np.asarray(np.minimum(place.astype(np.int64), n_intervals - 1))
 

@@ -68,7 +68,7 @@ _ALPHA = 0.18
 
 
 def draw_exposure(view: OutcomeView) -> list[Figure]:
-    """Draw strength against years in the field, one figure a line."""
+    """Draw strength against years in the field, one figure per line."""
     series = exposure_series(view.outcomes)
     names = group_names([one.group for one in series], view.units)
     unit = shown("tension", view.units)
@@ -103,7 +103,7 @@ def _exposure_traces(series: ExposureSeries, index: int, factor: float) -> list[
 
 
 def draw_lives(view: OutcomeView) -> list[Figure]:
-    """Draw cycles to failure against peak load, one figure a line, its conditions in colours."""
+    """Draw cycles to failure against peak load, one figure per line, conditions by colour."""
     by_line: dict[Group, list[LoadSeries]] = {}
     for series in load_series(view.outcomes):
         by_line.setdefault(line_of(series.group), []).append(series)
@@ -147,7 +147,7 @@ def _life_traces(series: LoadSeries, name: str, index: int) -> list[Trace]:
 
 
 def _points(x: Floats, y: Floats, name: str, index: int, bound: str = "") -> list[Trace]:
-    """Points of values, or of lower bounds; nothing where there are none."""
+    """Points for values, or for lower bounds; empty where there are none."""
     if not x.size:
         return []
     style = marker(index, size=8)
@@ -179,7 +179,7 @@ _SNAP = "Upper bound of the share that fails by then, where all survived; one-si
 
 
 class _Groups(Sheet):
-    """A row a group, of the numbers of a table of outcomes."""
+    """One row per group, with the values of a table of outcomes."""
 
     def __init__(self, view: OutcomeView, rows: Sequence[Row]) -> None:
         columns = {name: ("row", [row[name] for row in rows]) for name in rows[0]} if rows else {}
@@ -191,16 +191,16 @@ class _Groups(Sheet):
         self.texts("group", self.names)
 
     def known_from(self, name: str, counted: str, fitted: int = 1) -> Expanded:
-        """Uncertainty of a number that is known from so many tests less so many fitted."""
+        """Uncertainty of a value from the number of tests less the number of fitted parameters."""
         freedom = np.maximum(self.of(counted) - fitted, 1.0)
         return expand(self.of(f"{name}_standard_uncertainty"), degrees_of_freedom=freedom)
 
     def some(self, heading: str, name: str) -> Self:
-        """Add a count that is worth a column only where something was counted."""
+        """Add a count as a column, only if anything was counted."""
         return self.cells(heading, (count(one) if one else words("") for one in self.of(name)))
 
     def grouped(self, caption: str, reason: str, held: str, *notes: str) -> PageTable | None:
-        """Return the table: what ± holds, what is missing, and why, stands below."""
+        """Return the table, with notes below: scope of ±, missing values, and reasons."""
         told: dict[str, list[str]] = {}
         for name, row in zip(self.names, self.rows, strict=True):
             load = _real(row, "peak_load_ratio")
@@ -271,7 +271,7 @@ def strength_table(view: OutcomeView, name: str) -> PageTable | None:
 
 
 def exposure_table(view: OutcomeView) -> PageTable | None:
-    """Return the straight line of strength over years in the field, one row a line."""
+    """Return the straight line of strength over years in the field, one row per line."""
     unit = shown("tension", view.units)
     a_year, lost = Shown(f"{unit.unit}/year", unit.factor), "share_lost_per_year"
     sheet = _Groups(view, exposure_rows(view.outcomes))
@@ -330,7 +330,7 @@ def fatigue_table(view: OutcomeView, quantity: str) -> PageTable | None:
 
 
 def load_life_table(view: OutcomeView) -> PageTable | None:
-    """Return the line of life against peak load, one row a group tested at several loads."""
+    """Return the line of life against peak load, one row per group tested at several loads."""
     sheet = _Groups(view, load_life_rows(view.outcomes))
     exponent, life, scale = (
         sheet.known_from(one, "failed_count", 2)
@@ -370,7 +370,7 @@ def _snaps(view: OutcomeView) -> list[tuple[str, SnapLevels]]:
 
 
 def snap_table(view: OutcomeView) -> PageTable | None:
-    """Return what each level of peak load did to lines that go slack."""
+    """Return the effect of each level of peak load on lines that go slack."""
     sheets = (
         Sheet(view)
         .texts("group", [name] * levels.peak_load_ratio.size)
@@ -389,7 +389,7 @@ def snap_table(view: OutcomeView) -> PageTable | None:
 
 
 def snap_sentences(view: OutcomeView) -> list[str]:
-    """Return between which loads failures begin, and what speaks against a sharp load."""
+    """Return the loads between which failures begin, and evidence against a sharp limit."""
     sentences = []
     for name, levels in _snaps(view):
         low, high = (PERCENT.factor * end for end in (levels.threshold_low, levels.threshold_high))
@@ -413,7 +413,7 @@ _COUNTED = ("bedding_cycles", "dynamic_cycles")
 
 
 def answer_of_ropes(views: Sequence[RopeView]) -> PageTable | None:
-    """Return the properties of each rope in a row; least to greatest where it has several."""
+    """Return the properties of each rope in a row; a range where it has several values."""
     if not views:
         return None
     units = views[0].units
@@ -430,7 +430,7 @@ def answer_of_ropes(views: Sequence[RopeView]) -> PageTable | None:
 
 
 def _about(sheet: Sheet, views: Sequence[RopeView]) -> str:
-    """Say what ± holds: and of the instruments what is stated of them."""
+    """Describe the scope of ±, and the stated instrument errors."""
     shared = in_order({one for view in views for one in shared_by_properties(view)})
     if not shared:
         return plus_minus(sheet.factors, left_out=_NOT_IN_ROPE_NUMBERS)
@@ -454,7 +454,7 @@ def _least_to_greatest(view: RopeView, name: str, unit: Shown) -> TableCell:
 
 
 def rope_notes(view: RopeView, *, known: bool) -> list[str]:
-    """Return what there is to say of the properties with a number, or why the others have none."""
+    """Return remarks on the properties with a value, or the reasons why others have none."""
     has_number = {row for name in PROPERTY_NAMES for row in view.rows_of(name)}
     tests = view.texts("property_test")
     return [
@@ -465,7 +465,7 @@ def rope_notes(view: RopeView, *, known: bool) -> list[str]:
 
 
 def property_table(view: RopeView) -> PageTable | None:
-    """Return the six properties; one without a number has its reason."""
+    """Return the six properties; those without a value have their reason."""
     force = shown("tension", view.units)
     ends = zip(view.array("property_low_tension"), view.array("property_high_tension"), strict=True)
     sheet = Sheet(view, ("property",)).texts("property", "property_name").cells(
@@ -497,7 +497,7 @@ def property_table(view: RopeView) -> PageTable | None:
 
 
 def bedding_table(view: RopeView) -> PageTable | None:
-    """Return what bedding-in did."""
+    """Return the effect of bedding-in."""
     return _of_steps(
         view, "specimen", "bedding_permanent_strain", "Bedding-in.",
         ("cycles", "bedding_cycles"),
@@ -523,7 +523,7 @@ def level_table(view: RopeView) -> PageTable | None:
 
 
 def pair_table(view: RopeView) -> PageTable | None:
-    """Return the pairs of holds, with the reason of one without a stiffness."""
+    """Return the pairs of holds, with the reason where there is no stiffness."""
     return _of_steps(
         view, "held_pair", "static_stiffness", "Pairs of held tensions.",
         ("lower tension", "held_pair_low_tension"),
@@ -537,7 +537,7 @@ def pair_table(view: RopeView) -> PageTable | None:
 
 
 def creep_table(view: RopeView) -> PageTable | None:
-    """Return the holds at a kept tension, with the reason of one without a rate."""
+    """Return the holds at constant tension, with the reason where there is no rate."""
     return _of_steps(
         view, "hold", "creep_tension_over_strength", "Creep at held tensions.",
         ("tension", "hold_final_tension"),
@@ -558,7 +558,7 @@ def _of_steps(
     *columns: tuple[str, str] | tuple[str, str, Unit],
     reason: str = "",
 ) -> PageTable | None:
-    """Return one row a step and place of this rope; a column that no row fills is left out."""
+    """Return one row per step and place of this rope; columns without values are left out."""
     sheets = []
     for test in view.tests:
         sheet = Sheet(test, (along,))

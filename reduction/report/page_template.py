@@ -1,8 +1,8 @@
 """The page made from its template.
 
-Nothing is fetched: plotly stands in the page once as text and is read when the page is there,
-figures are deflated JSON beside their captions and are drawn when a reader comes to them.
-Names out of files are escaped wherever they show, in the text by the template and in the
+Nothing is fetched: plotly is contained in the page once as text, and is read after the page has
+loaded.  Figures are deflated JSON beside their captions and are drawn when they come into view.
+Names from files are escaped wherever they appear, in the text by the template and in the
 figures by `reduction.report.figure_data`.
 """
 
@@ -31,7 +31,7 @@ _SCRIPTS = ("inflate", "figures", "cycles", "downloads", "contents")
 
 @dataclass(frozen=True)
 class Link:
-    """An address in this page or beside it, and what a reader is shown of it."""
+    """An address on this page or in its folder, and the text shown for it."""
 
     target: str
     words: str
@@ -39,7 +39,7 @@ class Link:
 
 @dataclass(frozen=True)
 class RenderedSection:
-    """The section of one test as HTML: its figures are no more in memory than on the page."""
+    """The section of one test as HTML, in which figures take no more memory than on the page."""
 
     key: str
     title: str
@@ -47,23 +47,23 @@ class RenderedSection:
 
     @property
     def html(self) -> str:
-        """The section, read again where it was put on disk."""
+        """The section, read again where it was stored on disk."""
         return self.text if isinstance(self.text, str) else self.text.read()
 
     @property
     def n_bytes(self) -> int:
-        """Of the section on a page."""
+        """Size of the section on a page."""
         return len(self.text.encode()) if isinstance(self.text, str) else self.text.n_bytes
 
 
 class ScratchTexts:
-    """Texts on disk until a page is written: memory has no room for a thousand sections."""
+    """Texts on disk until a page is written, since memory cannot hold a thousand sections."""
 
     def __init__(self) -> None:
         self._file = ScratchFile()
 
     def stored(self, section: RenderedSection) -> RenderedSection:
-        """Put the text of a section on disk."""
+        """Store the text of a section on disk."""
         place = self._file.put(section.html.encode())
         return replace(section, text=_StoredText(self._file, place))
 
@@ -77,7 +77,7 @@ class _StoredText:
 
     @property
     def n_bytes(self) -> int:
-        """Its length as UTF-8."""
+        """Length of the text as UTF-8."""
         return int(self.place.stop - self.place.start)
 
     def read(self) -> str:
@@ -87,48 +87,48 @@ class _StoredText:
 
 @dataclass(frozen=True)
 class Page:
-    """What stands on a page, from the top down; all texts are plain.
+    """Content of a page, from top to bottom; all texts are plain.
 
     Parameters
     ----------
     title, campaign, summary : str
-        Of the whole; ``campaign`` heads the list of contents.
+        Texts for the whole page; ``campaign`` heads the list of contents.
     about : sequence of str
         Sentences under the numbers at the top.
     tiles : sequence of Tile
-        Those numbers.
+        Numbers at the top.
     faults : sequence of Finding
         What a reader must know first, most serious first.
     chapters : sequence of Section
-        What follows.
+        Sections that follow.
     synthetic : bool
         Whether the banner says that no specimen was ever pulled.
     has_tests : bool
-        Whether it is a page of tests; the fields behind it are for those alone.
+        Whether it is a page of tests; the fields that follow are used only then.
     specimens, tests, segments : Table or None
-        What was tested, and straight-line segments.
+        Tested specimens and tests, and straight-line segments.
     specimen_notes : sequence of str
-        Under the specimens.
+        Notes under the specimens.
     instruments : Table or None
-        What is stated of the instruments; ``instrument_notes`` where nothing is.
+        Stated instrument errors; ``instrument_notes`` where there are none.
     first : Figure or None
-        What stands first of all.
+        Figure at the top.
     answers, designs, intervals : sequence of Table
         The rest of the first screen.
     comparisons : sequence of Part
-        Figures over several of a kind, headed by ``across``.
+        Figures over several items of a kind, headed by ``across``.
     sections : sequence of RenderedSection
-        One a test.
+        One per test.
     links : sequence of Link
-        Behind the headings in the list of contents: to these, or to those of the pages beside.
+        Entries of the list of contents below the headings: sections here or on the other pages.
     beside : sequence of Link
-        Pages that hold the sections which this one has no room for.
+        Further pages with the sections that this one has no room for.
     home : str
-        Where the name at the head of the contents leads.
+        Target of the name at the head of the contents.
     values_page : str
         Address of the page of design values; empty where there is none.
     is_part : bool
-        Whether it is such a page beside another, which says what is wrong.
+        Whether it is such a further page; the main page then shows what is wrong.
     """
 
     title: str
@@ -169,7 +169,7 @@ def about_page(
     references: str = "",
     definitions: Sequence[str] = (),
 ) -> list[str]:
-    """Return the sentences that say in which units a page is and what it was made from."""
+    """Return the sentences on the units of a page and its source."""
     is_us = units == "us"
     found = [f"Units: {'US customary' if is_us else 'SI'}."]
     if is_us and in_si:
@@ -197,7 +197,7 @@ def _packed(text: str) -> tuple[str, int]:
 
 
 def render_section(section: TestSection, *, is_folded: bool) -> RenderedSection:
-    """Return the section of one test as HTML; one that is folded opens by a click."""
+    """Return the section of one test as HTML; a folded one opens by a click."""
     macros = _environment().get_template("section.html").module
     html = str(macros.chapter(section, is_folded))  # type: ignore[attr-defined]
     return RenderedSection(section.key, section.title, html)
@@ -207,10 +207,10 @@ _PIECE = 1 << 18  # characters
 
 
 def render_page(page: Page) -> list[bytes]:
-    """Return a page as HTML that opens from disk, in pieces: it may have 15 MB."""
+    """Return a page as HTML that opens from disk, in pieces, since it may have 15 MB."""
     room = files("reduction.report")
     plotly = get_plotlyjs()
-    # a text with one wide letter has four bytes for each, and this one has 5 million letters
+    # with one wide letter a text takes four bytes per letter, and this one has 5 million
     slices = [plotly[first : first + _PIECE] for first in range(0, len(plotly), _PIECE)]
     del plotly
     found, waiting, n_waiting = [], [], 0

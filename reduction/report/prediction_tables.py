@@ -26,7 +26,7 @@ from reduction.report.text_style import (
 )
 
 _ROWS = 24
-"""Of the curve of a hose on the page, about; the archive has them all."""
+"""Approximate number of points of a hose curve on the page; the archive has all."""
 
 _K = factor_words([NORMAL])
 
@@ -46,7 +46,7 @@ _PLUS_MINUS = (
 
 
 def _plus_minus_of_hoses(views: Sequence[HoseView]) -> list[str]:
-    """Return the sentence that says what ± is, or that nothing is known."""
+    """Return the sentence that explains ±, or says that no uncertainty is known."""
     named = (name for view in views for name in view.sources)
     sources = dict.fromkeys(SOURCE_WORDS.get(name, name.replace("_", " ")) for name in named)
     if not sources:
@@ -61,7 +61,7 @@ def _plus_minus_of_hoses(views: Sequence[HoseView]) -> list[str]:
 
 
 def answer_of_hoses(views: Sequence[HoseView]) -> PageTable | None:
-    """Return where the cords pick up, work and break: a line a hose."""
+    """Return the strains at which the cords pick up, work and break, one line per hose."""
     return Sheet.stack(
         Sheet(view)
         .texts("hose", [view.name])
@@ -82,7 +82,7 @@ def answer_of_hoses(views: Sequence[HoseView]) -> PageTable | None:
 
 
 def hose_event_table(view: HoseView) -> PageTable | None:
-    """Return what happens to the cords, in the order of stretch."""
+    """Return the events of the cords, in the order of stretch."""
     sheet = Sheet(view, ("hose_event",))
     sheet.keep(np.array([view.event_place(name) for name in view.events]))
     (
@@ -100,7 +100,7 @@ def hose_event_table(view: HoseView) -> PageTable | None:
 
 
 def hose_design_table(view: HoseView) -> PageTable:
-    """Return the numbers that the hose is made of, and what follows from them."""
+    """Return the design parameters of the hose, and derived values."""
     diameters = view.array("layer_diameter")
     is_same = diameters[0] == diameters[-1]
     layers = ("of both cord layers",) if is_same else ("of the inner layer", "of the outer layer")
@@ -153,7 +153,7 @@ def hose_design_table(view: HoseView) -> PageTable:
 
 
 def layer_table(view: HoseView) -> PageTable | None:
-    """Return what the layers that carry no load are put to, and at which angle they bear it."""
+    """Return the strains of the layers that carry no load, and the angles at which they survive."""
     sheet = Sheet(view, ("hose_layer",))
     low, high, tensile, compressive = (
         sheet.of(f"hose_layer_{name}")
@@ -208,7 +208,7 @@ def cord_table(view: HoseView) -> PageTable | None:
 
 
 def hose_curve_table(view: HoseView) -> PageTable | None:
-    """Return some points of the predicted curve, evenly spread, with the last."""
+    """Return some evenly spaced points of the predicted curve, and the last."""
     sheet = Sheet(view, ("hose_point",))
     size = sheet.n_rows
     at = np.arange(size)
@@ -234,7 +234,7 @@ def hose_curve_table(view: HoseView) -> PageTable | None:
 
 
 def verdict_table(views: Sequence[ComparisonView]) -> PageTable | None:
-    """Return what each comparison says: a line a comparison."""
+    """Return the verdict of each comparison, one line each."""
     return Sheet.stack(
         Sheet(view)
         .at("curve", view.curve_place(view.judged))
@@ -265,7 +265,7 @@ def verdict_table(views: Sequence[ComparisonView]) -> PageTable | None:
 
 
 def compared_curve_table(view: ComparisonView) -> PageTable | None:
-    """Return the differences of each measured curve, and what the calibration leaves."""
+    """Return the differences of each measured curve, and those left after calibration."""
     sheet = Sheet(view, ("curve",)).keep(np.array([view.curve_place(one) for one in view.curves]))
     (
         sheet.texts(
@@ -291,7 +291,7 @@ def compared_curve_table(view: ComparisonView) -> PageTable | None:
 
 
 def compared_event_table(view: ComparisonView) -> PageTable | None:
-    """Return what happens to the cords, predicted and measured, in tension and in strain."""
+    """Return the events of the cords, predicted and measured, in tension and in strain."""
     sheet = Sheet(view, ("hose_event",))
     (sheet.texts("event", [event.words for event in view.events]).shown("compared events"))
     missing = not np.isfinite(sheet.of("event_measured_tension")).all()
@@ -306,7 +306,7 @@ def compared_event_table(view: ComparisonView) -> PageTable | None:
 
 
 def energy_table(view: ComparisonView) -> PageTable | None:
-    """Return energies between the same two strains; None where nothing could be integrated."""
+    """Return energies between the same two strains; None where none could be integrated."""
     return (
         Sheet(view, where="measured_energy")
         .spans("between strains", "energy_strain_low", "energy_strain_high", PERCENT, places=1)
@@ -321,7 +321,7 @@ def energy_table(view: ComparisonView) -> PageTable | None:
 
 
 def calibration_table(view: ComparisonView) -> PageTable | None:
-    """Return the fitted numbers with intervals and bounds; None where none was fitted."""
+    """Return the fitted parameters with intervals and bounds; None where none was fitted."""
     fitted = [(one, one.shown(view.units)) for one in view.fitted]
     sheet = Sheet(view)
     (
@@ -354,7 +354,7 @@ def calibration_table(view: ComparisonView) -> PageTable | None:
 
 
 def correlation_table(view: ComparisonView) -> PageTable | None:
-    """Return how the fitted numbers go together; None of fewer than two."""
+    """Return the correlation of the fitted parameters; None with fewer than two."""
     if len(view.fitted) < 2:
         return None
     names = [one.words for one in view.fitted]

@@ -1,4 +1,4 @@
-"""Products of a campaign as the page reads them."""
+"""Products of a campaign in the form needed by the page."""
 
 from __future__ import annotations
 
@@ -42,12 +42,12 @@ SOURCE_WORDS = {
     "cord_strain_scale": "strain of the cord curve",
     "dead_length_share": "share of dead length",
 }
-"""What a number of a design is called where its name does not say it."""
+"""Name of a design parameter where its identifier is not self-explanatory."""
 
 
 @dataclass(frozen=True)
 class OneEvent:
-    """Something that happens to the cords; SI, NaN where an uncertainty is not known."""
+    """An event of the cords; SI, NaN where an uncertainty is not known."""
 
     name: str
     strain: float
@@ -61,7 +61,7 @@ class OneEvent:
 
     @property
     def words(self) -> str:
-        """What a reader calls it."""
+        """Name for the reader."""
         return EVENT_WORDS.get(self.name, self.name.replace("_", " "))
 
 
@@ -82,16 +82,16 @@ class HoseView(RowView):
 
     @property
     def wrap_angle(self) -> float:
-        """Of the cords at rest, from the axis. [rad]."""
+        """Angle of the cords at rest, from the axis. [rad]."""
         return self.scalar("wrap_angle")
 
     @property
     def is_slack_at_first(self) -> bool:
-        """True where the cords have to be stretched to length before they carry."""
+        """True where the cords have to reach their rest length before they carry."""
         return self.wrap_angle > NEUTRAL_ANGLE
 
     def texts(self, name: str) -> tuple[str, ...]:
-        """Values of a text variable of this hose, without those of longer hoses."""
+        """Values of a text variable of this hose, without the padding for longer hoses."""
         if name not in self.data:
             return ()
         size = self.sizes.get(str(self.data.variables[name].dims[-1]))
@@ -99,7 +99,7 @@ class HoseView(RowView):
 
     @cached_property
     def sources(self) -> tuple[str, ...]:
-        """Numbers of this hose of which an uncertainty is stated."""
+        """Parameters of this hose with a stated uncertainty."""
         if "uncertainty_source" not in self.data:
             return ()
         return tuple(
@@ -119,7 +119,7 @@ class HoseView(RowView):
 
     @cached_property
     def events(self) -> dict[str, OneEvent]:
-        """What happens to the cords, by name; the slackest point only where there is one."""
+        """Events of the cords, by name; the slackest point only where there is one."""
         quantities = [name for name in OneEvent.__dataclass_fields__ if name != "name"]
         strain = self.array("event_strain")
         table = [self.array_like(f"event_{name}", strain) for name in quantities]
@@ -133,12 +133,12 @@ class HoseView(RowView):
 
     @cached_property
     def notes(self) -> tuple[Note, ...]:
-        """What is to be said of the hose."""
+        """Notes on the hose."""
         return read_notes(self.data, of=("note_hose", self.name))
 
     @property
     def per_length(self) -> Shown:
-        """How a number a length is shown."""
+        """Display form of a number per length."""
         small = shown("small length", self.units)
         return Shown(f"1/{small.unit}", 1 / small.factor)
 
@@ -163,7 +163,7 @@ _IDENTIFIED = {0: False, 1: True}
 
 @dataclass(frozen=True)
 class _MetEvent:
-    """What happens to the cords, on both sides; SI, NaN where the test did not go there."""
+    """An event of the cords, predicted and measured; SI, NaN where the test did not reach it."""
 
     name: str
     strain: float
@@ -177,13 +177,13 @@ class _MetEvent:
 
     @property
     def words(self) -> str:
-        """What a reader calls it."""
+        """Name for the reader."""
         return _EVENT_WORDS.get(self.name, self.name.replace("_", " "))
 
 
 @dataclass(frozen=True)
 class FittedNumber:
-    """A number of the hose that was fitted, in SI."""
+    """A fitted parameter of the hose, in SI."""
 
     name: str
     unit: str
@@ -198,11 +198,11 @@ class FittedNumber:
 
     @property
     def words(self) -> str:
-        """What a reader calls it."""
+        """Name for the reader."""
         return _NUMBER_WORDS.get(self.name, self.name.replace("_", " "))
 
     def shown(self, units: UnitSystem) -> Shown:
-        """Unit in which it is shown: an angle in degrees, a share in percent."""
+        """Display unit: degrees for an angle, percent for a share."""
         if self.unit == "rad":
             return DEGREES
         if self.unit == "Pa":
@@ -243,17 +243,17 @@ class ComparisonView(RowView):
 
     @property
     def loading(self) -> str:
-        """How the test was pulled: static or dynamic."""
+        """Loading of the test: static or dynamic."""
         return self.text("comparison_loading")
 
     @property
     def judged(self) -> str:
-        """Curve that the prediction is judged by."""
+        """Curve with which the prediction is compared."""
         return self.text("judged_curve")
 
     @property
     def verdict(self) -> str:
-        """What the comparison says, in words."""
+        """Verdict of the comparison, in words."""
         return self.text("verdict")
 
     @property
@@ -267,7 +267,7 @@ class ComparisonView(RowView):
 
     @property
     def is_identified(self) -> bool | None:
-        """Whether the curve tells the fitted numbers apart; None where none was to be fitted."""
+        """Whether the curve identifies the fitted parameters; None where none was to be fitted."""
         if "is_identified" not in self.data:
             return None
         return _IDENTIFIED.get(int(self.data.variables["is_identified"].values[self.index]))
@@ -285,12 +285,12 @@ class ComparisonView(RowView):
         return float(self.of_curve(name, self.judged))
 
     def is_flag(self, name: str) -> bool:
-        """Return whether a flag of no and yes says yes."""
+        """Return whether a flag with the values no and yes is yes."""
         return self.scalar(name) == 1
 
     @property
     def curves(self) -> tuple[str, ...]:
-        """Curves of the test that are there."""
+        """Available curves of the test."""
         return tuple(
             name
             for name in self.data.variables["curve"].values.astype(str).tolist()
@@ -304,7 +304,7 @@ class ComparisonView(RowView):
 
     @property
     def shared_sources(self) -> list[str]:
-        """Sources of what all samples of the test share, in fixed order."""
+        """Sources of the errors that all samples of the test share, in fixed order."""
         rows = stored(self.data, "measured_tension_uncertainty_contribution")
         if rows is None:
             return []
@@ -314,7 +314,7 @@ class ComparisonView(RowView):
 
     @property
     def allowed(self) -> Floats:
-        """What the difference may be at each strain: U, to both sides. [N]."""
+        """Allowed difference at each strain: U, to both sides. [N]."""
         return np.asarray(self.scalar("coverage_factor") * self.array("validation_uncertainty"))
 
     @property
@@ -325,7 +325,7 @@ class ComparisonView(RowView):
 
     @cached_property
     def events(self) -> tuple[_MetEvent, ...]:
-        """What happens to the cords, in the order of strain."""
+        """Events of the cords, in the order of strain."""
         names = self.data.variables["hose_event"].values.astype(str)
         fields = [name for name in _MetEvent.__dataclass_fields__ if name != "name"]
         table = [self.array_like(f"event_{name}", np.zeros(names.size)) for name in fields]
@@ -336,7 +336,7 @@ class ComparisonView(RowView):
 
     @cached_property
     def fitted(self) -> tuple[FittedNumber, ...]:
-        """Numbers of the hose that were fitted; none without a calibration."""
+        """Fitted parameters of the hose; none without a calibration."""
         if "parameter_name" not in self.data:
             return ()
         names, units = (
@@ -361,7 +361,7 @@ class ComparisonView(RowView):
 
     @cached_property
     def notes(self) -> tuple[Note, ...]:
-        """What is to be said of the comparison."""
+        """Notes on the comparison."""
         return read_notes(self.data, of=("note_comparison", self.name))
 
 
@@ -400,7 +400,7 @@ class ExperimentView(RowView):
 
     @property
     def is_screening(self) -> bool:
-        """True where effects of many factors were asked for, not a surface."""
+        """True where the effects of many factors were measured, not a surface."""
         return self.text("experiment_kind") == "plackett-burman"
 
     @property
@@ -410,7 +410,7 @@ class ExperimentView(RowView):
 
     @cached_property
     def responses(self) -> tuple[str, ...]:
-        """What was measured in the runs."""
+        """Quantities measured in the runs."""
         return tuple(
             name
             for name in RESPONSES
@@ -441,27 +441,27 @@ class ExperimentView(RowView):
 
     @cached_property
     def factor_units(self) -> tuple[Shown, ...]:
-        """How the level of each factor is shown."""
+        """Display unit of the level of each factor."""
         pairs = zip(self.factors, self.texts("factor_unit"), strict=True)
         return tuple(_factor_unit(name, unit, self.units) for name, unit in pairs)
 
     def factor_label(self, place: int) -> str:
-        """Words of a factor with its unit, for an axis or a column."""
+        """Name of a factor with its unit, for an axis or a column."""
         return self.factor_units[place].label(in_words(self.factors[place]))
 
     def levels(self, place: int) -> tuple[float, float, float]:
-        """Low, middle and high level of a factor, as shown."""
+        """Low, middle and high level of a factor, in display units."""
         low, high = (self.array(f"factor_{end}")[place] for end in ("low", "high"))
         factor = self.factor_units[place].factor
         return float(low * factor), float((low + high) / 2 * factor), float(high * factor)
 
     def per_run(self, name: str) -> Floats:
-        """Values of a variable, or NaN, one a run."""
+        """Values of a variable, or NaN, one per run."""
         found = self.array(name)
         return found if found.shape == (len(self.runs),) else np.full(len(self.runs), np.nan)
 
     def texts(self, name: str) -> tuple[str, ...]:
-        """Values of a text variable, one an entry of its dimension; as many "" where none."""
+        """Values of a text variable, one per entry of its dimension; as many "" where missing."""
         if name not in self.data:
             return ("",) * self.sizes.get("run" if name.startswith("run_") else "", 0)
         variable = self.data.variables[name]
@@ -469,18 +469,18 @@ class ExperimentView(RowView):
         return tuple(str(text) for text in np.ravel(variable.values[self.index][cut]))
 
     def array_of_texts(self, name: str) -> NDArray[np.str_]:
-        """Values of a text variable in their shape; of no length where there is none."""
+        """Values of a text variable in their shape; empty where missing."""
         if name not in self.data:
             return np.full((0, 0), "")
         return np.asarray(self.data.variables[name].values[self.index], dtype=np.str_)
 
     @cached_property
     def notes(self) -> tuple[Note, ...]:
-        """What is to be said of the experiment."""
+        """Notes on the experiment."""
         return read_notes(self.data, of=("note_experiment", self.name))
 
     def own_rows(self, name: str) -> list[dict[str, str]]:
-        """Rows of the cautions that are of this experiment."""
+        """Rows of the cautions that concern this experiment."""
         if name not in self.data:
             return []
         columns = [one for one in map(str, self.data.variables) if one.startswith(name)]
@@ -499,7 +499,7 @@ class ExperimentView(RowView):
 
 
 def in_words(name: str) -> str:
-    """Return the name of a quantity as a reader says it.
+    """Return the name of a quantity for the reader.
 
     Examples
     --------
@@ -511,7 +511,7 @@ def in_words(name: str) -> str:
 
 
 def response_unit(name: str, system: UnitSystem) -> Shown:
-    """Return how a response, or the scale of its transform, is shown.
+    """Return the display form of a response, or of the scale of its transform.
 
     Examples
     --------
@@ -554,7 +554,7 @@ class OutcomeView:
 
     @property
     def summary(self) -> str:
-        """How many outcomes there are, and what was made of them."""
+        """Number of outcomes, and the results from them."""
         uses = Counter[str](one.use for one in self.outcomes)
         listed = [
             f"{uses[use]:,} {words}"
@@ -574,7 +574,7 @@ class OutcomeView:
 
 
 def view_outcomes(archive: xr.Dataset, units: UnitSystem) -> OutcomeView:
-    """Return what the page needs of an archive of outcomes, which may then be closed."""
+    """Return the data of an archive of outcomes that the page needs; it may then be closed."""
     attributes = {str(name): str(value) for name, value in archive.attrs.items()}
     return OutcomeView(outcomes_of_dataset(archive), attributes, units)
 
@@ -585,7 +585,7 @@ def line_of(group: Group) -> Group:
 
 
 def group_names(groups: Sequence[Group], units: UnitSystem) -> list[str]:
-    """Return a name of each group: what it is called, and in what it differs from the others.
+    """Return a name of each group: its own name, and its differences from the others.
 
     Examples
     --------
@@ -629,13 +629,13 @@ class RopeView:
     key : str
         Prefix of every anchor.
     specimen : str
-        Its name.
+        Name of the specimen.
     data : xarray.Dataset
         Its rows of the archive of properties, in memory.
     tests : tuple of TestView
         Steps of its programme in the order in which they were done.
     units : UnitSystem
-        What a reader is shown.
+        Display units.
     """
 
     key: str
@@ -651,7 +651,7 @@ class RopeView:
 
     @property
     def names(self) -> list[str]:
-        """Which property each row is."""
+        """Property of each row."""
         return self.texts("property_name")
 
     def attribute(self, name: str) -> str:
@@ -659,15 +659,15 @@ class RopeView:
         return str(self.data.attrs.get(name, ""))
 
     def array(self, name: str) -> Floats:
-        """Values of a variable, one a row."""
+        """Values of a variable, one per row."""
         return np.asarray(self.data.variables[name].values, dtype=np.float64)
 
     def texts(self, name: str) -> list[str]:
-        """Texts of a variable, one a row."""
+        """Texts of a variable, one per row."""
         return [str(value) for value in self.data.variables[name].values]
 
     def rows_of(self, name: str) -> list[int]:
-        """Rows of one property that have a number."""
+        """Rows of one property that have a value."""
         stiffness, strain = self.array("property_stiffness"), self.array("property_strain")
         known = np.isfinite(stiffness) | np.isfinite(strain)
         return [row for row, one in enumerate(self.names) if one == name and known[row]]
@@ -683,7 +683,7 @@ class RopeView:
 
 
 def expanded_property(view: RopeView, name: str) -> Expanded:
-    """Return the expanded uncertainty of a property in each row, of shared and random parts."""
+    """Return the expanded uncertainty of a property in each row, from shared and random parts."""
     spread = view.array(f"{name}_standard_uncertainty")
     kept = f"{name}_random_standard_uncertainty"
     return expand(
@@ -701,7 +701,7 @@ def shared_by_properties(view: RopeView) -> set[str]:
     reached = np.zeros(len(sources), dtype=bool)
     for name in ("stiffness", "stiffness_over_strength", "strain"):
         rows = view.array(f"property_{name}_uncertainty_contribution")
-        # a zero that cancels in a difference leaves its rounding
+        # a zero error that cancels in a difference leaves its rounding
         reached |= (np.abs(rows) > _ROUNDING * np.abs(view.array(f"property_{name}"))).any(axis=1)
     return {one for one, is_in in zip(sources, reached, strict=True) if is_in}
 

@@ -1,7 +1,7 @@
 """Tables of the page: columns by the name of a variable, values with their uncertainty.
 
-Rows go along dimensions of the archive.  The unit follows from the variable and from what the
-page shows, ± from ``<name>_standard_uncertainty``.  What has no archive gives arrays instead.
+Rows follow dimensions of the archive.  The unit is determined by the variable and the units of the
+page, ± by ``<name>_standard_uncertainty``.  Values without an archive are given as arrays.
 """
 
 from __future__ import annotations
@@ -42,19 +42,19 @@ from reduction.report.text_style import (
 Unit = Kind | Shown | None
 
 Source = str | Iterable[Any]
-"""Name of a variable, or what stands in the rows."""
+"""Name of a variable, or the values of the rows."""
 
 
 class _Shows(Protocol):
-    """What a table is of: anything with units."""
+    """Subject of a table: any object with units."""
 
     @property
     def units(self) -> UnitSystem:
-        """What a reader is shown."""
+        """Display units."""
 
 
 class Calculated(NamedTuple):
-    """What is calculated and has no archive."""
+    """Subject for calculated values without an archive."""
 
     units: UnitSystem
     data: xr.Dataset = xr.Dataset()
@@ -64,8 +64,8 @@ class Calculated(NamedTuple):
 class Sheet:
     """Rows of a table, one for each combination of entries of ``dims``; columns are added to it.
 
-    ``where`` names a variable that has to be finite in a row.  A variable that lacks one of the
-    dimensions is the same along it.
+    ``where`` names a variable that has to be finite in a row.  A variable without one of the
+    dimensions is constant along it.
 
     Examples
     --------
@@ -82,7 +82,7 @@ class Sheet:
     headings: list[str] = field(default_factory=list)
     columns: list[list[TableCell]] = field(default_factory=list)
     known: list[str] = field(default_factory=list)
-    """Variables that stand in the table with their uncertainty."""
+    """Variables shown in the table with their uncertainty."""
     places: dict[str, Integers] = field(init=False)
     views: list[Any] = field(init=False)
 
@@ -101,7 +101,7 @@ class Sheet:
 
     @classmethod
     def stack(cls, sheets: Iterable[Sheet]) -> Sheet:
-        """Return the rows of several sheets of equal columns, one below the other."""
+        """Return the rows of several sheets with equal columns, one below the other."""
         all_of = list(sheets)
         if not all_of:
             return cls(Calculated("si"))
@@ -115,22 +115,22 @@ class Sheet:
 
     @property
     def data(self) -> xr.Dataset:
-        """The archive; an empty one of what has none."""
+        """The archive; an empty one for calculated values."""
         found = getattr(self.view, "data", None)
         return found if isinstance(found, xr.Dataset) else xr.Dataset()
 
     @property
     def n_rows(self) -> int:
-        """Number of rows before any of another sheet."""
+        """Number of rows, not counting those of further sheets."""
         return len(next(iter(self.places.values()), ()))
 
     def keep(self, which: Bools | Integers) -> Self:
-        """Leave out rows, or bring them into an order; before any column."""
+        """Select or reorder rows; to be called before columns are added."""
         self.places = {dim: at[which] for dim, at in self.places.items()}
         return self
 
     def at(self, dim: str, place: int) -> Self:
-        """Take what follows at one place of a dimension that the rows do not go along."""
+        """Take the following columns at one place of a dimension that the rows do not follow."""
         self.places[dim] = np.full(self.n_rows, place)
         return self
 
@@ -152,13 +152,13 @@ class Sheet:
         return Expanded(self._at_rows(name, found.half), self._at_rows(name, found.factor))
 
     def cells(self, heading: str, cells: Iterable[TableCell]) -> Self:
-        """Add a column of cells that are made elsewhere."""
+        """Add a column of given cells."""
         self.headings.append(heading)
         self.columns.append(list(cells))
         return self
 
     def row(self, *cells: TableCell) -> Self:
-        """Add a row below, of a cell for each column."""
+        """Add a row at the end, with one cell for each column."""
         for column, cell in zip(self.columns, cells, strict=True):
             column.append(cell)
         return self
@@ -169,7 +169,7 @@ class Sheet:
         return self.cells(heading, (words(str(text)) for text in found))
 
     def counts(self, heading: str, source: Source) -> Self:
-        """Add a column of what is counted."""
+        """Add a column of counts."""
         return self._each(heading, htmltable.count, source)
 
     def probabilities(self, heading: str, source: Source) -> Self:
@@ -177,7 +177,7 @@ class Sheet:
         return self._each(heading, htmltable.probability, source)
 
     def numbers(self, heading: str, source: Source, unit: Unit = None, digits: int = 4) -> Self:
-        """Add a column of numbers of so many digits."""
+        """Add a column of numbers to so many digits."""
         own = self.unit_of(source, unit)
         return self._each(
             heading, lambda value: htmltable.number(value, own, digits=digits), source, own
@@ -224,7 +224,7 @@ class Sheet:
     def intervals(
         self, heading: str, low: Source, high: Source, unit: Unit = None, digits: int = 3
     ) -> Self:
-        """Add a column of ranges, each end to so many digits; nothing where neither is known."""
+        """Add a column of ranges, each end to so many digits; empty where neither is known."""
         own = self.unit_of(low, unit)
         pairs = zip(self._values(low), self._values(high), strict=True)
         return self.cells(
@@ -233,13 +233,13 @@ class Sheet:
         )
 
     def all_of(self, *columns: tuple[str, str] | tuple[str, str, Unit]) -> Self:
-        """Add columns of numbers with what is known of their uncertainty."""
+        """Add columns of numbers with their uncertainty where known."""
         for heading, name, *unit in columns:
             self.measured(heading, name, *unit)  # type: ignore[arg-type]
         return self
 
     def shown(self, page: str) -> Self:
-        """Add the columns whose rows in `reduction.quantities` name a table of the page."""
+        """Add the columns that `reduction.quantities` assigns to a table of the page."""
         return self.all_of(
             *(
                 (row.page[1], row.name, PERCENT if row.percent else None)
@@ -281,7 +281,7 @@ class Sheet:
         remarks: Sequence[str] = (),
         optional: Container[str] = (),
     ) -> PageTable:
-        """Return the table with a row for each column; ``heads`` stand above what were rows."""
+        """Return the table with a row for each column; ``heads`` become the column headings."""
         rows = [
             [words(heading), *column]
             for heading, column in zip(self.headings, self.columns, strict=True)
@@ -291,16 +291,16 @@ class Sheet:
 
     @property
     def is_known(self) -> bool:
-        """True where any number stands in the table."""
+        """True where the table contains any number."""
         return any(cell.value for column in self.columns for cell in column)
 
     @property
     def factors(self) -> list[float]:
-        """Coverage factors of what stands in the table."""
+        """Coverage factors in the table."""
         return factors_of(self.columns)
 
     def about(self, **how: Any) -> str:
-        """Say what ± holds, of tests."""
+        """Describe the scope of ± for tests."""
         return plus_minus_of_tests(self.factors, self.views, self.known, **how)
 
     def _values(self, source: Source) -> Sequence[Any]:
@@ -317,7 +317,7 @@ class Sheet:
         return self.cells(_label(heading, unit), cells)
 
     def unit_of(self, source: Source, unit: Unit = None) -> Shown | None:
-        """The unit of a column: as said, or that of the variable."""
+        """The unit of a column: as given, or that of the variable."""
         if isinstance(unit, Shown):
             return unit
         if unit is not None:

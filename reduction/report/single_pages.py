@@ -157,7 +157,7 @@ _N_LOADS = 241
 
 
 def _draw_stiffness(found: DeployedLine, units: UnitSystem) -> Figure:
-    """Draw EA against tension: of each test, of the curve, and what is stated of each cycle."""
+    """Draw EA against tension: of each test, of the curve, and the stated value of each cycle."""
     force = shown("tension", units)
     deployed, slack = found.deployed, float(found.deployed.assembly.total_length[0])
     data: list[Trace] = []
@@ -204,7 +204,7 @@ def _draw_stiffness(found: DeployedLine, units: UnitSystem) -> Figure:
 
 
 def _chords(length: Floats, tension: Floats, slack_length: float) -> tuple[Floats, Floats]:
-    """Tensions along a curve, and EA over a twentieth of its loads to each side of them. [N]."""
+    """Tensions along a curve, and EA over a twentieth of its load range to each side. [N]."""
     at = np.linspace(tension[0], tension[-1], _N_LOADS)
     reach = (tension[-1] - tension[0]) / 20
     low, high = np.maximum(at - reach, tension[0]), np.minimum(at + reach, tension[-1])
@@ -319,7 +319,7 @@ def write_single_page(
 
 
 def _title(kind: str, name: str) -> str:
-    """Kind and name of a case; a name that says the kind again is left out."""
+    """Kind and name of a case; a name that repeats the kind is left out."""
     return kind if name.lower() in kind.lower() else f"{kind} {name}"
 
 
@@ -385,7 +385,7 @@ def write_assembly_page(found: DeployedLine, path: Path, *, units: UnitSystem = 
 
 
 def _warning(curve: CompositeCurve) -> tuple[str, ...]:
-    """What makes a curve doubtful as a whole, to stand before its notes."""
+    """Reasons why a curve is doubtful as a whole, placed before its notes."""
     return (f"DOUBTFUL: {curve.doubt}",) if curve.doubt else ()
 
 
@@ -416,7 +416,7 @@ def _piece_table(source: PieceSource, curve: CompositeCurve, units: UnitSystem) 
 
 
 def _working_table(found: DeployedLine, units: UnitSystem) -> PageTable | None:
-    """None where no working point was asked for."""
+    """Table of the working points; None where none was requested."""
     length, force, percent = shown("length", units), shown("tension", units), shown("strain", units)
     rows = []
     for place, state in enumerate(found.deployed.working, start=1):
@@ -538,7 +538,7 @@ def wires_table(found: PredictedArmour, units: UnitSystem) -> PageTable | None:
 
 
 def layers_table(found: PredictedArmour, units: UnitSystem) -> PageTable | None:
-    """Return what each layer carries and presses, and whether its wires find room."""
+    """Return load and pressure of each layer, and whether its wires have room."""
     limit, together = found.layers.yield_stress, found.together
     yields = np.where(together.is_yielding[:, 0], "yes", "no")
     return (
@@ -594,7 +594,7 @@ def cable_table(found: PredictedArmour, units: UnitSystem) -> PageTable:
 
 
 def use_table(found: PredictedArmour) -> PageTable | None:
-    """Return between which angles each theory is within the tolerance, layer by layer."""
+    """Return the angles between which each theory is within the tolerance, layer by layer."""
     pairs = [
         (f"{layer}, {THEORY_WORDS[theory]}", use.least_angle[i], use.greatest_angle[i])
         for layer, use in zip(found.layer_names, found.use, strict=True)
@@ -620,7 +620,7 @@ def _angles(low: float, high: float) -> TableCell:
 
 
 def armour_design_table(found: PredictedArmour, units: UnitSystem) -> PageTable | None:
-    """Return what was given of each layer."""
+    """Return the input data of each layer."""
     return (
         Sheet(Calculated(units))
         .texts("layer", found.layer_names)
@@ -636,7 +636,7 @@ def armour_design_table(found: PredictedArmour, units: UnitSystem) -> PageTable 
 
 
 def extremes_table(found: PredictedWaveLoad, units: UnitSystem) -> PageTable | None:
-    """Return greatest and least load of both forms, with how much less the improved one is."""
+    """Return greatest and least load of both forms, and the reduction of the improved one."""
     unit = force_per_length(units)
     pairs = [(one, end) for one in ("horizontal", "vertical") for end in ("maximum", "minimum")]
     sheet = Sheet(Calculated(units)).texts("load", [", ".join(pair) for pair in pairs])
@@ -658,7 +658,7 @@ def extremes_table(found: PredictedWaveLoad, units: UnitSystem) -> PageTable | N
 
 
 def wave_table(found: PredictedWaveLoad, units: UnitSystem) -> PageTable:
-    """Return what the wave is, and how far it is from the limits of its theory."""
+    """Return the properties of the wave, and its distance from the limits of its theory."""
     theory = found.theory
     return (
         Sheet(Calculated(units))
@@ -692,7 +692,7 @@ def wave_table(found: PredictedWaveLoad, units: UnitSystem) -> PageTable:
 
 
 def regime_table(found: PredictedWaveLoad, units: UnitSystem) -> PageTable:
-    """Return the hose in the water, and the numbers by which coefficients are chosen."""
+    """Return the immersion of the hose, and the numbers by which coefficients are chosen."""
     section, regime = found.load.section, found.regime
     return (
         Sheet(Calculated(units))
@@ -716,7 +716,7 @@ def regime_table(found: PredictedWaveLoad, units: UnitSystem) -> PageTable:
 
 
 def anchor_table(found: PredictedWaveLoad, units: UnitSystem) -> PageTable:
-    """Return the greatest horizontal force of wind, wave and current, added and as one flow."""
+    """Return the greatest horizontal force of wind, wave and current, as a sum and as one flow."""
     length, speed, anchor = shown("length", units), _velocity(units), found.anchor
     return (
         Sheet(Calculated(units))
@@ -741,7 +741,7 @@ def anchor_table(found: PredictedWaveLoad, units: UnitSystem) -> PageTable:
 
 
 def wave_coefficient_table(found: PredictedWaveLoad) -> PageTable | None:
-    """Return published coefficients, with those of this case and where it stands among them."""
+    """Return published coefficients, with those of this case and its flow regime."""
     regime, published = found.regime, (*PUBLISHED_COEFFICIENTS, CODE_OF_HYDROLOGY)
     at = f"KC {float(regime.keulegan_carpenter_number):.3g}"
     at += f", Re {plain_number(float(regime.reynolds_number), 3)}"

@@ -1,4 +1,4 @@
-"""Page and tables of response surfaces that were fitted to a table of runs."""
+"""Page and tables of response surfaces fitted to a table of runs."""
 
 from __future__ import annotations
 
@@ -129,7 +129,7 @@ def _known(value: float) -> float | None:
 def _part(
     surfaces: ResponseSurfaces, runs: RunSeries, index: int, units: UnitSystem
 ) -> Part | None:
-    """Figures and tables of one response; nothing of one without a surface."""
+    """Figures and tables of one response; empty for one without a surface."""
     if not np.isfinite(surfaces.coefficient[index]).all():
         return None
     name, transform = surfaces.response_names[index], surfaces.transform[index]
@@ -186,7 +186,7 @@ def _contours(
     factor: float,
     units: UnitSystem,
 ) -> list[Figure]:
-    """Contours over the two factors that matter most, the next one at three levels."""
+    """Contours over the two most important factors, with the next one at three levels."""
     weight = np.abs(surfaces.coefficient[index]) @ (surfaces.exponents > 0)
     order = np.argsort(-weight, kind="stable").tolist()
     if len(order) < 2:
@@ -230,7 +230,7 @@ def _contours(
 
 
 def _axis(runs: RunSeries, place: int, coded: Floats, units: UnitSystem) -> tuple[str, Floats]:
-    """Label and levels of a factor, as they are shown."""
+    """Label and levels of a factor, in display units."""
     unit, factor = display_unit(runs.factor_units[place] or "1", units)
     low, high = float(runs.low[place]), float(runs.high[place])
     levels = factor * ((high + low) / 2 + coded * (high - low) / 2)

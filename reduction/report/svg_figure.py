@@ -28,7 +28,7 @@ _MARKUP = re.compile(r"<br\s*/?>")
 
 @dataclass(frozen=True)
 class _Tick:
-    """A mark on an axis with its words, a line each."""
+    """A mark on an axis with its label, one entry per line."""
 
     value: float
     lines: tuple[str, ...]
@@ -36,7 +36,7 @@ class _Tick:
 
 @dataclass(frozen=True)
 class _DrawnAxis:
-    """One axis: its ends and ticks, and the places of the ends on the drawing."""
+    """One axis: its ends and ticks, and the positions of the ends on the drawing."""
 
     title: str
     low: float
@@ -48,11 +48,11 @@ class _DrawnAxis:
 
     @property
     def longest(self) -> int:
-        """Letters of the longest words at a tick."""
+        """Number of letters of the longest tick label."""
         return max((len(line) for tick in self.ticks for line in tick.lines), default=0)
 
     def at(self, value: float) -> float:
-        """Place of a number on the drawing; NaN where a logarithmic axis has none."""
+        """Position of a number on the drawing; NaN where a logarithmic axis has none."""
         if self.is_log:
             value = log10(value) if value > 0 else nan
         share = (value - self.low) / (self.high - self.low)
@@ -60,7 +60,7 @@ class _DrawnAxis:
 
 
 def _round_ticks(low: float, high: float, most: int) -> list[float]:
-    """Return round numbers between two ends, at most so many and as many as fit.
+    """Return round numbers between two ends, as many as fit up to a greatest number.
 
     Examples
     --------
@@ -78,7 +78,7 @@ def _round_ticks(low: float, high: float, most: int) -> list[float]:
 
 
 def _plain_label(text: str) -> str:
-    """Return what plotly would show of a title or a name, on one line.
+    """Return a title or name as plotly would show it, on one line.
 
     Examples
     --------
@@ -92,7 +92,7 @@ def _axis_of(
     layout: Mapping[str, Any], values: Iterable[float | None], *, first: float, last: float,
     most: int,
 ) -> _DrawnAxis:  # fmt: skip
-    """Return an axis as plotly would lay it out, linear or logarithmic."""
+    """Return an axis with the layout of plotly, linear or logarithmic."""
     is_log = layout.get("type") == "log"
     known = [one for one in values if one is not None and isfinite(one)]
     if is_log:
@@ -130,7 +130,7 @@ def _ends(layout: Mapping[str, Any], known: Sequence[float]) -> tuple[float, flo
 
 
 def _decades(low: float, high: float, most: int) -> Iterator[_Tick]:
-    """Give powers of ten, with 2 and 5 between them where there is room."""
+    """Yield powers of ten, with 2 and 5 between them where there is room."""
     powers = range(floor(low), ceil(high) + 1)
     leading = (1, 2, 5) if 3 * (high - low) <= most else (1,)
     every = ceil((high - low) / most) if len(leading) == 1 else 1
@@ -169,7 +169,7 @@ _CROSSES = {"x": ((1, 1), (1, -1)), "cross": ((1, 0), (0, 1))}
 
 
 def _drawn_trace(trace: Trace, horizontal: _DrawnAxis, vertical: _DrawnAxis) -> Iterator[str]:
-    """Give the elements of one trace on its axes."""
+    """Yield the elements of one trace on its axes."""
     opacity = f' opacity="{trace["opacity"]:g}"' if "opacity" in trace else ""
     runs = _runs(trace, horizontal, vertical)
     if trace.get("fill") == "toself":
@@ -191,7 +191,7 @@ def _drawn_trace(trace: Trace, horizontal: _DrawnAxis, vertical: _DrawnAxis) -> 
 
 
 def _drawn_key(trace: Trace, x: float, y: float) -> Iterator[str]:
-    """What stands before a name: a piece of its line, its marker, a patch of its band."""
+    """Symbol before a name: a piece of its line, its marker, a patch of its band."""
     middle = y - 3.6
     if trace.get("fill") == "toself":
         yield (
@@ -206,7 +206,7 @@ def _drawn_key(trace: Trace, x: float, y: float) -> Iterator[str]:
 
 
 def _runs(trace: Trace, horizontal: _DrawnAxis, vertical: _DrawnAxis) -> list[list[str]]:
-    """Places of the points, parted where one is missing."""
+    """Positions of the points, split where one is missing."""
     runs: list[list[str]] = [[]]
     for x, y in zip(trace["x"], trace["y"], strict=True):
         if x is None or y is None or not (isfinite(x) and isfinite(y)):
@@ -214,7 +214,7 @@ def _runs(trace: Trace, horizontal: _DrawnAxis, vertical: _DrawnAxis) -> list[li
                 runs.append([])
             continue
         place = horizontal.at(x), vertical.at(y)
-        if all(map(isfinite, place)):  # zero has no place on a logarithmic axis
+        if all(map(isfinite, place)):  # zero has no position on a logarithmic axis
             runs[-1].append(f"{place[0]:.2f} {place[1]:.2f}")
     return [run for run in runs if run]
 
@@ -262,7 +262,7 @@ _LEGEND_ROW, _LEGEND_KEY, _LETTER = 15.0, 34.0, 5.9
 _FEWEST_LETTERS = 4
 
 _BEYOND = 10.0
-"""By how much the title of an axis may be longer than the axis."""
+"""Length by which the title of an axis may exceed the axis."""
 
 _TICK_SPACE = (74.0, 34.0)
 
@@ -276,7 +276,7 @@ _KNOWN_MODES = {"lines", "markers", "lines+markers"}
 
 
 def can_be_drawn(figure: Figure) -> bool:
-    """Return whether a figure is lines and markers over one axis, in one or two panels."""
+    """Return whether a figure consists of lines and markers over one axis, in one or two panels."""
     axes = {name for name in figure.layout if name.lstrip("xy").startswith("axis")}
     return (
         figure.has_data
@@ -326,7 +326,7 @@ def vector_of(figure: Figure, *, width: float = 680.0, height: float = 330.0) ->
 def _panels(
     figure: Figure, shown: Sequence[Trace], height: float
 ) -> list[tuple[_DrawnAxis, list[Trace]]]:
-    """Vertical axes one above the other, the lowest first, with what is drawn on each."""
+    """Vertical axes one above the other, the lowest first, with the traces on each."""
     whole = height - _BOTTOM - _TOP
     found = []
     for name, key in _VERTICAL.items():
@@ -344,7 +344,7 @@ def _panels(
 
 
 def _heights(trace: Trace) -> list[float | None]:
-    """Numbers along the vertical axis, bars of uncertainty and all."""
+    """Values along the vertical axis, including bars of uncertainty."""
     y = trace["y"]
     bars = trace.get("error_y", {}).get("array")
     if not bars:
@@ -362,7 +362,7 @@ def _text(
 
 
 def _frame(horizontal: _DrawnAxis, vertical: _DrawnAxis, *, is_lowest: bool) -> Iterator[str]:
-    """Grid, ticks and the two axes; words below the lowest panel alone."""
+    """Grid, ticks and the two axes; tick labels only below the lowest panel."""
     bottom, top = vertical.first, vertical.last
     for tick in horizontal.ticks:
         x = horizontal.at(tick.value)
@@ -383,7 +383,7 @@ def _frame(horizontal: _DrawnAxis, vertical: _DrawnAxis, *, is_lowest: bool) -> 
     turn = f' transform="rotate(-90 14 {middle:.1f})"'
     share = (bottom - top + _BEYOND) / (_LETTER * max(len(vertical.title), 1))
     if share < 1:
-        # a low panel has a long title all the same
+        # a low panel may have a long title
         turn += f' style="font-size:{max(share, 0.6):.2f}em"'
     yield _text(14, middle, vertical.title, "middle", turn=turn)
 
@@ -396,7 +396,7 @@ def _titles(figure: Figure, height: float, horizontal: _DrawnAxis) -> Iterator[s
 
 
 def _levels(figure: Figure, horizontal: _DrawnAxis, vertical: _DrawnAxis) -> Iterator[str]:
-    """Straight lines across the drawing; other shapes mark stretches of a record."""
+    """Straight lines across the drawing; other shapes mark parts of a record."""
     for shape in figure.layout.get("shapes", ()):
         if shape.get("type") == "line" and shape.get("xref", "x") == "paper":
             y0, y1 = vertical.at(shape["y0"]), vertical.at(shape["y1"])
@@ -409,7 +409,7 @@ def _levels(figure: Figure, horizontal: _DrawnAxis, vertical: _DrawnAxis) -> Ite
 def _legend(
     shown: Sequence[Trace], left: float, width: float, height: float
 ) -> Iterator[tuple[float, list[str]]]:
-    """Rows below the drawing: how far down each reaches, and what it is."""
+    """Rows below the drawing: the lower end of each, and its content."""
     entries: dict[str, Trace] = {}
     for trace in shown:
         if trace.get("showlegend", True) and trace.get("name"):

@@ -63,7 +63,7 @@ from reduction.stages.three_parameter_line.line_product import REASONS
 
 STEPS = (0.25, 0.05, 0.01)
 
-"""Strain from row to row: the first that a test of the campaign reaches; a rope is stiff. [1]"""
+"""Strain steps of the table: the first that a test of the campaign reaches; ropes are stiff. [1]"""
 
 CONDITIONING = (
     "Conditioning, K_0 / (E' - K_0): the factor by which a relative error of K_0 grows in E' -"
@@ -80,7 +80,7 @@ _OF_PULL = "scatter about the cubic"
 
 
 def specimen_table(tests: Sequence[TestView], units: UnitSystem) -> PageTable:
-    """Return the specimens of a campaign, each once, as its first test has it."""
+    """Return the specimens of a campaign, each once, as stated in its first test."""
     names = all_specimens(tests)
     sheets = []
     for view in tests:
@@ -102,7 +102,7 @@ def specimen_table(tests: Sequence[TestView], units: UnitSystem) -> PageTable:
 
 
 def specimen_notes(tests: Sequence[TestView]) -> list[str]:
-    """Return what is to be known about each specimen, each sentence once."""
+    """Return the remarks on each specimen, each sentence once."""
     notes = [
         f"{one.stage.removeprefix('specimen ')}: {one}"
         for view in tests
@@ -113,7 +113,7 @@ def specimen_notes(tests: Sequence[TestView]) -> list[str]:
 
 
 def _history_table(view: TestView) -> PageTable | None:
-    """Return what each specimen had seen before the test."""
+    """Return the history of each specimen before the test."""
     if "earlier_cycles" not in view.data:
         return None
     sheet = Sheet(view, ("specimen",)).texts("specimen", "specimen")
@@ -142,7 +142,7 @@ def _coefficient_table(view: TestView) -> PageTable | None:
     for name in COEFFICIENTS.values():
         if np.isfinite(sheet.of(name)).any():
             one = QUANTITIES[name]
-            # c of c F**n goes with a force in newton; no other unit would keep its meaning
+            # c of c F**n belongs to a force in newton; another unit would change its meaning
             unit = "length" if one.unit == "m" else Shown(one.unit, 1.0)
             spread = expand(sheet.of(f"{name}_standard_uncertainty"))
             sheet.measured(one.long_name, name, unit, spread)
@@ -165,7 +165,7 @@ def _coefficient_table(view: TestView) -> PageTable | None:
 
 
 def _slope_sentences(view: TestView) -> list[str]:
-    """Return what a constant splice fraction would make of the moduli, one sentence a specimen."""
+    """Return the effect of a constant splice fraction on moduli, one sentence per specimen."""
     ratio = view.array("strain_slope_ratio")
     if ratio is None or "tangent_modulus" not in view.data:
         return []
@@ -183,7 +183,7 @@ def _slope_sentences(view: TestView) -> list[str]:
 
 
 def _mark_table(view: TestView) -> PageTable | None:
-    """Return the readings at the splice marks, and how far the method is off at each."""
+    """Return the readings at the splice marks, and the error of the method at each."""
     sheet = Sheet(view, ("mark",))
     residual = sheet.of("mark_strain_residual")
     (
@@ -205,7 +205,7 @@ def _signed(residual: float) -> TableCell:
 
 
 def design_tables(tests: Sequence[TestView]) -> list[PageTable]:
-    """Return the modulus at round strains: rows strain, columns the tests that reach one."""
+    """Return the modulus at round strains: rows are strains, columns the tests that reach them."""
     for step in STEPS:
         found = [_design_table(tests, specimen, step) for specimen in all_specimens(tests)]
         tables = [table for table in found if table is not None]
@@ -299,7 +299,7 @@ def _segments(view: TestView) -> Sheet:
 
 
 def _summary_table(view: TestView) -> PageTable | None:
-    """Return the means over the cycles of a test, and what changed over them."""
+    """Return the means over the cycles of a test, and the changes over them."""
     sheet = Sheet(view, ("specimen",)).shown("means")
     if not any(np.isfinite(sheet.of(name)).any() for name in sheet.known):
         return None
@@ -463,7 +463,7 @@ def _branches(values: Floats) -> list[str]:
 
 
 def _hold_table(view: TestView) -> PageTable | None:
-    """Return the holds; a column that no hold fills is left out."""
+    """Return the holds; a column without values is left out."""
     sheet = Sheet(view, ("hold",))
     sheet.texts("hold", "hold_number").texts("specimen", "hold_specimen").texts("kind", "hold_kind")
     sheet.shown("holds")
@@ -474,7 +474,7 @@ def _hold_table(view: TestView) -> PageTable | None:
 
 
 def _refusals(view: TestView) -> list[str]:
-    """Return the numbers that a hold does not support, each with its reason."""
+    """Return the values that a hold does not support, each with its reason."""
     return _of_holds(view, "hold_refusal")
 
 
@@ -574,7 +574,7 @@ def _line_table(view: TestView) -> PageTable | None:
 
 
 def add_line(sheet: Sheet, view: TestView) -> Sheet:
-    """Add the parameters of the line of the specimens in the rows: those drawn, as intervals."""
+    """Add the line parameters of the specimens in the rows; those by Monte Carlo as intervals."""
     for line in ON_PAGE["line"]:
         name = line.name
         sheet.measured(line.page[1], name)
@@ -588,7 +588,7 @@ def add_line(sheet: Sheet, view: TestView) -> Sheet:
 
 
 def about_line(sheet: Sheet, tests: Sequence[TestView]) -> list[str]:
-    """Say what ± and brackets hold in a table of lines."""
+    """Describe what ± and brackets include in a table of lines."""
     names = [row.name for row in ON_PAGE["line"]]
     has_fit = "quasi_static_fit" in shared_sources(tests, names)
     said = plus_minus_of_tests(
@@ -605,14 +605,14 @@ def about_line(sheet: Sheet, tests: Sequence[TestView]) -> list[str]:
 
 MOST = 4000
 
-"""Most cycles of a test that a reader can choose from; a page has to stay small."""
+"""Greatest number of selectable cycles of a test; a page has to stay small."""
 
 _DIGITS = 9
 
 
 @dataclass(frozen=True)
 class _CycleLinks:
-    """Cycles of a test that can be chosen: their numbers, and from when to when each was."""
+    """Selectable cycles of a test: their numbers, start and end times."""
 
     count: int
     number: Floats
@@ -620,7 +620,7 @@ class _CycleLinks:
     end: Floats
 
     def json(self) -> str:
-        """The same for a script element; numbers are left out where all cycles are listed."""
+        """JSON for a script element; numbers are left out where all cycles are listed."""
         document: dict[str, object] = {
             "count": self.count,
             "start": plain_numbers(self.start, _DIGITS),
@@ -632,7 +632,7 @@ class _CycleLinks:
 
 
 def _cycle_links(view: TestView) -> _CycleLinks | None:
-    """Return the cycles of a test that a reader can choose; None where there are not two.
+    """Return the selectable cycles of a test; None with fewer than two.
 
     Examples
     --------
@@ -652,7 +652,7 @@ def _cycle_links(view: TestView) -> _CycleLinks | None:
         return None
     end = start + 1.0 / view.array_like("frequency", start)
     places = _listed(view, cycle)
-    # one clock for all specimens, but of one that broke early the later cycles are not known
+    # one clock for all specimens, but after an early break later cycles of that one are unknown
     start, end = (
         _first_known(values.reshape(-1, cycle.size)[:, places]) for values in (start, end)
     )
@@ -671,7 +671,7 @@ def _listed(view: TestView, cycle: Floats) -> np.ndarray[tuple[int], np.dtype[np
 
 
 def _first_known(values: Floats) -> Floats:
-    """Return of each column the first finite value; NaN where there is none."""
+    """Return the first finite value of each column; NaN where there is none."""
     row = np.argmax(np.isfinite(values), axis=0)
     return np.asarray(values[row, np.arange(values.shape[1])])
 
@@ -685,7 +685,7 @@ _LONG = ("settings", "raw_metadata", "history")
 
 @dataclass(frozen=True)
 class Part:
-    """One heading with sentences, figures and tables under it; what is folded opens by a click."""
+    """One heading with sentences, figures and tables under it; folded content opens by a click."""
 
     heading: str
     figures: tuple[Figure, ...] = ()
@@ -698,10 +698,10 @@ class Part:
 
 @dataclass(frozen=True)
 class TestSection:
-    """One test, or what ``noun`` says: its parts, its notes, and where its numbers come from.
+    """One test, or another subject named by ``noun``: its parts, notes and sources.
 
-    ``subtitle`` is what is seen of a section while it is folded; ``cycles`` are those that a
-    reader can choose in its figures.
+    ``subtitle`` is what is visible while a section is folded; ``cycles`` are those that a reader
+    can choose in its figures.
     """
 
     key: str
@@ -724,7 +724,7 @@ def make_part(
     folded: Part | None = None,
     warnings: Sequence[str] = (),
 ) -> Part:
-    """Return a part; tables that a test does not give are left out."""
+    """Return a part; tables that do not exist for a test are left out."""
     given = tuple(table for table in tables if table is not None)
     return Part(
         heading, tuple(figures), given, tuple(sentences), tuple(refusals), folded, tuple(warnings)
@@ -732,7 +732,7 @@ def make_part(
 
 
 def make_section(view: TestView) -> TestSection:
-    """Return the section of one test; parts with nothing in them are left out."""
+    """Return the section of one test; empty parts are left out."""
     parts = [
         make_part("Stepwise readings", draw_steps(view), [_step_table(view), interval_table(view)]),
         make_part("Slow pull", draw_pull(view), [_pull_table(view), _pull_share_table(view)]),
@@ -780,7 +780,7 @@ def make_section(view: TestView) -> TestSection:
 
 
 def _budget_part(view: TestView) -> Part:
-    """Where the uncertainty of the answers comes from; the numbers of the bars are folded."""
+    """Sources of the uncertainty of the answers; the values behind the bars are folded."""
     answers = answer_budgets(view)
     if not answers:
         return make_part(_BUDGETS)
@@ -793,7 +793,7 @@ def _budget_part(view: TestView) -> Part:
 def provenance_of(
     attributes: Mapping[Any, Any],
 ) -> tuple[tuple[tuple[str, str], ...], tuple[tuple[str, str], ...]]:
-    """Return the lines that say where numbers come from, and the long documents."""
+    """Return the lines on the sources of the numbers, and the long documents."""
     given = {str(name): str(value) for name, value in attributes.items()}
     known = {*_LINES, *_LONG, "test", "title", "id"}
     lines = [(name, given.get(name, "")) for name in _LINES]
@@ -808,7 +808,7 @@ def provenance_of(
 
 
 def _readable(text: str) -> str:
-    """Return JSON with line ends; other text as it is."""
+    """Return JSON with line breaks; other text unchanged."""
     try:
         return json.dumps(json.loads(text), indent=1, ensure_ascii=False)
     except json.JSONDecodeError:

@@ -1,4 +1,4 @@
-"""One reduced test as the page reads it, with expanded uncertainty.
+"""One reduced test in the form needed by the page, with expanded uncertainty.
 
 References
 ----------
@@ -47,7 +47,7 @@ from reduction.report.text_style import (
 )
 
 OF_NO_TEST = "of_no_test"
-"""Status of an archive that status.csv has no row for: the campaign has no such test now."""
+"""Status of an archive without a row in status.csv: the campaign no longer has such a test."""
 
 _OF_SECTION = (
     "_by_cycle", "_untrimmed", "elastomer_", "prony_", "modulus_ratio_uncertainty",
@@ -65,22 +65,22 @@ _OF_SECTION = (
     "strain_marks_from", "strain_position_", "strain_slope_ratio", "strain_tension_",
     "strain_window", "stress_at_strain",
 )  # fmt: skip
-"""In the names of numbers that figures and tables over several tests leave out."""
+"""Parts of the names of quantities that figures and tables over several tests do not use."""
 
 _OF_CYCLES = ("first_loading", "branch_tension")
-"""The same where the test has cycles; they are what a pull answers with."""
+"""The same for tests with cycles; for a pull these quantities are the answer."""
 
 _OF_HOLDS = (
     "_at_time", "hold_criterion", "hold_final_tension", "hold_kind", "hold_ramp_",
     "hold_start_time",
 )  # fmt: skip
-"""The same of what is no rope, whose holds have figures of their own."""
+"""The same for specimens that are not ropes, whose holds have separate figures."""
 
 _ATTRIBUTES_OF_SECTION = ("raw_metadata", "history")
-"""Long texts which the section of a test has folded, and nothing else shows."""
+"""Long texts that only the section of a test shows, folded."""
 
 _REACHED = (
-    "apparent_spring_constant",  # whether it had settled
+    "apparent_spring_constant",  # needed to see whether it had settled
     "mean_tension", "tension_amplitude", "mean_strain", "strain_amplitude",
 )  # fmt: skip
 
@@ -111,7 +111,7 @@ class TestView:
     data : xarray.Dataset
         The archive, strings decoded.
     units : UnitSystem
-        What a reader is shown.
+        Display units.
     status : Status or None
         Row of status.csv, where there is one.
     """
@@ -130,7 +130,7 @@ class TestView:
 
     @property
     def is_of_earlier_run(self) -> bool:
-        """True where the last run of the campaign did not make this archive or let it stand."""
+        """True where the last run of the campaign neither made nor kept this archive."""
         return self.status is not None and self.status.status in ("failed", OF_NO_TEST)
 
     @property
@@ -171,7 +171,7 @@ class TestView:
 
     @property
     def is_rubber(self) -> bool:
-        """False where cords, fibres or wires carry in every specimen."""
+        """False where cords, fibres or wires carry the load in every specimen."""
         kinds = self.texts("specimen_kind")
         return not kinds or not set(kinds) <= {"rope", "wire", "stretch hose"}
 
@@ -189,23 +189,23 @@ class TestView:
 
     @property
     def is_whole(self) -> bool:
-        """False where samples of some cycles alone are stored."""
+        """False where only samples of some cycles are stored."""
         return "sample_index" not in self.data
 
     @property
     def pieces(self) -> Integers:
-        """Piece of the record that each stored sample is in: between two, cycles are left out."""
+        """Piece of the record of each stored sample; between two pieces cycles are left out."""
         index, first = self.array("sample_index"), self.array("cycle_first_sample")
         last = self.array("cycle_last_sample")
         if index is None or first is None or last is None:
             return np.zeros(int(self.data.sizes.get("sample", 0)), dtype=np.int64)
-        # cycles from one sample to the next: neighbours share the sample at which one turns
+        # cycles from one sample to the next: neighbours share the sample at the turn
         begun = np.searchsorted(first, index[:-1], side="left")
         ended = np.searchsorted(last, index[1:], side="right")
         return np.concatenate([[0], np.cumsum(ended > begun)])
 
     def stored_near(self, cycles: Floats) -> Floats:
-        """Numbers of cycles, each once; where samples of some alone are stored, the nearest."""
+        """Numbers of cycles, each once; where only some have samples, the nearest of these."""
         stored = np.zeros(0) if self.is_whole else stored_cycles(self.data)
         if not stored.size:
             return np.unique(cycles)
@@ -216,7 +216,7 @@ class TestView:
         return str(self.data.attrs.get(name, ""))
 
     def array(self, name: str) -> Floats | None:
-        """Values of a variable; missing flags and counts keep their numbers."""
+        """Values of a variable; missing flags and counts keep their code numbers."""
         if name not in self.data:
             return None
         return np.asarray(self.data.variables[name].values, dtype=np.float64)
@@ -239,12 +239,12 @@ class TestView:
 
     @cached_property
     def notes(self) -> tuple[Note, ...]:
-        """What a reader has to know, most serious first."""
+        """Notes for the reader, most serious first."""
         return read_notes(self.data)
 
     @property
     def hold_numbers(self) -> tuple[int, ...]:
-        """Number of each hold in time, from 1: specimens that stand still together share one."""
+        """Number of each hold in time, from 1: specimens held at the same time share one."""
         number = self.array("hold_number")
         return () if number is None else tuple(int(value) for value in number)
 
@@ -260,7 +260,7 @@ class TestView:
         return {word: int(number) for word, number in zip(words, np.ravel(numbers), strict=True)}
 
     def without_samples(self) -> TestView:
-        """Return the same test without its record, all in memory: what campaign figures use."""
+        """Return the same test without its record, all in memory, for campaign figures."""
         single = self.data.data_vars
         left_out = [
             name
@@ -271,25 +271,25 @@ class TestView:
         return replace(self, data=in_memory(self.data.drop_vars(left_out)))
 
     def of_campaign(self, known: dict[str, str]) -> TestView:
-        """Return the same test without what its own section alone shows: most of its numbers.
+        """Return the same test without most of the numbers that only its own section shows.
 
-        Texts that tests before it have, which ``known`` holds, are not kept once more.
+        Texts that earlier tests have, which ``known`` contains, are not stored again.
         """
         left_out = _OF_SECTION + (_OF_CYCLES if self.n_cycles else ())
         left_out += () if self.has_rope else _OF_HOLDS
-        # rests between the cycles of a tether have their table in its section
+        # the table of rests between cycles of a tether is in its section
         has_holds = self.has_rope or not self.n_cycles
         own = [
             name
             for name, variable in self.data.variables.items()
-            # numbers of a whole test are those of a run of an experiment
+            # values of a whole test may be those of a run of an experiment
             if (not str(name).startswith("test_") and any(one in str(name) for one in left_out))
             or (not has_holds and "hold" in variable.dims)
         ]
         return replace(self, data=_shared(_one_row_a_source(self.data.drop_vars(own)), known))
 
     def at_cycles(self, name: str, places: Integers) -> TestView:
-        """Return one number of some cycles, counted from 0, with what its uncertainty rests on."""
+        """Return a quantity at some cycles, counted from 0, with the basis of its uncertainty."""
         own = {
             key: at_places(variable, "cycle", places)
             for key, variable in self.data.variables.items()
@@ -299,15 +299,15 @@ class TestView:
 
 
 def _one_row_a_source(data: xr.Dataset) -> xr.Dataset:
-    """Return an archive whose independent errors of one source and item are one, without a sign.
+    """Return an archive with the independent errors of one source and item combined, unsigned.
 
-    They are most of what a test takes in memory, and tables over several tests take no differences.
+    They take most of the memory of a test, and tables over several tests form no differences.
     """
     if COMPONENT not in data.sizes:
         return data
     source, of = (data.variables[f"uncertainty_source{end}"].values for end in ("", "_of"))
     freedom = stored(data, FREEDOM)
-    # what is known from a few readings counts by itself in the degrees of freedom
+    # errors known from few readings count separately in the degrees of freedom
     is_few = np.isfinite(freedom.values) if freedom is not None else np.zeros(len(of), dtype=bool)
     is_next = (source[1:] != source[:-1]) | (of[1:] != of[:-1]) | is_few[1:] | is_few[:-1]
     first = np.flatnonzero(np.concatenate([[True], is_next]))
@@ -321,9 +321,9 @@ def _one_row_a_source(data: xr.Dataset) -> xr.Dataset:
 
 
 def _shared(data: xr.Dataset, known: dict[str, str]) -> xr.Dataset:
-    """Return an archive whose texts are those of ``known``, where another test had them before.
+    """Return an archive that uses the texts of ``known`` where another test had them before.
 
-    Of attributes it keeps those that pages read.
+    Only attributes that pages read are kept.
     """
     found = {}
     for name, variable in data.variables.items():
@@ -336,7 +336,7 @@ def _shared(data: xr.Dataset, known: dict[str, str]) -> xr.Dataset:
             for key, value in variable.attrs.items()
             if key == "units" or str(key).startswith("flag_")
         }
-        # an index of pandas is taken as it is; of an array xarray asks Dask
+        # a pandas index is used as it is; for an array xarray asks Dask
         found[name] = (
             xr.IndexVariable(variable.dims, pd.Index(values, dtype=values.dtype), attributes)  # type: ignore[no-untyped-call]
             if name in data.dims
@@ -351,12 +351,12 @@ def _shared(data: xr.Dataset, known: dict[str, str]) -> xr.Dataset:
 
 
 def all_specimens(tests: Sequence[TestView]) -> list[str]:
-    """Return the specimens of several tests, each once, in the order they first appear."""
+    """Return the specimens of several tests, each once, in order of first appearance."""
     return list(dict.fromkeys(name for view in tests for name in view.specimens))
 
 
 def any_synthetic(tests: Sequence[TestView]) -> bool:
-    """Return whether a figure or table of these tests has to say that data are synthetic."""
+    """Return whether a figure or table of these tests has to be marked as synthetic."""
     return any(view.is_synthetic for view in tests)
 
 
@@ -383,7 +383,7 @@ _PERCENT = Shown("%", 100.0)
 
 
 def instrument_table(tests: Sequence[TestView], units: UnitSystem) -> PageTable | None:
-    """Return what is stated, a column for each statement; None where nothing is."""
+    """Return the stated instrument errors, a column for each statement; None without any."""
     statements: dict[StatedErrors, list[TestView]] = {}
     for view in tests:
         if _is_stated(view):
@@ -417,7 +417,7 @@ def instrument_table(tests: Sequence[TestView], units: UnitSystem) -> PageTable 
 
 
 def instrument_sentences(tests: Sequence[TestView]) -> list[str]:
-    """Return the sentence that nothing is stated, where that is so of all tests."""
+    """Return the sentence that nothing is stated, where that holds for all tests."""
     return [NOTHING_STATED] if tests and not any(_is_stated(view) for view in tests) else []
 
 
@@ -454,7 +454,7 @@ DRAWN = (
 )
 
 MANY = np.inf
-"""Degrees of freedom of a regression on hundreds of samples, and of what is taken as known."""
+"""Degrees of freedom of a regression on hundreds of samples, and of values taken as known."""
 
 _CYCLES = "scatter between cycles, noise, regression"
 
@@ -463,14 +463,14 @@ _INSTRUMENTS = "errors of the instruments"
 
 @dataclass(frozen=True)
 class Expanded:
-    """Expanded uncertainty of several numbers, and the factor of each; in one shape."""
+    """Expanded uncertainty of several numbers and the factor of each; arrays of one shape."""
 
     half: Floats
     factor: Floats
 
     @property
     def factors(self) -> tuple[float, ...]:
-        """Factors of the numbers that have an uncertainty."""
+        """Factors of the values that have an uncertainty."""
         return tuple(np.unique(self.factor[np.isfinite(self.half)]).tolist())
 
 
@@ -484,7 +484,7 @@ def expand(
 
     Examples
     --------
-    The same scatter of ten cycles alone, and beside a shared part of twice its size:
+    The scatter of ten cycles alone, and together with a shared part of twice its size:
 
     >>> found = expand([1.0, np.sqrt(5)], random=[1.0, 1.0], degrees_of_freedom=9.0)
     >>> print(found.half.round(1), found.factor.round(2))
@@ -499,11 +499,11 @@ def expand(
 
 
 NORMAL = float(expand(1.0).factor)
-"""Coverage factor of what is taken as known, or has hundreds of samples behind it. [1]"""
+"""Coverage factor of values taken as known, or found from hundreds of samples. [1]"""
 
 
 def expanded_of(view: TestView, name: str, values: Floats) -> Expanded:
-    """Return the expanded uncertainty of a quantity of an archive, in the shape of its values."""
+    """Return the expanded uncertainty of a quantity in an archive, in the shape of its values."""
     spread = view.array_like(f"{name}_standard_uncertainty", values)
     if name not in view.data:
         return expand(spread)
@@ -511,7 +511,7 @@ def expanded_of(view: TestView, name: str, values: Floats) -> Expanded:
 
 
 def drawn_interval(view: TestView, name: str, place: int) -> tuple[float, float] | None:
-    """Return the 95 % interval of a parameter of the line where it was found by Monte Carlo."""
+    """Return the 95 % interval of a line parameter where it was found by Monte Carlo."""
     method = view.array("test_line_uncertainty_method")
     low, high = view.array(f"{name}_low"), view.array(f"{name}_high")
     if method is None or low is None or high is None:
@@ -522,7 +522,7 @@ def drawn_interval(view: TestView, name: str, place: int) -> tuple[float, float]
 
 
 def shared_sources(views: Sequence[TestView], names: Sequence[str]) -> list[str]:
-    """Return the sources of shared errors that reach any of some quantities, in fixed order."""
+    """Return the sources of shared errors that affect any of some quantities, in fixed order."""
     found: set[str] = set()
     for view in views:
         sources = view.texts("uncertainty_source")
@@ -554,7 +554,7 @@ def plus_minus(
     left_out: str = _INSTRUMENTS,
     mark: str = "±",
 ) -> str:
-    """Return the sentence: what an uncertainty holds, and what it leaves out.
+    """Return a sentence on the sources that an uncertainty includes and those that it leaves out.
 
     Examples
     --------
@@ -575,7 +575,7 @@ def plus_minus_of_tests(
     found_from: str = _CYCLES,
     mark: str = "±",
 ) -> str:
-    """Return the sentence for quantities of tests: with what is shared."""
+    """Return the sentence for quantities of tests, including shared errors."""
     shared = shared_sources(views, names)
     held = found_from
     if shared:
@@ -595,7 +595,7 @@ def plus_minus_of_tests(
 
 @dataclass(frozen=True)
 class RowView:
-    """One thing on the page: a hose, a comparison, an experiment.
+    """One item on the page: a hose, a comparison, an experiment.
 
     Parameters
     ----------
@@ -604,13 +604,13 @@ class RowView:
     data : xarray.Dataset
         The archive, in memory, strings decoded.
     index : int
-        Which row of it.
+        Row in the archive.
     units : UnitSystem
-        What a reader is shown.
+        Display units.
     """
 
     ENDS_AT: ClassVar[Mapping[str, str]] = {}
-    """By dimension that the rows share, the variable whose last value is the end of a row."""
+    """For each dimension shared by the rows, the variable whose last known value ends a row."""
 
     key: str
     data: xr.Dataset
@@ -628,7 +628,7 @@ class RowView:
 
     @cached_property
     def sizes(self) -> dict[str, int]:
-        """Own length of the dimensions that rows share."""
+        """Length for this row of the dimensions that rows share."""
         found = {}
         for dim, name in self.ENDS_AT.items():
             if name in self.data:
@@ -638,7 +638,7 @@ class RowView:
         return found
 
     def array(self, name: str) -> Floats:
-        """Values of a variable of this row; of no length where there is none."""
+        """Values of a variable of this row; empty where missing."""
         if name not in self.data:
             return np.full(0, np.nan)
         variable = self.data.variables[name]
@@ -651,10 +651,10 @@ class RowView:
         return found if found.shape == other.shape else np.full(other.shape, np.nan)
 
     def scalar(self, name: str) -> float:
-        """A number of this row; NaN where there is none."""
+        """A number of this row; NaN where missing."""
         found = self.array(name)
         return float(found) if found.ndim == 0 else float("nan")
 
     def text(self, name: str) -> str:
-        """Value of a text variable without further dimensions; "" where there is none."""
+        """Value of a text variable without further dimensions; "" where missing."""
         return str(self.data.variables[name].values[self.index]) if name in self.data else ""

@@ -1,7 +1,7 @@
 """Style of the page: colours, units, HTML tables, names of sources.
 
-What is of one instrument or one thing shares a hue and differs in hatching, so that a reader with
-any colour vision, and one of a grey print, tells apart more sources than there are colours.
+Sources of one instrument or one object share a hue and differ in hatching, so that readers with any
+colour vision, and of a grey print, can separate more sources than there are colours.
 
 References
 ----------
@@ -42,7 +42,7 @@ Kind = Literal[
     "time", "length", "small length", "tension", "strain", "stress", "energy", "area", "frequency",
     "number",
 ]  # fmt: skip
-"""What an axis or a column shows; a diameter is a small length and is not shown in feet."""
+"""Quantity on an axis or in a column; a diameter is a small length and is not shown in feet."""
 
 _SI_UNIT: dict[Kind, str] = {
     "time": "s",
@@ -56,7 +56,7 @@ _SI_UNIT: dict[Kind, str] = {
     "number": "1",
 }
 
-# a prefix where the bare SI unit would need a power of ten on every tick
+# a prefix where the SI unit alone would need a power of ten on every tick
 _PREFIXED: dict[Kind, tuple[str, float]] = {
     "stress": ("MPa", 1e-6),
     "small length": ("mm", 1e3),
@@ -78,13 +78,13 @@ _INCHES_IN_A_FOOT = 12.0
 
 @dataclass(frozen=True)
 class Shown:
-    """How a kind of quantity is shown: unit to print and factor from SI to it."""
+    """Display form of a kind of quantity: unit to print and factor from SI to it."""
 
     unit: str
     factor: float
 
     def label(self, words: str) -> str:
-        """Words with the unit behind them in brackets, for an axis or a column."""
+        """Words followed by the unit in brackets, for an axis or a column."""
         return f"{words} [{self.unit}]"
 
 
@@ -94,7 +94,7 @@ PERCENT = Shown("%", 100.0)
 
 
 def shown(kind: Kind, system: UnitSystem) -> Shown:
-    """Return the unit in which a kind of quantity is shown.
+    """Return the display unit of a kind of quantity.
 
     Examples
     --------
@@ -114,7 +114,7 @@ def shown(kind: Kind, system: UnitSystem) -> Shown:
 
 
 def shown_unit(unit: str, system: UnitSystem) -> Shown:
-    """Return how a quantity of an SI unit is shown; a length as a small one, an angle in degrees.
+    """Return the display form of an SI unit; lengths as small ones, angles in degrees.
 
     Examples
     --------
@@ -129,7 +129,7 @@ def shown_unit(unit: str, system: UnitSystem) -> Shown:
 
 
 def with_prefix(unit: Shown, greatest: float) -> Shown:
-    """Return an SI unit with the prefix that leaves five digits at most before the point.
+    """Return an SI unit with the prefix that leaves at most five digits before the point.
 
     Examples
     --------
@@ -168,7 +168,7 @@ def marker(index: int, *, variant: int = 0, size: int = 6) -> dict[str, Any]:
 
 
 def marked(index: int, variant: int = 0) -> dict[str, Any]:
-    """Return what puts a few markers of a test on its line: colours alone are seven."""
+    """Return the style of a few markers on a test's line, since there are only seven colours."""
     return {
         "mode": "lines+markers",
         "marker": {**marker(index, variant=variant), "maxdisplayed": 6},
@@ -176,7 +176,7 @@ def marked(index: int, variant: int = 0) -> dict[str, Any]:
 
 
 def superscript(unit: str) -> str:
-    """Return a unit with its powers raised.
+    """Return a unit with superscript powers.
 
     Examples
     --------
@@ -213,7 +213,7 @@ def shorten(text: str, limit: int) -> str:
 
 
 def plot_text(text: str, limit: int = 36) -> str:
-    """Return text that plotly draws as it stands, on one line and of bounded length.
+    """Return text that plotly draws literally, on one line and of bounded length.
 
     Examples
     --------
@@ -233,7 +233,7 @@ _LEAST_PROBABILITY = 1e-4
 _MISSING = 1e-3
 
 _NOISE = 1e-12
-"""A sum of numbers of order one that ought to vanish ends at 1e-16 or so, in percent at 1e-14."""
+"""A vanishing sum of numbers of order one ends at about 1e-16, in percent at 1e-14."""
 
 
 @dataclass(frozen=True)
@@ -251,9 +251,9 @@ class TableCell:
 
 @dataclass(frozen=True)
 class PageTable:
-    """A table; the first cell of a row heads it.
+    """A table; the first cell of a row is its heading.
 
-    ``caption`` and ``remarks``, which stand below, are plain text.
+    ``caption`` and ``remarks``, shown below the table, are plain text.
     """
 
     caption: str
@@ -265,7 +265,7 @@ class PageTable:
 
     @cached_property
     def number_columns(self) -> tuple[bool, ...]:
-        """Which columns hold numbers: they stand flush right, header and all."""
+        """Which columns hold numbers: they are right-aligned, including the header."""
         return tuple(
             any(row[place].is_number for row in self.rows) for place in range(len(self.columns))
         )
@@ -301,24 +301,24 @@ def words(text: str) -> TableCell:
 
 
 def _without_unit_of_one(text: str) -> str:
-    """A plain number needs no unit in a table; an axis shows it."""
+    """Omit the unit of a dimensionless number in a table; an axis shows it."""
     return text.removesuffix(" [1]")
 
 
 def number(value: float, unit: Shown | None = None, *, digits: int = 4) -> TableCell:
-    """Return a cell of one number, of so many digits."""
+    """Return a cell with one number, to so many digits."""
     scale = 1.0 if unit is None else unit.factor
     return TableCell(number_text(value * scale, digits), _exact(value), is_number=True)
 
 
 def count(value: float) -> TableCell:
-    """Return a cell of a number that is counted."""
+    """Return a cell with a count."""
     text = f"{value:,.0f}" if isfinite(value) else NOT_GIVEN
     return TableCell(text, f"{value:.0f}" if isfinite(value) else "", is_number=True)
 
 
 def number_text(value: float, digits: int = 4) -> str:
-    """Return a number of so many digits, without a power of ten where it can be read so.
+    """Return a number to so many digits, without a power of ten where it is readable without.
 
     Examples
     --------
@@ -372,7 +372,7 @@ def measured(
 
 
 def within(value: float, low: float, high: float, unit: Shown) -> TableCell:
-    """Return a cell of a value and the ends of its interval, which need not lie evenly about it.
+    """Return a cell with a value and its interval, which need not be symmetric.
 
     Examples
     --------
@@ -386,7 +386,7 @@ def within(value: float, low: float, high: float, unit: Shown) -> TableCell:
 def with_interval(
     value: float, low: float, high: float, unit: Shown
 ) -> tuple[TableCell, TableCell]:
-    """Return a cell of a value and one of its interval, to two digits of half of that.
+    """Return a cell with a value and one with its interval, to two digits of the half width.
 
     Examples
     --------
@@ -413,7 +413,7 @@ def factors_of(rows: Iterable[Iterable[TableCell]]) -> list[float]:
 
 
 def probability(value: float) -> TableCell:
-    """Return a cell of a probability; below 0.0001 only that it is.
+    """Return a cell with a probability; below 0.0001 only as a bound.
 
     Examples
     --------
@@ -427,7 +427,7 @@ def probability(value: float) -> TableCell:
 
 
 def share_text(value: float) -> str:
-    """Return a share of a whole with the first digits by which it misses the whole.
+    """Return a share with the first digits in which it differs from the whole.
 
     Examples
     --------
@@ -442,7 +442,7 @@ def share_text(value: float) -> str:
 
 
 def span(low: float, high: float, unit: Shown, *, places: int) -> TableCell:
-    """Return a cell of a range, both ends to so many decimal places or more: two digits of it.
+    """Return a cell with a range, its ends to so many places, or to two digits of its width.
 
     Examples
     --------
@@ -458,7 +458,7 @@ def span(low: float, high: float, unit: Shown, *, places: int) -> TableCell:
 
 
 def interval(low: float, high: float, unit: Shown | None = None, *, digits: int = 3) -> TableCell:
-    """Return a cell of a range, each end to so many digits; nothing where neither is known.
+    """Return a cell with a range, each end to so many digits; empty where neither is known.
 
     Examples
     --------
@@ -519,7 +519,7 @@ FROM_READINGS = frozenset(
         "gauge_length",
     }
 )
-"""Sources that follow from readings of the tests, not from what is stated of the instruments."""
+"""Sources that follow from readings of the tests, not from stated instrument errors."""
 
 _NAMES = {"window": "regression window"}
 
@@ -546,7 +546,7 @@ _MEANINGS = {
 
 
 def in_order(names: Iterable[str]) -> list[str]:
-    """Return sources in their order, those without a place of their own last.
+    """Return sources in their order, those without a fixed place last.
 
     Examples
     --------
@@ -558,7 +558,7 @@ def in_order(names: Iterable[str]) -> list[str]:
 
 
 def source_words(name: str) -> str:
-    """Return a source as a reader sees it; ``reduction budget`` prints the name itself.
+    """Return the name of a source for the reader; ``reduction budget`` prints the identifier.
 
     Examples
     --------
@@ -569,7 +569,7 @@ def source_words(name: str) -> str:
 
 
 def source_meanings(names: Iterable[str]) -> str:
-    """Return what those sources are whose name does not say it.
+    """Return explanations of those sources whose names are not self-explanatory.
 
     Examples
     --------
