@@ -80,7 +80,7 @@ def evaluate_curve(curve: LineCurve, at: ArrayLike) -> _CurvePoints:
 
     Returns
     -------
-    points : CurvePoints
+    points : _CurvePoints
         [SI unit of the quantity]
 
     Raises

@@ -228,7 +228,7 @@ def _slider(setting: Setting, survey: Survey, in_force: Any) -> dict[str, Any] |
 HOST = "127.0.0.1"
 
 MOST_BYTES = 64_000
-"""Greatest size of the body of a request. [1]"""
+"""Greatest size of the body of a request. [byte]"""
 
 PATIENCE = 10.0
 """Time limit for the arrival of a part of a request, and for the receipt of an answer. [s]"""

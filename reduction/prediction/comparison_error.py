@@ -1,4 +1,4 @@
-r"""Measured minus predicted: over strain, at events, in energy, with a verdict.
+r"""Predicted minus measured: over strain, at events, in energy, with a verdict.
 
 **Input and output of a comparison of a measured hose curve with its prediction.** A *comparison
 error* is predicted less measured, E = S - D in the notation of [1]_: positive where the hose is
@@ -207,7 +207,7 @@ class HoseCalibration:
         Correlation of the fitted values. [1]
     design : HoseDesign
         The hose with the fitted values.
-    before, after : Difference
+    before, after : _Difference
         Judged curve against the prediction, with the start and the fitted values.
     model_error : float
         Standard deviation to be added to type A for the residuals to be explained. [N]

@@ -1,7 +1,7 @@
 """CG-D-39-80, Tables 10, 20, 21 and A-2: strength, abrasion, screening.
 
 Means and deviations are measured; changes and relative variabilities follow from them, and
-bound them in turn.  Tables A-3 and A-4 stand in `cg_ftests`.
+bound them in turn.  The checks of Tables A-3 and A-4 are below.
 """
 
 from __future__ import annotations

@@ -167,9 +167,9 @@ class PublishedSurface:
     coefficient : ndarray, shape (10,)
         B1 .. B10: mean, squares, linear, interactions of frequency, mean tension and tension
         amplitude; NaN where open. [N], of relaxation time [s]
-    open_terms : tuple of OpenTerm
+    open_terms : tuple of _OpenTerm
         Possible values in place of NaN.
-    boxes : tuple of LevelBox
+    boxes : tuple of _LevelBox
         One, or two where the levels are open, the better supported first.
     r2 : float
         NaN where open.
@@ -203,7 +203,7 @@ class PublishedCubic:
         ``quasi_static_spring_constant`` or ``quasi_static_strain``.
     coefficient : ndarray, shape (4,)
         A, B, C, D; NaN where open. [N N-k] or [N-k]
-    open_terms : tuple of OpenTerm
+    open_terms : tuple of _OpenTerm
         Possible values in place of NaN.
     tension_high : float
         End of the range of use, which begins at zero; the smaller where tables differ, NaN where
@@ -264,7 +264,7 @@ class PublishedLine:
     rated_break_strength : float
         Reference of the tested levels, or the measured strength for a line without them; where
         two are possible, the better supported one. [N]
-    stated_strengths : tuple of StatedStrength
+    stated_strengths : tuple of _StatedStrength
         All strengths printed for the new line.
     surfaces : mapping of str to PublishedSurface
         Surfaces by response.

@@ -60,7 +60,7 @@ def judge_repeat(
 
     Returns
     -------
-    item : Item
+    item : ReproducedItem
         By `judge`, but ``repeated`` where they are equal: nothing was computed, and a wrong number
         may have been copied.
     """
@@ -75,7 +75,7 @@ def closed_item(
 
     Parameters
     ----------
-    item : Item
+    item : ReproducedItem
         With the number that follows from the partner; known errors stay as they are.
     standard_error : float
         Of the printed number less that one; NaN or zero where not known.
@@ -87,7 +87,7 @@ def closed_item(
 
     Returns
     -------
-    item : Item
+    item : ReproducedItem
         ``open`` where the deviation exceeds `DETECTED` standard errors; ``closed`` where it does
         not, but one unit of the leading digit would; where such a coarse error would not be
         detected, ``measured`` in place of ``derived``, and otherwise unchanged.
@@ -134,7 +134,7 @@ def judge(
 
     Returns
     -------
-    item : Item
+    item : ReproducedItem
         ``derived`` where the printed number is within the tolerance; else ``erratum`` or
         ``open`` where the cell says so and the corrected value, if any, is within it; else
         ``unexplained``. An erratum that confirms the printed number, and therefore has no
@@ -164,7 +164,7 @@ def agree(cell: Cell, holds: bool, how: str) -> ReproducedItem:
 
     Returns
     -------
-    item : Item
+    item : ReproducedItem
         ``derived`` where the claim holds; else ``erratum`` or ``open`` where the cell says so;
         else ``unexplained``.
     """
@@ -184,7 +184,7 @@ def measured_item(cell: Cell, why: str) -> ReproducedItem:
 
     Returns
     -------
-    item : Item
+    item : ReproducedItem
         ``erratum`` or ``open`` where the cell says so, since that is known.
     """
     return ReproducedItem(cell, math.nan, _known_of(cell, "measured"), why)
@@ -204,7 +204,7 @@ def compared_item(cell: Cell, recomputed: float, why: str) -> ReproducedItem:
 
     Returns
     -------
-    item : Item
+    item : ReproducedItem
         By `measured_item`.
     """
     return replace(measured_item(cell, why), recomputed=recomputed)
@@ -268,7 +268,7 @@ def judge_round(cell: Cell, recomputed: float, how: str) -> ReproducedItem:
 
     Returns
     -------
-    item : Item
+    item : ReproducedItem
         By `judge`, within half of the last nonzero digit.
     """
     place = last_counted_place(cell.printed)
@@ -291,7 +291,7 @@ def judge_limit(cell: Cell, recomputed: float, how: str, *, is_upper: bool) -> R
 
     Returns
     -------
-    item : Item
+    item : ReproducedItem
         ``derived`` where the bound holds, else by `judge`.
     """
     printed = number_of(cell.printed)
@@ -321,7 +321,7 @@ def judge_as(
 
     Returns
     -------
-    item : Item
+    item : ReproducedItem
         By `judge`, for the cell as printed.
     """
     item = judge(replace(cell, printed=text), recomputed, how, tolerance=tolerance)
@@ -344,7 +344,7 @@ def judge_word(cell: Cell, recomputed: float, how: str, *, step: float = 1.0) ->
 
     Returns
     -------
-    item : Item
+    item : ReproducedItem
         By `judge`, within half a step; words without a number are never reproduced.
     """
     said = next((_WORDS[word] for word in cell.printed.lower().split() if word in _WORDS), None)
@@ -427,7 +427,7 @@ def item_of(cell: Cell, answers: Mapping[Key, Answer | str]) -> ReproducedItem:
 
     Returns
     -------
-    item : Item
+    item : ReproducedItem
         With its verdict.
 
     Raises

@@ -79,10 +79,10 @@ from reduction.report.test_view import (
 from reduction.report.text_style import PageTable
 
 MOST_BYTES = 9_000_000
-"""Greatest size of the sections on a page: with plotly (4.9 MB) it stays below 15 MB. [1]"""
+"""Greatest size of the sections on a page: with plotly (4.9 MB) it stays below 15 MB. [byte]"""
 
 MOST_IN_ALL = 14_500_000
-"""Greatest size of a page with all its content. [1]"""
+"""Greatest size of a page with all its content. [byte]"""
 
 _NAME = "tests-{:02}.html"
 

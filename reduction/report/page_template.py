@@ -97,23 +97,23 @@ class Page:
         Sentences under the numbers at the top.
     tiles : sequence of Tile
         Numbers at the top.
-    faults : sequence of Finding
+    faults : sequence of SummaryFinding
         What a reader must know first, most serious first.
-    chapters : sequence of Section
+    chapters : sequence of TestSection
         Sections that follow.
     synthetic : bool
         Whether the banner says that no specimen was ever pulled.
     has_tests : bool
         Whether it is a page of tests; the fields that follow are used only then.
-    specimens, tests, segments : Table or None
+    specimens, tests, segments : PageTable or None
         Tested specimens and tests, and straight-line segments.
     specimen_notes : sequence of str
         Notes under the specimens.
-    instruments : Table or None
+    instruments : PageTable or None
         Stated instrument errors; ``instrument_notes`` where there are none.
     first : Figure or None
         Figure at the top.
-    answers, designs, intervals : sequence of Table
+    answers, designs, intervals : sequence of PageTable
         The rest of the first screen.
     comparisons : sequence of Part
         Figures over several items of a kind, headed by ``across``.
