@@ -21,7 +21,7 @@ from reduction.archive.open import Opener, ReadOnce, reading
 from reduction.archive.product_files import archives_of_tests
 from reduction.archive.shared_errors import components_of, shared_contributions
 from reduction.archive.surfaces_dataset import surface_names, surfaces_of
-from reduction.archive.uncertainty_budget import random_freedom
+from reduction.archive.uncertainty_budget import break_in_cycles, random_freedom
 from reduction.archive.variables import stored
 from reduction.experiments.fit_results import FIT_REASONS, ResponseSurfaces
 from reduction.experiments.surface_discrepancy import discrepancy_of
@@ -41,6 +41,7 @@ from reduction.quantities.names import RESPONSES, SCALES, quantity
 from reduction.record.contributions import Component, Contributions, stacked
 from reduction.record.errors import ArchiveError, DataError
 from reduction.record.measurement import Bools, Floats
+from reduction.stages.moduli.secant_modulus import late_change
 from reduction.stages.three_parameter_line.loop_midline import tension_above_midline
 
 _OVER_STRAIN = ("tangent_modulus", "branch_tension")
@@ -421,7 +422,16 @@ def _one_level(dataset: xr.Dataset, place: int, name: str, at: Floats) -> LineLe
         contribution=np.array(list(known.values()), dtype=np.float64).reshape(len(known), 1),
         conditions=(_conditions(dataset),),
         warnings=(_checks(dataset, place),),
+        late_change=np.array([_late_change(dataset, place, name)]),
     )
+
+
+def _late_change(dataset: xr.Dataset, place: int, name: str) -> float:
+    """`late_change` over the mean; NaN where the cycles are not stored."""
+    of_cycles, mean = stored(dataset, name), float(dataset.variables[f"test_{name}"].values[place])
+    if of_cycles is None or of_cycles.ndim != 2 or not mean:
+        return np.nan
+    return late_change(of_cycles.values[place, break_in_cycles(dataset) :]) / mean
 
 
 def _conditions(dataset: xr.Dataset) -> dict[str, str]:
@@ -449,6 +459,7 @@ def _joined(parts: Sequence[LineLevels]) -> LineLevels:
         contribution=shared.values["value"].reshape(len(shared.component), rows("value").size),
         conditions=tuple(own for one in parts for own in one.conditions),
         warnings=tuple(own for one in parts for own in one.warnings),
+        late_change=rows("late_change"),
         notes=tuple(dict.fromkeys(text for one in parts for text in one.notes)),
     )
 

@@ -9,7 +9,7 @@ its logarithm, since periods are tested in decades.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -69,6 +69,7 @@ class _Level:
     run_interval: tuple[float, float]
     words: str
     warnings: tuple[str, ...]
+    unsettled: tuple[str, ...]
 
 
 def _is_same(a: Floats, b: Floats) -> Bools:
@@ -194,7 +195,19 @@ def _together(levels: LineLevels, at: Floats, tests: tuple[int, ...]) -> _Level:
         at, value, random, freedom, run_random, shared, ends(random), ends(run_random),
         f"{names} ({_level_words(levels, at.tolist())})",
         tuple(text for row in rows if levels.warnings for text in levels.warnings[row]),
+        tuple(_unsettled(levels, rows, half=value - ends(random)[0])),
     )  # fmt: skip
+
+
+def _unsettled(levels: LineLevels, rows: Sequence[int], *, half: float) -> Iterator[str]:
+    """Tests whose value went on changing over their cycles, by more than its interval."""
+    for row in rows if levels.late_change.size else ():
+        off = float(levels.late_change[row])
+        if abs(off * levels.value[row]) > half:
+            yield (
+                f"{levels.tests[row]} had not settled: the mean over the last half of its cycles is"
+                f" {abs(off):.1%} {'higher' if off > 0 else 'lower'}"
+            ).replace("%", " %")
 
 
 def _is_log(levels: LineLevels) -> Bools:
@@ -281,6 +294,7 @@ def evaluate_levels(levels: LineLevels, at: Floats, name: str) -> _LevelPoints:
             hint="`--list` shows every level; nothing is extrapolated, not even flagged.",
         )
     told = dict.fromkeys(text for one in used for text in one.warnings)
+    said += [text for one in used for text in one.unsettled]
     return _LevelPoints(
         **out, contribution=rows, notes=tuple(dict.fromkeys(said)), warnings=tuple(told)
     )

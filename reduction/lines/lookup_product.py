@@ -236,6 +236,9 @@ class LineLevels:
         Other remarks.
     warnings : tuple of tuple of str, length n_tests
         Warnings of each test, to be read before its value.
+    late_change : ndarray, shape (n_tests,) or (0,)
+        Relative change from the mean to the later cycles, as from
+        `reduction.stages.moduli.secant_modulus.late_change`. [1]
     """
 
     quantity: str
@@ -250,6 +253,7 @@ class LineLevels:
     conditions: tuple[dict[str, str], ...] = ()
     notes: tuple[str, ...] = ()
     warnings: tuple[tuple[str, ...], ...] = ()
+    late_change: Floats = field(default_factory=lambda: np.empty(0))
 
 
 @dataclass(frozen=True)

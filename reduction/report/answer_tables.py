@@ -52,6 +52,7 @@ from reduction.report.text_style import (
     words,
 )
 from reduction.stages.moduli.local_regression import curve_at
+from reduction.stages.moduli.secant_modulus import late_change
 from reduction.uncertainty.budget import Budget, DecisionRule, conformity
 
 _ANSWERS: tuple[tuple[str, str, Kind], ...] = (
@@ -721,9 +722,6 @@ def _used(n_cycles: int, counts: Sequence[int]) -> str:
     return "; ".join(dict.fromkeys(text for text in (f"{n_cycles:,}", of_curve) if text))
 
 
-_FEWEST_TO_SETTLE = 4  # cycles, of which the last half is a mean
-
-
 def _which(view: TestView, place: int, mean: float, half: float) -> str:
     """Return the cycles used in a row, and whether its stiffness had settled over them."""
     single = view.array("apparent_spring_constant")
@@ -750,9 +748,9 @@ def _cycles_in_words(single: Floats, first: int, mean: float, half: float) -> st
     numbers = f"{first + used[0]:,}"
     if used.size > 1:
         numbers += f" to {first + used[-1]:,}"
-    if used.size < _FEWEST_TO_SETTLE or not half > 0:
+    off = late_change(single)
+    if not (np.isfinite(off) and half > 0):
         return f" ({numbers})"
-    off = float(np.mean(single[used[used.size // 2 :]])) - mean
     is_settled = abs(off) <= half
     return (
         f" ({numbers}; {'settled' if is_settled else f'not settled, {off / mean:+.1%}'})".replace(

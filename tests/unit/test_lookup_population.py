@@ -2,6 +2,7 @@
 
 import csv
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -184,3 +185,19 @@ def test_python_gives_the_population_of_the_command(monkeypatch):
     assert grid.of_specimens.values.tolist() == [[value, 2 * value] for value in VALUES]
     with pytest.raises(SettingsError, match="one way to put lines together"):
         reduction.look_up("lab", "K_ap", population=0.95, rank=True, **LEVEL)
+
+
+@pytest.mark.parametrize("change, said", [(-0.04, "4.0 % lower"), (0.02, "2.0 % higher")])
+def test_a_look_up_says_how_far_the_later_cycles_of_a_test_are_from_its_mean(change, said):
+    line = rope("rope", 1e7)
+    levels = replace(line.levels[0], late_change=np.array([change, change]))
+    (found,) = (
+        text
+        for text in look_up(replace(line, levels=(levels,)), K_AP, **LEVEL).notes
+        if "settled" in text
+    )
+    assert found == f"D-1 had not settled: the mean over the last half of its cycles is {said}"
+    # of D-1 the interval is 0.05 %: t of nine times 1 kN, and 2 kN of the diameter
+    quiet = replace(line.levels[0], late_change=np.array([0.0004, np.nan]))
+    notes = look_up(replace(line, levels=(quiet,)), K_AP, **LEVEL).notes
+    assert not any("settled" in text for text in notes)

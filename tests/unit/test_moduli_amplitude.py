@@ -7,7 +7,7 @@ import pytest
 
 from reduction.record.errors import DataError
 from reduction.stages.cycles.cycle_product import Loops, turns_alike
-from reduction.stages.moduli.secant_modulus import summarise_amplitude
+from reduction.stages.moduli.secant_modulus import late_change, summarise_amplitude
 
 AREA = np.array([5e-4, 4e-4])
 
@@ -122,3 +122,19 @@ def test_readings_of_the_slope_of_the_loop_spread_with_the_loss_angle():
     assert summary.uncertainty["slope_reading_spread"][0] == pytest.approx(expected, rel=1e-4)
     # tension behind strain: no ellipse to read slopes from
     assert np.isnan(summary.slope_reading_spread[1])
+
+
+def test_a_test_that_softens_has_the_mean_of_its_cycles_and_no_trend_in_its_interval():
+    """Stiffness that falls by a tenth; each cycle is known to a thousandth."""
+    cycle = np.arange(20.0)
+    values = 1000 * (0.9 + 0.1 * np.exp(-cycle / 4))[None]
+    own = {"apparent_spring_constant": np.full((1, 20), 1.0)}
+    summary = summarise_amplitude(loops_of(values, own), area=[5e-4])
+    assert summary.apparent_spring_constant[0] == pytest.approx(values.mean())
+    # by the sum of the geometric series the last half lies 9.1 below the mean
+    assert late_change(values[0]) == pytest.approx(
+        5 * np.exp(-0.25 * 10) * (1 - np.exp(-2.5)) / (1 - np.exp(-0.25)) * 2
+        - 5 * (1 - np.exp(-5)) / (1 - np.exp(-0.25))
+    )
+    # a thousandth over the root of twenty, and what the first steps bend by
+    assert 0.22 < summary.uncertainty["apparent_spring_constant"][0] < 1.0

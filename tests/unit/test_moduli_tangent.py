@@ -166,7 +166,10 @@ def test_break_in_cycles_are_left_out_of_the_mean_and_kept_by_cycle(triangle):
 
 def test_envelope_and_scatter_are_those_of_the_cycles(triangle):
     strain, cycles = triangle(n_cycles=5, per_cycle=200)
-    tension = (100.0 * cycles.cycle_number) * strain  # a jump at each valley, in the ends alone
+    factor = np.array(
+        [0.0, 100.0, 400.0, 200.0, 500.0, 300.0]
+    )  # a jump at each valley, in the ends alone
+    tension = factor[cycles.cycle_number] * strain
     curves = curves_of(strain, tension, cycles)
     middle = curves.tangent_modulus.shape[-1] // 2
     assert curves.tangent_modulus_minimum[0, :, middle] * AREA == pytest.approx(100)
@@ -175,8 +178,20 @@ def test_envelope_and_scatter_are_those_of_the_cycles(triangle):
     uncertainty = curves.tangent_modulus_standard_uncertainty[0, :, middle] * AREA
     assert uncertainty == pytest.approx(np.sqrt(25000 / 5), rel=0.3)
     assert curves.tangent_modulus_by_cycle[0, :, 0, middle] * AREA == pytest.approx(
-        [100, 200, 300, 400, 500]
+        [100, 400, 200, 500, 300]
     )
+
+
+def test_a_modulus_that_rises_from_cycle_to_cycle_is_no_scatter(triangle):
+    strain, cycles = triangle(n_cycles=8, per_cycle=200)
+    noise = 0.01 * np.random.default_rng(5).normal(size=strain.shape)
+    curves = curves_of(strain, (200.0 + 5.0 * cycles.cycle_number) * strain + noise, cycles)
+    middle = curves.tangent_modulus.shape[-1] // 2
+    # eight cycles, 5 apart: s is 5 sqrt(6)
+    assert curves.tangent_modulus_scatter[0, :, middle] * AREA == pytest.approx(12.2, rel=0.02)
+    off = curves.tangent_modulus[0, :, middle] * AREA - 222.5
+    uncertainty = curves.tangent_modulus_standard_uncertainty[0, :, middle] * AREA
+    assert (np.abs(off) < 3 * uncertainty).all() and (uncertainty < 0.5).all()
 
 
 def test_trimmed_ends_are_in_the_untrimmed_curve_alone(triangle):

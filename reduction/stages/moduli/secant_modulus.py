@@ -45,7 +45,7 @@ from reduction.stages.cycles.cycle_product import Cycles, Loops
 from reduction.stages.cycles.fundamental import steady_cycles
 from reduction.stages.cycles.reading_noise import reading_noise
 from reduction.stages.moduli.least_squares import lag_one_inflation
-from reduction.stages.moduli.local_regression import curve_at
+from reduction.stages.moduli.local_regression import RunningStatistics, curve_at
 from reduction.stages.moduli.modulus_product import (
     AmplitudeSummary,
     EndModuli,
@@ -230,45 +230,37 @@ _QUANTITIES = (
 
 def _mean_over_cycles(values: Floats, uncertainty: Floats | None) -> tuple[Floats, Floats]:
     """Mean over the last axis without NaN, and its standard uncertainty of type A."""
-    known = np.isfinite(values)
-    n = known.sum(axis=-1)
-    mean = np.where(known, values, 0.0).sum(axis=-1) / np.where(n > 0, n, np.nan)
-    squares = np.where(known, (values - mean[:, None]) ** 2, 0.0).sum(axis=-1)
-    of_mean = np.sqrt(squares / np.where(n > 1, n * (n - 1.0), np.nan))
-    if uncertainty is not None:
-        own = np.where(known, uncertainty, 0.0).sum(axis=-1)
-        of_mean = np.where(n == 1, own, of_mean)
-    off = [
-        _off_settled(row[is_so], of_row)
-        for row, is_so, of_row in zip(values, known, mean, strict=True)
-    ]
-    return mean, np.hypot(of_mean, off)
+    if uncertainty is None:
+        uncertainty = np.full_like(values, np.nan)
+    statistics = RunningStatistics.of(values.T, uncertainty.T**2, weight=np.ones(values.shape[1]))
+    return statistics.value(), statistics.standard_uncertainty()
 
 
-_FEWEST_SETTLED = 9
-
-_CLEARLY = 4.0  # standard uncertainties
+_FEWEST_TO_SETTLE = 4  # cycles, of which the last half is a mean
 
 
-def _off_settled(values: Floats, mean: float) -> float:
-    """How far a mean is from where the cycles have settled; zero where they have not, or always.
+def late_change(values: Floats) -> float:
+    """Mean over the last half of the cycles less that over all; NaN of fewer than four.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n_cycles,)
+        One per cycle, NaN where there is none. [SI]
+
+    Returns
+    -------
+    change : float
+        [SI]
 
     Examples
     --------
-    >>> cycle = np.arange(12)
-    >>> round(_off_settled(100 - 10 * np.exp(-cycle) + 0.01 * (-1.0) ** cycle, 98.7), 1)
-    1.3
-    >>> _off_settled(100.0 - 2 * np.log(1 + cycle), 96.0)
-    0.0
+    >>> late_change(np.array([106.0, 102.0, np.nan, 100.0, 100.0]))
+    -2.0
     """
-    if values.size < _FEWEST_SETTLED:
-        return 0.0
-    end = values[-(values.size // 3) :]
-    level, spread = float(end.mean()), float(end.std(ddof=1))
-    slope = abs(float(np.polyfit(np.arange(end.size), end, 1)[0])) * end.size
-    far = abs(level - mean)
-    is_flat = slope < max(_CLEARLY * spread / np.sqrt(end.size), 0.1 * far)
-    return far if is_flat and far > _CLEARLY * spread / np.sqrt(end.size) else 0.0
+    known = values[np.isfinite(values)]
+    if known.size < _FEWEST_TO_SETTLE:
+        return np.nan
+    return float(known[known.size // 2 :].mean() - known.mean())
 
 
 def _mean_frequency(loops: Loops, break_in_cycles: int) -> tuple[Floats, Floats]:
@@ -397,8 +389,9 @@ def summarise_amplitude(
     apart, over K_ap (`reduction.stages.cycles.loops`).
 
     Uncertainty is type A: scatter over the cycles over the root of their number; of a
-    single cycle, its own. Trend over the cycles is in the scatter; where the cycles settle, how
-    far the mean is from there is in it too. Cycles with NaN are left out.  Beside it stands
+    single cycle, its own. It is that of the mean of these cycles: a trend over them is no scatter
+    (`reduction.stages.moduli.local_regression.variance_of_a_cycle`), and `late_change` tells how
+    far the mean is from the later ones. Cycles with NaN are left out.  Beside it stands
     what all cycles have alike: a turn missed between two samples in means, amplitudes, K_ap, K',
     loss and loss factor, the place of the drift within its cycle in energy and loss, and in the
     frequency what the driven channel and the other one differ by.

@@ -20,6 +20,7 @@ from reduction.record.arrays import as_finite, as_increasing, as_positive, as_sa
 from reduction.record.errors import DataError
 from reduction.record.measurement import Bools, Floats, Integers, read_only_arrays
 from reduction.record.settings import ModulusSettings
+from reduction.stages.moduli.local_regression import RunningStatistics
 from reduction.stages.moduli.modulus_product import ModulusCurves, Segments
 
 _SHORTEST_POINTS = 3  # of a segment: two make any slope
@@ -375,7 +376,10 @@ def _spread(
     if np.count_nonzero(whole) >= _FEWEST_CYCLES:
         means = np.nanmean(modulus_by_cycle[whole], axis=1)
         count = float(curves.tangent_modulus_count[at][used][inside].max())
-        return float(np.std(means, ddof=1) / np.sqrt(max(count, 1.0)))
+        of_whole = RunningStatistics.of(
+            means, np.full_like(means, np.nan), weight=np.ones_like(means)
+        )
+        return float(of_whole.standard_uncertainty() * np.sqrt(means.size / max(count, 1.0)))
     variance = curves.tangent_modulus_standard_uncertainty[at][used][inside] ** 2
     known = variance[np.isfinite(variance)]
     return float(np.sqrt(known.mean() / max(windows, 1.0))) if known.size else float("nan")

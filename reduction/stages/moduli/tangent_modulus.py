@@ -372,8 +372,8 @@ def tangent_curves(
 
     *Uncertainty* is type A alone: the scatter over the cycles over the root of
     their number, or, of a single curve, from its regression residuals. What is
-    common to all cycles (area, calibration, splice strain) is not in it. Scatter
-    includes the trend from cycle to cycle; the mean is over slopes of single
+    common to all cycles (area, calibration, splice strain) is not in it. A trend over
+    the cycles is no scatter (`variance_of_a_cycle`); the mean is over slopes of single
     cycles (or of groups of consecutive ones), so that loss of tension from one to
     the next does not enter a slope.
 
