@@ -152,9 +152,9 @@ Reader = Callable[..., tuple[Record, tuple[Source, ...]]]
 class Survey:
     """One test after the first pass.
 
-    ``mark_tension`` and ``mark_tension_at_start`` hold, by specimen, one tension [N] for each
-    pooled mark read in this test, in the order of the marks; ``mark_errors`` holds the marks that
-    the crosshead contradicts.  ``zero_strain`` is the position of zero strain, by specimen, and
+    ``mark_tension``, ``mark_tension_at_start`` and ``mark_tension_on_arrival`` hold, by specimen,
+    one tension [N] for each pooled mark read in this test, in the order of the marks;
+    ``mark_errors`` holds the marks that the crosshead contradicts.  ``zero_strain`` is the position of zero strain, by specimen, and
     ``reference_length`` [m] the length at displacement zero, if stated.  ``extremes`` is the range
     covered by the test and ``levels`` its operating levels; ``found`` and ``notes`` are reported on
     the log, ``remarks`` on its levels.  ``first_time`` is that of the first row [s]; ``broken``
@@ -174,6 +174,7 @@ class Survey:
     slips: dict[str, list[SpliceSlip]] = field(default_factory=dict)
     mark_tension: dict[str, Floats] = field(default_factory=dict)
     mark_tension_at_start: dict[str, Floats] = field(default_factory=dict)
+    mark_tension_on_arrival: dict[str, Floats] = field(default_factory=dict)
     mark_errors: dict[str, DataError] = field(default_factory=dict)
     zero_strain: dict[str, ZeroStrain] = field(default_factory=dict)
     reference_length: float | None = None
@@ -517,6 +518,7 @@ def _measure_marks(survey: Survey, located: Located, campaign: Campaign) -> None
                 survey.located = replace(survey.located, record=record)
     at = tension_at_marks(located, campaign.marks, plan.specimens, log=plan.log)
     survey.mark_tension, survey.mark_tension_at_start = at["end"], at["start"]
+    survey.mark_tension_on_arrival = at["arrival"]
 
 
 def _of_position(campaign: Campaign, located: Located) -> float:

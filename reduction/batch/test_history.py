@@ -299,6 +299,10 @@ def fit_strain_models(
         name: _pooled(marks, surveys, lambda survey: survey.mark_tension_at_start)
         for name, marks in campaign.marks.items()
     }
+    on_arrival = {
+        name: _pooled(marks, surveys, lambda survey: survey.mark_tension_on_arrival)
+        for name, marks in campaign.marks.items()
+    }
     averages = {
         name: _average(marks, at_end[name], at_start[name])
         for name, marks in campaign.marks.items()
@@ -322,6 +326,7 @@ def fit_strain_models(
                     marks=campaign.marks.get(name),
                     mark_tension=at_end.get(name),
                     mark_tension_at_start=at_start.get(name),
+                    mark_tension_on_arrival=on_arrival.get(name),
                     settings=survey.plan.settings.strain,
                     has_extensometer=survey.extremes.has_extensometer,
                     zero=_with_error_of_load(zero, campaign),

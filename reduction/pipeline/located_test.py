@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -370,4 +370,4 @@ def tension_at_marks(
             for name, tension in in_log.items()
         }
 
-    return {"end": measured("end"), "start": measured("start")}
+    return {one: measured(one) for one in get_args(MarkReading)}

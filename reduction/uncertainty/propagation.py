@@ -967,6 +967,7 @@ def loop_contributions(
                 - 2 * stretch * loss_spring_constant,
             },
         )  # fmt: skip
+    values["foot_strain"] = values["mean_strain"] - values["strain_amplitude"]
     loss_factor = loss_spring_constant / storage_spring_constant
     values["loss_factor"] = loss_factor * (
         values["loss_spring_constant"] / loss_spring_constant

@@ -1419,7 +1419,7 @@ _WITHOUT_TURNS = [LAG_REFUSALS[name] for name in ("few_turns", "turns_not_sharp"
 
 
 # an archive has them for each cycle, not for the means of a test
-_OF_CYCLES_ALONE = ("peak_tension", "valley_tension")
+_OF_CYCLES_ALONE = ("peak_tension", "valley_tension", "foot_strain")
 
 
 def contributions_of_test(

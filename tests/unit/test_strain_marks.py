@@ -192,17 +192,31 @@ def marks_up_and_down(splice):
     return replace(rows, is_reading_stated=True)
 
 
-def test_friction_that_holds_the_splices_while_the_rubber_relaxes_shows_when_a_hold_begins():
-    """6 % of friction, all of it within the relaxation of the holds: none by their end."""
-    start = np.array([0.0, 300.0, 450.0, 600.0, 400.0])
-    end = start * np.array([1.0, 0.96, 0.96, 0.96, 1.03])
+def test_friction_that_holds_the_splices_while_the_rubber_relaxes_shows_as_the_crosshead_stops():
+    """6 % of friction, all within the relaxation of the holds, most of it before a tape is read."""
+    arrival = np.array([0.0, 300.0, 450.0, 600.0, 400.0])
+    end = arrival * np.array([1.0, 0.96, 0.96, 0.96, 1.03])
     rest = 1.2
-    splice = rest + rest * 0.2 * start / 450.0 * np.array([1.0, 1.0, 1.0, 1.0, 1.06])
-    rows = marks_up_and_down(splice)
+    splice = rest + rest * 0.2 * arrival / 450.0 * np.array([1.0, 1.0, 1.0, 1.0, 1.06])
     model = fit_strain_model(
-        Specimen("new"), test_id="T-1", marks=rows, mark_tension=end, mark_tension_at_start=start
-    )
+        Specimen("new"), test_id="T-1", marks=marks_up_and_down(splice), mark_tension=end,
+        mark_tension_at_start=end + 0.2 * (arrival - end), mark_tension_on_arrival=arrival,
+    )  # fmt: skip
     assert 0.06 / 1.96 < model.splice_friction < 0.06
+
+
+def test_a_hold_has_the_tension_of_its_arrival_before_the_rubber_relaxes():
+    """A tension that falls by 63 % of 40 N within the first second of a hold."""
+    time = np.arange(0.0, 60.0, 0.1)
+    tension = 300.0 + 40.0 * np.exp(-time)
+    rows = marks([5.90], [4.51], hold=("min",))
+    hold = [(0.0, 59.9, 5.90, False)]
+    on_arrival, at_start = (
+        float(measured(rows, hold, tension, reading=one)[0]) for one in ("arrival", "start")
+    )
+    # the mean of the first three readings, and of ten seconds
+    assert on_arrival == pytest.approx(300.0 + 40.0 * np.mean(np.exp([0.0, -0.1, -0.2])))
+    assert at_start == pytest.approx(300.0 + 4.0, abs=0.3)
 
 
 def test_marks_on_the_way_down_say_the_friction_of_the_splices():

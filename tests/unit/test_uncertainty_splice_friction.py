@@ -33,6 +33,23 @@ def test_a_loop_is_wider_by_the_difference_of_the_branches_over_the_range_of_ten
     assert moved["strain_amplitude"] == pytest.approx(-0.05 * 0.05 / 2, rel=1e-6)
     assert moved["apparent_spring_constant"] == pytest.approx(450 * 0.00125 / 0.5, rel=1e-6)
     assert moved["mean_tension"] == 0.0
+    # a valley ends a way down
+    assert moved["foot_strain"] == pytest.approx(0.05 * 0.05, rel=1e-6)
+
+
+def test_the_zero_of_the_crosshead_is_in_the_strain_of_a_valley():
+    """By hand: without splices 5 mm of 2.5 m, at the valley as at the peak."""
+    found = loop_contributions(
+        InstrumentErrors("rope", position_offset=0.005),
+        StrainModel("rope", "gauge-length", {"gauge_length": 2.5, "reference_position": 2.5}),
+        frequency=np.array([0.1]), mean_tension=np.array([450.0]),
+        tension_amplitude=np.array([225.0]), mean_strain=np.array([1.0]),
+        strain_amplitude=np.array([0.5]), apparent_spring_constant=np.array([450.0]),
+        hysteresis_energy=np.array([20.0]), storage_spring_constant=np.array([450.0]),
+        loss_spring_constant=np.array([25.0]), closed_loop_energy=np.array([20.0]),
+        waveform="triangular",
+    )  # fmt: skip
+    assert np.linalg.norm(found.values["foot_strain"]) == pytest.approx(0.002, rel=1e-6)
 
 
 def test_strain_is_as_the_marks_say_on_the_way_up_and_too_large_on_the_way_down():

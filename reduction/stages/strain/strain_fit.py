@@ -214,10 +214,13 @@ def _relaxed_lengths(
     return _RelaxedLengths(mean, scatter.variance * _OF_READINGS / n_slack, scatter.note)
 
 
-MarkReading = Literal["start", "end"]
+MarkReading = Literal["arrival", "start", "end"]
 
 # the tape is read in about this long, or in a third of a shorter hold
 _READING_TIME = 10.0
+
+# readings that have the tension of a hold as the crosshead stopped, by noise and by relaxation
+_ON_ARRIVAL = 3
 
 # difference of two free lengths has twice the standard uncertainty of one reading (four readings)
 _CONTRADICTION = 4 * 2
@@ -275,7 +278,9 @@ def _windows(standstills: Standstills, reading: MarkReading) -> list[slice]:
     with np.errstate(divide="ignore", invalid="ignore"):
         share = np.fmin(np.divide(_READING_TIME, duration), 1 / 3)
     length = np.maximum(np.round(share * samples).astype(np.int64), 1)
-    first = standstills.first if reading == "start" else standstills.last + 1 - length
+    if reading == "arrival":
+        length = np.minimum(length, _ON_ARRIVAL)
+    first = standstills.last + 1 - length if reading == "end" else standstills.first
     return [slice(int(a), int(a + n)) for a, n in zip(first, length, strict=True)]
 
 
@@ -313,8 +318,8 @@ def measure_mark_tension(
         Of the same log.
     tension : array_like, shape (n_samples,)
         Of this specimen. [N]
-    reading : {"end", "start"}
-        When in the hold the tape was read.
+    reading : {"end", "start", "arrival"}
+        When in the hold the tape was read; or the first readings of the hold.
 
     Returns
     -------
@@ -337,7 +342,8 @@ def measure_mark_tension(
     The rubber relaxes while a hold lasts, by 12 % in the longest one of a test at
     275 %, so it matters when the tape was read; the report does not say.  The
     default is the last 10 s (the last third of a hold under 30 s): the crosshead
-    moves on once the readings are written down.  ``start`` is the other bound.
+    moves on once the readings are written down.  ``start`` is the other bound; ``arrival``, when no
+    tape is read yet, has the tension at which friction stops the splices.
     NaN samples are left out.
 
     Examples
@@ -697,12 +703,15 @@ class PooledMarks:
         Rows read in the test itself.
     tension_at_start : ndarray, shape (n_marks,)
         When each hold began, where the tape may have been read; empty where not known. [N]
+    tension_on_arrival : ndarray, shape (n_marks,)
+        As the crosshead stopped; empty where not known. [N]
     """
 
     marks: SpliceMarks
     tension: Floats
     is_own: Bools
     tension_at_start: Floats = field(default_factory=lambda: np.empty(0))
+    tension_on_arrival: Floats = field(default_factory=lambda: np.empty(0))
 
     @property
     def has_own(self) -> bool:
@@ -1226,7 +1235,7 @@ def _friction(model: StrainModel, readings: PooledMarks) -> tuple[float, float] 
     """Share by which splices are longer on the way down than the law says, and its uncertainty.
 
     None without marks on the way down.  Splices that friction holds keep the length that they had
-    at the beginning of a hold while the rubber relaxes, up, or recovers, down; others follow the
+    as the crosshead stopped while the rubber relaxes, up, or recovers, down; others follow the
     tension.  Each is as likely.
     """
     marks = readings.marks
@@ -1238,10 +1247,10 @@ def _friction(model: StrainModel, readings: PooledMarks) -> tuple[float, float] 
     strain = marks.free_length[rows] / known["relaxed_free_length"] - 1
     tension = [readings.tension[rows]]
     up = loaded & ~marks.is_unloading & ~marks.is_slack
-    if readings.tension_at_start.size:
+    if readings.tension_on_arrival.size:
         # the law has the tensions at the end of the holds on the way up
-        relaxed = float(np.nanmean(readings.tension[up] / readings.tension_at_start[up]))
-        tension.append(readings.tension_at_start[rows] * relaxed)
+        relaxed = float(np.nanmean(readings.tension[up] / readings.tension_on_arrival[up]))
+        tension.append(readings.tension_on_arrival[rows] * relaxed)
     reading, shares, errors = sqrt(3) * _tape_error(marks), [], []
     for one in tension:
         by_law = position_by_model(model, strain=strain, tension=one) - marks.free_length[rows]
@@ -1519,6 +1528,7 @@ def fit_strain_model(
     marks: SpliceMarks | None = None,
     mark_tension: ArrayLike | None = None,
     mark_tension_at_start: ArrayLike | None = None,
+    mark_tension_on_arrival: ArrayLike | None = None,
     settings: StrainSettings | None = None,
     has_extensometer: bool = False,
     zero: ZeroStrain | None = None,
@@ -1540,7 +1550,9 @@ def fit_strain_model(
         From `reduction.stages.strain.strain_fit.measure_mark_tension`, row by row of ``marks``;
         NaN where no hold was found. [N]
     mark_tension_at_start : array_like, shape (n_marks,), optional
-        The same at the start of each hold; only the history uses it. [N]
+        The same at the start of each hold, where the tape may have been read too. [N]
+    mark_tension_on_arrival : array_like, shape (n_marks,), optional
+        The same as the crosshead stopped; only the friction of the splices is found with it. [N]
     settings : StrainSettings, optional
         ``method`` None averages: see Notes.
     has_extensometer : bool
@@ -1600,13 +1612,13 @@ def fit_strain_model(
     if marks is not None:
         tension = np.full(len(marks.test), np.nan) if mark_tension is None else mark_tension
         is_own = np.array([test == test_id for test in marks.test], dtype=bool)
-        early = np.empty(0) if mark_tension_at_start is None else mark_tension_at_start
-        readings = PooledMarks(
-            marks,
-            np.asarray(tension, dtype=np.float64),
-            is_own,
-            np.asarray(early, dtype=np.float64),
+        early, first = (
+            np.empty(0) if one is None else np.asarray(one, dtype=np.float64)
+            for one in (mark_tension_at_start, mark_tension_on_arrival)
         )
+        readings = PooledMarks(
+            marks, np.asarray(tension, dtype=np.float64), is_own, early, first
+        )  # fmt: skip
         if readings.tension.shape != is_own.shape:
             raise DataError(
                 "tensions and marks do not pair up",
