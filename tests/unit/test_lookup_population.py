@@ -187,7 +187,7 @@ def test_python_gives_the_population_of_the_command(monkeypatch):
         reduction.look_up("lab", "K_ap", population=0.95, rank=True, **LEVEL)
 
 
-@pytest.mark.parametrize("change, said", [(-0.04, "4.0 % lower"), (0.02, "2.0 % higher")])
+@pytest.mark.parametrize(("change", "said"), [(-0.04, "4.0 % lower"), (0.02, "2.0 % higher")])
 def test_a_look_up_says_how_far_the_later_cycles_of_a_test_are_from_its_mean(change, said):
     line = rope("rope", 1e7)
     levels = replace(line.levels[0], late_change=np.array([change, change]))
