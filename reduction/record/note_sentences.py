@@ -315,6 +315,14 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             " mean slack length, and the intervals allow for another length in each test"
         ),
     ),
+    "slack-rows-differ": (
+        "warning",
+        lambda column, difference, test: (
+            f"the {column} of the slack rows differs by {1e3 * difference:.0f} mm, more than the"
+            f" error of the tape explains. Check the slack row of test {test}; strain refers to the"
+            " mean slack length, and the intervals are wider by what the rows differ"
+        ),
+    ),
     "marks-of-failed-tests": (
         "note",
         "{n_marks} of {n_stretched} stretched marks belong to tests that failed ({tests}), so"
@@ -458,7 +466,8 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "tape-off-crosshead": (
         "warning",
         "at the holds of {n_marks} marks crosshead and tape differ by {apart:+.4g} m, more than"
-        " their errors explain. Check the zero of the crosshead",
+        " their errors explain. Check the zero of the crosshead, and whether the tape was read from"
+        " zero at the near thimble",
     ),
     "splice-laws": (
         "note",

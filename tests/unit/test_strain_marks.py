@@ -131,6 +131,54 @@ def test_one_position_has_one_free_length_but_for_the_error_of_reading():
         _check_marks(marks([5.90, 5.90], [4.51, 4.56]))
 
 
+@pytest.mark.parametrize(("misread", "off"), [(1, 0.7), (2, 0.15), (3, -0.7)])
+def test_of_contradicting_rows_the_one_is_named_without_which_the_others_agree(misread, off):
+    """A tether whose splices take 15 % of the stroke; the far toe of one mark is off."""
+    position = np.array([3.74, 5.90, 6.63, 7.35])
+    free = 2.55 + 0.85 * (position - 3.74)
+    free[misread] += off
+    hold = ("slack", "min", "centre", "max")
+    with pytest.raises(DataError, match=f"Correct the mark at {hold[misread]}: without it"):
+        _check_marks(marks(position, free, hold=hold))
+
+
+def test_rows_too_few_to_tell_which_is_wrong_name_none():
+    with pytest.raises(DataError, match=r"Correct the row in the marks file"):
+        _check_marks(marks([3.74, 5.90, 6.63], [2.55, 4.51, 4.40]))
+
+
+def of_slack_rows(*far_toe):
+    """Slack rows of as many tests, and two marks of splices that stretch with the tension."""
+    n = len(far_toe)
+    free = np.array([far - 0.57 for far in far_toe] + [4.59, 5.10])
+    length = np.array([3.62] * n + [2.55 * 1.8 + 1.07 * 1.16, 2.55 * 2.0 + 1.07 * 1.2])
+    rows = marks(
+        length, free, test=(*(f"T-{at + 1}" for at in range(n)), "T-1", "T-1"),
+        hold=(*["slack"] * n, "min", "max"), reading_uncertainty=1e-3,
+    )  # fmt: skip
+    rows = replace(rows, is_reading_stated=True)
+    rows = replace(
+        rows, near_toe=np.append(np.full(n, 0.57), rows.near_toe[n:]),
+        far_toe=np.append(far_toe, rows.far_toe[n:]),
+    )  # fmt: skip
+    force = np.array([0.0] * n + [400.0, 500.0])
+    model = fit_strain_model(Specimen("new"), test_id="T-1", marks=rows, mark_tension=force)
+    return {one.code: one for one in model.notes}
+
+
+def test_a_slack_row_that_is_misread_is_named():
+    found = of_slack_rows(3.120, 3.121, 3.219)["slack-rows-differ"]
+    assert found.severity == "warning"
+    assert (found.numbers["column"], found.numbers["test"]) == ("far_toe", "T-3")
+    assert found.numbers["difference"] == pytest.approx(0.099)
+    # of two nothing tells which
+    assert of_slack_rows(3.120, 3.219)["slack-rows-differ"].numbers["test"] == "T-1 or T-2"
+
+
+def test_slack_rows_that_differ_by_the_error_of_the_tape_are_sound():
+    assert "slack-rows-differ" not in of_slack_rows(3.120, 3.122, 3.117)
+
+
 def test_splices_that_shrink_under_more_stretch_are_refused():
     with pytest.raises(DataError, match="grows with position, by no more than position does"):
         _check_marks(marks([5.90, 6.00], [4.51, 4.70]))

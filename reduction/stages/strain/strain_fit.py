@@ -267,8 +267,31 @@ def _check_marks(marks: SpliceMarks, *, tests: Collection[str] | None = None) ->
                 f"{marks.far_thimble[high]:.3f} m",
                 needed="a free length that grows with position, by no more than position does, "
                 f"within {allowance:.3f} m",
-                hint="Correct the row in the marks file.",
+                hint=_which_row(marks, rows),
             )
+
+
+_PLAIN = 3.0  # times as far from a line with it as without it: a row that is misread
+
+
+def _which_row(marks: SpliceMarks, rows: Integers) -> str:
+    """Which of some contradicting rows to correct, if the others lie about one line without it."""
+    if rows.size < _TREND_ROWS:
+        return "Correct the row in the marks file."
+    position, free = marks.far_thimble[rows], marks.free_length[rows]
+    left = []
+    for one in range(rows.size):
+        x, y = np.delete(position, one), np.delete(free, one)
+        left.append(_rms(y - np.polyval(np.polyfit(x, y, 1), x)))
+    best, second = np.argsort(left)[:2]
+    if left[best] * _PLAIN > left[second]:
+        return "Correct the row in the marks file."
+    row = rows[best]
+    where = f", {marks.place[row].file} row {marks.place[row].row}" if marks.place else ""
+    return (
+        f"Correct the mark at {marks.hold[row]}{where}: without it the other "
+        f"{rows.size - 1} rows agree."
+    )
 
 
 def _windows(standstills: Standstills, reading: MarkReading) -> list[slice]:
@@ -1357,12 +1380,36 @@ def _growth_of_slack(marks: SpliceMarks) -> float:
 
 
 def _on_slack(marks: SpliceMarks) -> tuple[Note, ...]:
-    """Say where the slack length grows: strain refers to its mean."""
+    """Say where the slack length grows, or a slack row is misread: strain refers to their mean."""
     growth = _growth_of_slack(marks)
-    if not growth:
+    if growth:
+        effect = growth / float(marks.far_thimble[marks.is_slack][0])
+        return (note("slack-length-grows", marks.specimen, growth=growth, effect=effect),)
+    rows = np.flatnonzero(marks.is_slack)
+    if rows.size < 2:
         return ()
-    effect = growth / float(marks.far_thimble[marks.is_slack][0])
-    return (note("slack-length-grows", marks.specimen, growth=growth, effect=effect),)
+    columns = ("near_toe", "far_toe", "far_thimble")
+    readings = np.stack([getattr(marks, name)[rows] for name in columns])
+    apart = readings - np.median(readings, axis=1, keepdims=True)
+    column, at = np.unravel_index(np.argmax(np.abs(apart)), apart.shape)
+    reading = marks.reading_uncertainty
+    if not marks.is_reading_stated:
+        reading = max(reading, TAPE_UNCERTAINTY)
+    difference = float(np.ptp(readings[column]))
+    if difference <= _OUTLIER_NOTICE * sqrt(2) * reading:
+        return ()
+    tests = [marks.test[row] for row in rows]
+    # of two nothing tells which
+    wrong = f"{tests[0]} or {tests[1]}" if rows.size == 2 else tests[at]
+    return (
+        note(
+            "slack-rows-differ",
+            marks.specimen,
+            column=columns[column],
+            difference=difference,
+            test=wrong,
+        ),
+    )
 
 
 def _on_reading_time(
