@@ -178,3 +178,22 @@ def test_noise_of_the_only_window_is_no_bend_that_it_misses():
     inner = np.s_[:, 2 * half : -2 * half]
     # two and a half times the range of the bends that noise makes are twice the noise
     assert np.median(missed[inner]) < 0.6 * noise
+
+
+def test_a_modulus_that_rises_and_falls_all_along_is_no_noise_of_the_narrow_window():
+    """Ten cycles, read well; a wave of 12 bins that the wide window averages away."""
+    x = np.arange(120)
+    true = 3.0 + 0.3 * np.sin(2 * np.pi * x / 12)
+    halves = [6, 3]
+    slopes = [
+        np.convolve(np.pad(true, half, mode="wrap"), np.ones(2 * half + 1), "valid")[None]
+        / (2 * half + 1)
+        for half in halves
+    ]
+    noise_of_residuals = [np.full((1, 120), 0.01)] * 2
+    change, noise, missed = adapt_window(
+        slopes, noise_of_residuals, [0 * slopes[0]] * 2, half_windows=halves, n_cycles=10
+    )
+    error = np.abs(slopes[0] + change - true)
+    assert np.mean(error < 1.96 * np.hypot(noise, missed)) > 0.95
+    assert error.mean() < 0.5 * np.abs(slopes[0] - true).mean()

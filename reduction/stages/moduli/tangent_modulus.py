@@ -243,7 +243,11 @@ def _reduce_block(
 
 
 def _adapted(
-    specimens: Sequence[_SpecimenCurves], *, halves: Sequence[int], minimum_count: int
+    specimens: Sequence[_SpecimenCurves],
+    *,
+    halves: Sequence[int],
+    minimum_count: int,
+    n_cycles: int,
 ) -> tuple[Floats, Floats, Floats, Floats]:
     """Slope in the widest window and `adapt_window`, by all cycles together. [N].
 
@@ -260,7 +264,8 @@ def _adapted(
         slopes.append(slope - blur)
         deviations.append(gain * np.sqrt(np.stack([fit.slope_variance for fit in fits])))
         blurs.append(blur)
-    return (slopes[0], *adapt_window(slopes, deviations, blurs, half_windows=halves))
+    adapted = adapt_window(slopes, deviations, blurs, half_windows=halves, n_cycles=n_cycles)
+    return slopes[0], *adapted
 
 
 def _reduce_specimens(
@@ -453,7 +458,7 @@ def tangent_curves(
         pooled=lambda: max(pooled_spacing(row, cycles) for row in strain),
     )
     together, change, noise, missed = _adapted(
-        specimens, halves=halves, minimum_count=settings.minimum_count
+        specimens, halves=halves, minimum_count=settings.minimum_count, n_cycles=cycles.n_cycles
     )
     if is_filled_by_many(grid, halves, spacing=spacing):
         off = together - (np.stack([one.value() for one in trimmed]) - blur)

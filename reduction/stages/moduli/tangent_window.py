@@ -492,6 +492,7 @@ def adapt_window(
     blur: Sequence[Floats],
     *,
     half_windows: Sequence[int],
+    n_cycles: int | None = None,
 ) -> tuple[Floats, Floats, Floats]:
     r"""Slope by the widest window that no narrower one contradicts, and what it may still miss.
 
@@ -504,6 +505,8 @@ def adapt_window(
         That was taken off the slopes. [SI]
     half_windows : sequence of int
         Bins on each side of the centre bin in each window. [1]
+    n_cycles : int, optional
+        That the slopes are of together. [1]
 
     Returns
     -------
@@ -526,8 +529,9 @@ def adapt_window(
     a smooth bend adds; at a step no window is right.  In each bin the windows are compared ([4]_):
     the widest is used whose slope lies within two standard deviations of that of every narrower
     one; a bin that alone takes a narrower one than both beside it takes theirs.  A deviation is no
-    smaller than the roughness of the curve says, as the same quantisation in every cycle leaves no
-    trace in the residuals.
+    smaller than the roughness of the curve says, as readings that are rounded alike in every cycle
+    count once in it and ``n_cycles`` times in the residuals: more than the root of their number
+    times the residuals' deviation is no error of readings but a modulus that rises and falls.
 
     What is missed is the root mean square difference from the narrower windows over the window's
     width, less their noise.  Of the narrowest it is the greatest difference from the next wider
@@ -554,7 +558,13 @@ def adapt_window(
     # a wide window averages more than a narrow one: what its differences show beyond is the curve
     least = np.minimum.accumulate(rough_alone[::-1])[::-1]
     roughness = np.where(np.isfinite(least), least, 0.0)
-    noises = [np.fmax(*both) for both in zip(deviation, roughness, strict=True)]
+    noises = [
+        np.fmax(
+            by_residuals,
+            by_jumps if n_cycles is None else np.fmin(by_jumps, sqrt(n_cycles) * by_residuals),
+        )
+        for by_residuals, by_jumps in zip(deviation, roughness, strict=True)
+    ]
     # of the widest window the scatter of the cycles says what the residuals of all together do not
     rough = [0 * slope[0] + roughness[0], *noises[1:]]
     last = len(slope) - 1
