@@ -154,13 +154,14 @@ class Survey:
 
     ``mark_tension``, ``mark_tension_at_start`` and ``mark_tension_on_arrival`` hold, by specimen,
     one tension [N] for each pooled mark read in this test, in the order of the marks;
-    ``mark_errors`` holds the marks that the crosshead contradicts.  ``zero_strain`` is the position of zero strain, by specimen, and
-    ``reference_length`` [m] the length at displacement zero, if stated.  ``extremes`` is the range
-    covered by the test and ``levels`` its operating levels; ``found`` and ``notes`` are reported on
-    the log, ``remarks`` on its levels.  ``first_time`` is that of the first row [s]; ``broken``
-    names the specimens that broke, as stated or according to the log of a pull, and ``slips`` holds
-    the splice slips by specimen that matter to a later test.  ``n_cycles_between`` is the number of
-    cycles counted by the machine between those of the log.
+    ``mark_errors`` holds the marks that the crosshead contradicts.  ``zero_strain`` is the
+    position of zero strain, by specimen, and ``reference_length`` [m] the length at
+    displacement zero, if stated.  ``extremes`` is the range covered by the test and ``levels``
+    its operating levels; ``found`` and ``notes`` are reported on the log, ``remarks`` on its
+    levels.  ``first_time`` is that of the first row [s]; ``broken`` names the specimens that
+    broke, as stated or according to the log of a pull, and ``slips`` holds the splice slips by
+    specimen that matter to a later test.  ``n_cycles_between`` is the number of cycles counted
+    by the machine between those of the log.
     """
 
     plan: TestPlan
