@@ -5,8 +5,8 @@ r"""Several specimens in one surface: fixed blocks, or draws from a population (
     y = X\beta + Zu + e, \qquad u \sim N(0, \sigma_u^2 I), \quad e \sim N(0, \sigma^2 I), \qquad
     V = \sigma^2 (I + \gamma Z Z^T)
 
-Fixed blocks say what these specimens do; random ones what the next specimen of the line will,
-with the scatter between specimens in the uncertainty of the mean.
+Fixed blocks describe these specimens; random blocks predict the next specimen of the line, with
+the scatter between specimens included in the uncertainty of the mean.
 
 References
 ----------
@@ -40,7 +40,7 @@ _SINGULAR = 1e-9
 @dataclass(frozen=True)
 @read_only_arrays
 class _RandomIntercept:
-    """Surfaces with one random level a block."""
+    """Surfaces with one random level per block."""
 
     coefficient: Floats
     covariance_factor: Floats
@@ -54,7 +54,7 @@ class _RandomIntercept:
 
 
 def block_columns(labels: Sequence[str]) -> tuple[tuple[str, ...], Integers, Floats]:
-    """Columns of fixed blocks that leave the mean the mean over the blocks.
+    """Columns for fixed blocks that keep the mean equal to the mean over the blocks.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def block_columns(labels: Sequence[str]) -> tuple[tuple[str, ...], Integers, Flo
     index : ndarray of int, shape (n_runs,)
         Block of each run. [1]
     columns : ndarray, shape (n_runs, n_blocks - 1)
-        1 in a block, -1 in the last one: effects add up to nil. [1]
+        1 in a block, -1 in the last one: effects add up to zero. [1]
 
     Raises
     ------
@@ -77,7 +77,7 @@ def block_columns(labels: Sequence[str]) -> tuple[tuple[str, ...], Integers, Flo
 
     Notes
     -----
-    Each block counts the same in the mean, whatever its number of runs.
+    Each block has the same weight in the mean, whatever its number of runs.
 
     Examples
     --------
@@ -100,17 +100,17 @@ def block_columns(labels: Sequence[str]) -> tuple[tuple[str, ...], Integers, Flo
 def _fit_random_intercept(
     matrix: ArrayLike, responses: ArrayLike, *, block: Integers
 ) -> _RandomIntercept:
-    """Restricted maximum likelihood of surfaces with one random level a block.
+    """Restricted maximum likelihood for surfaces with one random level per block.
 
     Notes
     -----
-    Source: [1]_.  The ratio of the two variances is that of the largest restricted likelihood,
-    nil among them; the surface is that of generalized least squares with it.  Degrees of freedom
-    as [2]_.  A block's own answer to a factor (its slope) is not modelled: it is in sigma.
+    Source: [1]_.  The ratio of the two variances maximises the restricted likelihood, and may be
+    zero; the surface is the generalized least squares fit with that ratio.  Degrees of freedom
+    as in [2]_.  A block's own response to a factor (its slope) is not modelled: it is in sigma.
 
     Examples
     --------
-    Two blocks of two runs, balanced: the variance between is that of the analysis of
+    Two blocks of two runs, balanced: the variance between blocks equals that of the analysis of
     variance, (MS_between - MS_within) / 2 = (16 - 1) / 2.
 
     >>> fit = _fit_random_intercept(np.ones((4, 1)), [[1.0, 1.0 + 2**0.5, 5.0, 5.0 + 2**0.5]],
@@ -139,7 +139,7 @@ def _fit_random_intercept(
         if len(part) <= n_columns or is_singular(part):
             continue
         rank = np.linalg.matrix_rank(np.hstack([part, of_block]))
-        # levels that the terms take up have no scatter of their own
+        # levels that the terms absorb have no scatter of their own
         ratio[row] = ratio_of_variances(response, part, block[used]) if rank > n_columns else 0.0
         found = regress(response, part, np.eye(len(part)) + ratio[row] * of_block @ of_block.T)
         coefficient[row], factor[row] = found.params, found.normalized_cov_params
@@ -159,7 +159,7 @@ def _fit_random_intercept(
 
 
 def _is_between(columns: Floats, member: Floats) -> Bools:
-    """Columns without motion inside any block."""
+    """Columns that are constant inside every block."""
     mean = (member.T @ columns) / np.maximum(member.sum(axis=0), 1)[:, None]
     return np.asarray(np.abs(columns - member @ mean).max(axis=0) < _SINGULAR)
 
@@ -179,7 +179,7 @@ class _Estimates:
 
 
 def fixed_estimates(fit: LeastSquares, column: Integers, t: Floats, p_value: Floats) -> _Estimates:
-    """Least squares in printed order."""
+    """Least squares estimates in printed order."""
     freedom = np.where(fit.degrees_of_freedom > 0, fit.degrees_of_freedom, np.nan)
     return _Estimates(
         fit.coefficient[:, column],
@@ -202,10 +202,10 @@ def with_blocks(
     index: Integers,
     treatment: Literal["fixed", "random"],
 ) -> tuple[_Estimates, BlockEffects]:
-    """Estimates as the treatment of the blocks wants them, and the blocks' own levels."""
+    """Estimates for the chosen treatment of the blocks, and the blocks' own levels."""
     n_responses = len(values)
     if treatment == "fixed":
-        # level of each block's runs above the surface: also where a response misses a block
+        # level of each block's runs above the surface, also where a response lacks a block
         above = values - fixed.coefficient @ np.nan_to_num(surface).T
         member = (index == np.arange(len(names))[:, None]) & np.isfinite(values)[:, None]
         count = member.sum(axis=2)
@@ -240,7 +240,7 @@ def with_blocks(
 def deviations(
     found: _Estimates, exponents: Integers, low: ArrayLike, high: ArrayLike
 ) -> tuple[Floats, Floats, Floats]:
-    """Standard uncertainties of coded and of engineering coefficients, and the way between."""
+    """Standard uncertainties of coded and engineering coefficients, and the matrix between them."""
     factor = found.covariance_factor
     to_engineering = engineering_matrix(exponents, low=low, high=high)
     rows = np.broadcast_to(to_engineering, factor.shape)

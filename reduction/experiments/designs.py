@@ -3,7 +3,7 @@ r"""Designs, their terms, coded units and levels.
 **Designs as published: Box-Behnken for 3 to 7 factors, Plackett-Burman of 12, 20 and 24 runs.** A
 row is a run, a column a factor, coded -1, 0, +1.
 
-**Terms of the quadratic surface in the printed order, and the matrices that stand on them.** For
+**Terms of the quadratic surface in the printed order, and the matrices built on them.** For
 the factors :math:`X_1 .. X_k` in coded units,
 
 .. math::
@@ -11,16 +11,16 @@ the factors :math:`X_1 .. X_k` in coded units,
     y = B_1 + \sum_j B_{1+j} X_j^2 + \sum_j B_{1+k+j} X_j
         + \sum_{i<j} B_{..} X_i X_j
 
-With frequency, mean tension and tension amplitude that is B1..B10 of [3]_, eq. 5: the mean,
-the squares, the linear terms, then f Tm, f dT and Tm dT.  The squares stand before the linear
-terms; other programs print them last.  As printed, eq. 5a sets the physical factors beside the
+With frequency, mean tension and tension amplitude these are B1..B10 of [3]_, eq. 5: the mean,
+the squares, the linear terms, then f Tm, f dT and Tm dT.  The squares precede the linear
+terms; other programs print them last.  As printed, eq. 5a uses the physical factors with the
 coefficients of the coded ones; as computed, a coefficient belongs to the units it was found in.
 
-**Coded and engineering units, and what a change between them does to a surface**:
+**Coded and engineering units, and the effect of a change between them on a surface**:
 
 .. math:: X = \frac{x - (x_{high} + x_{low}) / 2}{(x_{high} - x_{low}) / 2}
 
-**Levels of the factors of an experiment, and what each run is to be set to.** A level is in SI, a
+**Levels of the factors of an experiment, and settings of each run.** A level is in SI, a
 fraction of the rated break strength, or (an amplitude) a fraction of the run's mean tension.
 
 References
@@ -80,7 +80,7 @@ class Design:
     coded : ndarray, shape (n_runs, n_factors)
         Coded level of each factor: -1, 0 or +1. [1]
     dummy : ndarray, shape (n_runs, n_dummy)
-        Columns of a Plackett-Burman design that no factor uses: what they show is
+        Columns of a Plackett-Burman design that no factor uses; they show only
         error. [1]
     """
 
@@ -125,13 +125,13 @@ def box_behnken(n_factors: int, *, n_centre: int | None = None) -> Design:
     Up to five factors move in pairs; six and seven in the triples of [1]_, which takes
     48 and 56 edge runs where all pairs would take 60 and 84.  The published blocks
     (three of nine runs for four factors, two for five and more) are not laid out.
-    The design is not rotatable but for four and seven factors: the variance of the
+    The design is not rotatable except for four and seven factors: the variance of the
     fitted response depends on the direction from the centre, see
     `reduction.experiments.run_sheet`.
 
     Examples
     --------
-    The fifteen runs of [2]_.
+    The fifteen runs of [2]_:
 
     >>> box_behnken(3).n_runs
     15
@@ -187,12 +187,12 @@ def plackett_burman(n_factors: int, *, n_runs: int | None = None) -> Design:
 
     Notes
     -----
-    Every column is orthogonal to every other and half high, half low.  Two-factor
-    interactions fall on the main effects in part (`confounding.alias_matrix`).
+    Every column is orthogonal to every other, and half high, half low.  Two-factor
+    interactions are partly aliased with the main effects (`reduction.experiments.screening.alias_matrix`).
 
     Examples
     --------
-    Five factors in twelve runs leave six dummies, as in Appendix A of [2]_.
+    Five factors in twelve runs leave six dummies, as in Appendix A of [2]_:
 
     >>> design = plackett_burman(5)
     >>> design.coded.shape, design.dummy.shape
@@ -244,7 +244,7 @@ def quadratic_exponents(n_factors: int) -> Integers:
 
     Notes
     -----
-    Source: [1]_, eq. 5.  There are (k + 1)(k + 2) / 2 terms.
+    Source: [3]_, eq. 5.  There are (k + 1)(k + 2) / 2 terms.
 
     Examples
     --------
@@ -277,12 +277,12 @@ def term_kinds(exponents: Integers) -> tuple[str, ...]:
 
 
 def term_names(exponents: Integers, factor_names: Sequence[str]) -> tuple[str, ...]:
-    """Names of the terms, made of the names of the factors.
+    """Names of the terms, composed of the names of the factors.
 
     Parameters
     ----------
     exponents : ndarray of int, shape (n_terms, n_factors)
-        As `quadratic_exponents` gives them. [1]
+        As from `quadratic_exponents`. [1]
     factor_names : sequence of str, length n_factors
         In the order of the columns.
 
@@ -294,7 +294,7 @@ def term_names(exponents: Integers, factor_names: Sequence[str]) -> tuple[str, .
     Raises
     ------
     SettingsError
-        If the names do not pair up with the factors, or one stands twice.
+        If the names do not pair up with the factors, or one is repeated.
 
     Examples
     --------
@@ -338,7 +338,7 @@ def model_matrix(coded: ArrayLike, exponents: Integers) -> Floats:
     Raises
     ------
     DataError
-        If a point is not finite, or has another number of factors.
+        If a point is not finite, or has a different number of factors.
 
     Examples
     --------
@@ -362,7 +362,7 @@ def gradient_matrix(coded: ArrayLike, exponents: Integers) -> Floats:
 
     Examples
     --------
-    Of 1, X^2 and X at X = 3:
+    Derivatives of 1, X^2 and X at X = 3:
 
     >>> print(gradient_matrix([3.0], quadratic_exponents(1)))
     [[0. 6. 1.]]
@@ -387,7 +387,7 @@ def _points(coded: ArrayLike, exponents: Integers) -> Floats:
 
 
 def coded_from_engineering(levels: ArrayLike, *, low: ArrayLike, high: ArrayLike) -> Floats:
-    r"""Levels on the scale where the low one is -1 and the high one +1.
+    r"""Levels on the scale where the low one is -1 and the high one is +1.
 
     .. math:: X = \frac{x - (x_{high} + x_{low}) / 2}{(x_{high} - x_{low}) / 2}
 
@@ -461,7 +461,7 @@ def engineering_from_coded(coded: ArrayLike, *, low: ArrayLike, high: ArrayLike)
 
 
 def engineering_matrix(exponents: Integers, *, low: ArrayLike, high: ArrayLike) -> Floats:
-    r"""Matrix that takes the coefficients of coded factors to those of the factors themselves.
+    r"""Matrix that converts coefficients of coded factors to those of the factors themselves.
 
     With centre :math:`c` and half range :math:`h` of each factor,
 
@@ -489,7 +489,7 @@ def engineering_matrix(exponents: Integers, *, low: ArrayLike, high: ArrayLike) 
     Notes
     -----
     A coefficient in engineering units mixes several coded ones, so that its uncertainty needs
-    the whole covariance; the errors of the engineering coefficients are close to dependent.
+    the whole covariance; the errors of the engineering coefficients are almost collinear.
 
     Examples
     --------
@@ -536,7 +536,7 @@ ABOVE_ZERO = ("frequency", *LOADS)
 
 @dataclass(frozen=True)
 class FactorLevels:
-    """Low and high level of one factor; the centre is half way.
+    """Low and high level of one factor; the centre is half way between.
 
     Parameters
     ----------
@@ -546,8 +546,8 @@ class FactorLevels:
         Levels at -1 and +1: in SI, or the fraction that ``basis`` names.
     basis : str
         ``absolute``: SI; ``rated_break_strength``: a fraction of it, so 12 % is 0.12;
-        ``mean_tension``: a fraction of the mean tension of the same run, for
-        ``tension_amplitude`` alone. [1]
+        ``mean_tension``: a fraction of the mean tension of the same run, only for
+        ``tension_amplitude``. [1]
     """
 
     name: str
@@ -610,7 +610,7 @@ def engineering_levels(
     *,
     rated_break_strength: ArrayLike | None = None,
 ) -> Floats:
-    r"""What each run is set to, in SI.
+    r"""Settings of each run, in SI.
 
     .. math:: \text{level} = \frac{h + l}{2} + X\,\frac{h - l}{2}
 
@@ -621,19 +621,19 @@ def engineering_levels(
     factors : tuple of FactorLevels, length n_factors
         In the order of the columns.
     rated_break_strength : array_like, shape () or (n_runs,), optional
-        Needed where a factor is a fraction of it; one a run where the line differs
+        Needed where a factor is a fraction of it; one value per run where the line differs
         from run to run (two diameters in one screening). [N]
 
     Returns
     -------
     levels : ndarray, shape (n_runs, n_factors)
-        Levels of each run in SI; a fraction has become a tension. [SI unit of each factor]
+        Levels of each run in SI; fractions are converted to tensions. [SI unit of each factor]
 
     Raises
     ------
     SettingsError
-        If the factors do not fit the design or stand twice, or a fraction has nothing
-        that it is a fraction of.
+        If the factors do not fit the design or are repeated, or the reference of a fraction
+        is missing.
     DataError
         If the coded levels or the break strength are not finite numbers, or do not fit.
 
@@ -641,11 +641,11 @@ def engineering_levels(
     -----
     Source: [5]_, Appendix C, solved for the level.  With the amplitude as a fraction of
     the mean tension no run reaches zero tension, but the amplitude in newtons is then a
-    product of two factors: a surface is to be fitted in the fraction.
+    product of two factors: fit a surface in the fraction.
 
     Examples
     --------
-    Nylon double braid 1/2 in of [5]_, break strength 6400 lb: 768 to 1920 lb, mean 1344.
+    Nylon double braid 1/2 in of [5]_, break strength 6400 lb: 768 to 1920 lb, mean 1344:
 
     >>> mean = FactorLevels("mean_tension", 0.12, 0.30, "rated_break_strength")
     >>> print(engineering_levels([[-1.0], [0.0], [1.0]], (mean,), rated_break_strength=6400)[:, 0])

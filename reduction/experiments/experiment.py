@@ -1,7 +1,7 @@
 """An experiment: runs as they were done, and the surfaces or effects over them.
 
-`reduction.experiments.experiment_fit` makes it from the runs' products, `reduction.archive` stores
-it; neither knows the other.
+`reduction.experiments.experiment_fit` makes it from the runs' products and `reduction.archive`
+stores it; neither knows the other.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from reduction.stages.three_parameter_line.line_model import SingleTimeCheck
 @dataclass(frozen=True)
 @read_only_arrays
 class RunTable:
-    """One row a run and specimen, as measured.
+    """One row per run and specimen, as measured.
 
     Parameters
     ----------
@@ -47,13 +47,13 @@ class RunTable:
     rated_break_strength : ndarray, shape (n_runs,)
         Of the specimen; NaN where not stated. [N]
     remark : tuple of str, length n_runs
-        Why a run has no number, and what its cycles do to the model; semicolons between several.
+        Why a run has no number, and how its cycles affect the model; semicolons between several.
     shared : Contributions or None
-        Of errors that runs share, to responses and levels by name, shape (n_components, n_runs);
-        None where nothing is known of any.
+        Contributions of errors that runs share to responses and levels, by name, shape
+        (n_components, n_runs); None where none is known.
     response_whole_uncertainty : ndarray or None, shape (n_responses, n_runs)
-        Standard uncertainty of all errors as each run states it: of K_1 and tau by Monte Carlo
-        where they are not linear in their errors. None, or NaN, where it is the root of the sum of
+        Standard uncertainty from all errors as each run states it: for K_1 and tau by Monte Carlo
+        where they are not linear in their errors. None or NaN where it is the root of the sum of
         squares of both parts. [SI unit of each response]
     """
 
@@ -74,7 +74,7 @@ class RunTable:
     response_whole_uncertainty: Floats | None = None
 
     def __post_init__(self) -> None:
-        """Check that every column has one entry a run, and make the arrays read-only."""
+        """Check that every column has one entry per run, and make the arrays read-only."""
         n_runs = len(self.run)
         columns = {
             "specimen": len(self.specimen),
@@ -108,7 +108,7 @@ class SharedSurfaces:
     component : tuple of Component, length n_components
         Each error.
     coefficient, coefficient_engineering : ndarray, shape (n_components, n_responses, n_terms)
-        Signed, of one standard uncertainty of the error. [as the coefficients of the surfaces]
+        Signed, for one standard uncertainty of the error. [as the coefficients of the surfaces]
     """
 
     component: tuple[Component, ...]
@@ -119,7 +119,7 @@ class SharedSurfaces:
 @dataclass(frozen=True)
 @read_only_arrays
 class ExperimentResult:
-    """What the runs of one experiment say together.
+    """What the runs of one experiment show together.
 
     Parameters
     ----------
@@ -130,34 +130,34 @@ class ExperimentResult:
     low, high : ndarray, shape (n_factors,)
         Levels that are -1 and +1. [SI unit of each factor]
     response_names : tuple of str, length n_responses
-        Of ``runs.response``.
+        Names of the rows of ``runs.response``.
     runs : RunTable
         In the order of the campaign.
     surfaces : ResponseSurfaces or None
-        Of every response as measured, and after them of each transformed one, whose name is
+        Of every response as measured, followed by each transformed one, which is named
         ``log_`` or ``box_cox_`` and the response; None where none could be fitted.
     screening : ScreeningEffects or None
-        Effects of a Plackett-Burman design, of every response.
+        Effects of a Plackett-Burman design on every response.
     stiffness_forms : tuple of StiffnessForm
         Forms of mooring codes, fitted to the apparent spring constant of the same runs.
     form_quality : FormQuality or None
-        Those forms against the quadratic surface.
+        Quality of those forms compared with the quadratic surface.
     single_time : SingleTimeCheck or None
-        Whether one relaxation time holds over frequency.
+        Whether one relaxation time holds across frequency.
     derived_dissipation_spring_constant, derived_relaxation_time : ndarray, shape (n_runs,)
-        K_1 and tau from surfaces of E' and E'' at the levels of each run, beside those of its
-        own loops; NaN where refused. [N], [s]
+        K_1 and tau from surfaces of E' and E'' at the levels of each run, for comparison with
+        those of its own loops; NaN where refused. [N], [s]
     reduced : ReducedSurfaces or None
-        Subsets of the terms of ``surfaces``, where they were asked for.
+        Subsets of the terms of ``surfaces``, where requested.
     cautions : tuple of Caution
         Of the runs as reached.
     notes : tuple of Note
-        What a reader of the numbers has to know.
+        What a reader of the numbers needs to know.
     refusal_status : int
-        Exit status of the error for which there are neither surfaces nor effects; 0 where
-        there are.
+        Exit status of the error that left neither surfaces nor effects; 0 where
+        there are any.
     shared : SharedSurfaces or None
-        Of ``surfaces``; None where the runs share nothing that is known.
+        Of ``surfaces``; None where no shared error is known.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""Checks the runs of an experiment, and fits its response surfaces."""
+"""Checks of the runs of an experiment, and fits of its response surfaces."""
 
 from __future__ import annotations
 
@@ -57,13 +57,13 @@ _OF_ORDER = ("pure-error-excludes-drift", "order-confounded")
 
 
 def _listed(words: Sequence[str], *, most: int = 5, between: str = ", ") -> str:
-    """The first of several, and how many more."""
+    """The first few of several words, and the number of the others."""
     more = f" and {len(words) - most} more" if len(words) > most else ""
     return between.join(words[:most]) + more
 
 
 def _remarks_of_runs(runs: RunTable) -> list[Note]:
-    """One note a remark, with the runs that have it."""
+    """One note for each remark, with the runs that have it."""
     of_remark: dict[Note, list[str]] = {}
     for run, remarks in zip(runs.names, runs.remarks, strict=True):
         for remark in remarks:
@@ -74,7 +74,7 @@ def _remarks_of_runs(runs: RunTable) -> list[Note]:
 def _levels_off_plan(
     runs: RunTable, coded: Floats, names: Sequence[str], *, code: str, noted: float
 ) -> list[Note]:
-    """A note where runs strayed from the plan; `DataError` where they are not those of it."""
+    """A note where runs strayed from the plan; `DataError` where they belong to another plan."""
     given = {"run_names": runs.names, "factor_names": names}
     plan = runs.coded_plan[:, : len(names)]
     wrong = levels_off_plan(coded, plan, beyond=NOT_OF_PLAN, **given)
@@ -93,7 +93,7 @@ def _levels_off_plan(
 def _missing_surfaces(
     runs: RunTable, surfaces: ResponseSurfaces, response_names: Sequence[str]
 ) -> list[Note]:
-    """What has no surface, with what the runs say of it; one note where runs miss alike."""
+    """Responses without a surface, with the remarks of the runs; one note for equal causes."""
     alike: dict[tuple[int, bytes], list[int]] = {}
     for row in range(len(response_names)):
         reason = int(surfaces.reason[row])
@@ -118,7 +118,7 @@ def _missing_surfaces(
 
 
 def _causes(runs: RunTable, chosen: Bools) -> str:
-    """Reasons of the runs that are chosen, which stand first in their remarks, by frequency."""
+    """Main reasons of the chosen runs, which are first in their remarks, by frequency."""
     reasons = [str(one) for row in np.flatnonzero(chosen) for one in runs.remarks[row][:1]]
     often = sorted(set(reasons), key=lambda text: (-reasons.count(text), text))
     said = [f"{text} ({reasons.count(text)} of them)" for text in often[:2]]
@@ -139,9 +139,9 @@ def _places_in_order(runs: RunTable, run_order: ArrayLike | None) -> Floats:
 def _cautions_of_runs(
     runs: RunTable, factors: tuple[FactorLevels, ...], run_order: ArrayLike | None
 ) -> tuple[Caution, ...]:
-    """What a run sheet of the runs as they were reached would warn of, specimen by specimen.
+    """Warnings of a run sheet made from the runs as they were reached, specimen by specimen.
 
-    Specimens that are pulled in one run are one line of the sheet, by the worst of them.
+    Specimens that are pulled in one run are one line of the sheet, with the worst of them.
     """
     known = np.isfinite(runs.level).all(axis=1) & np.isfinite(runs.peak_tension)
     rows_of: dict[str, list[int]] = {}
@@ -173,7 +173,7 @@ def _cautions_of_runs(
 def _sheet(
     runs: RunTable, factors: tuple[FactorLevels, ...], rows: Sequence[list[int]]
 ) -> RunSheet:
-    """One line a run, numbered by its first row from 1."""
+    """One line for each run, numbered by its first row from 1."""
     first: Integers = np.array([group[0] for group in rows])
 
     def each(values: Floats, how: np.ufunc | None = None) -> Floats:
@@ -196,12 +196,12 @@ def _sheet(
 
 
 REFUSALS = (DataError, FitError, SettingsError)
-"""What makes a part of an experiment a note in place of a result."""
+"""Errors that turn a part of an experiment into a note instead of a result."""
 
 
 @dataclass(frozen=True)
 class LineOfRuns:
-    """What derives K_1 and tau from surfaces of E' and E'', one entry a run. [N]."""
+    """Inputs for K_1 and tau from surfaces of E' and E'', one entry per run. [N]."""
 
     storage_spring_constant: Floats
     loss_spring_constant: Floats
@@ -209,14 +209,14 @@ class LineOfRuns:
 
 
 def _specimen_blocks(runs: RunTable) -> tuple[str, ...] | None:
-    """Specimen of each run, where there are several."""
+    """Specimen of each run, if there are several."""
     return runs.specimen if len(set(runs.specimen)) > 1 else None
 
 
 def _stiffness_of_runs(
     runs: RunTable, surfaces: ResponseSurfaces, response_names: Sequence[str]
 ) -> tuple[tuple[StiffnessForm, ...], FormQuality | None, list[Note]]:
-    """Forms that mooring codes ask for, fitted to the apparent spring constant."""
+    """Forms required by mooring codes, fitted to the apparent spring constant."""
     if "apparent_spring_constant" not in response_names:
         return (), None, []
     spring = runs.response[response_names.index("apparent_spring_constant")]
@@ -266,7 +266,7 @@ def _derived_line(
     except REFUSALS as error:
         return (missing, missing), [note("no-derived-line", reason=str(error))]
     known = np.isfinite(runs.level).all(axis=1)
-    # with the level of the specimen of each run, as its own K_0 is taken off
+    # with the level of the specimen of each run, since its own K_0 is subtracted
     storage, loss = smooth.fitted[0], np.exp(smooth.fitted[1])
     if smooth.blocks is not None:
         known &= np.isfinite(smooth.blocks.effect[:, smooth.blocks.index]).all(axis=0)
@@ -284,7 +284,7 @@ def _derived_line(
 def _single_time_of_runs(
     runs: RunTable, coded: Floats, frequency: int, response_names: Sequence[str], line: LineOfRuns
 ) -> tuple[SingleTimeCheck | None, list[Note]]:
-    """Whether one relaxation time holds: runs at equal loads, as reached, are compared."""
+    """Test for a single relaxation time: runs at equal loads, as reached, are compared."""
     place = response_names.index("relaxation_time")
     time = runs.response[place]
     used = np.isfinite(time) & np.isfinite(coded).all(axis=1)
@@ -325,7 +325,7 @@ def fit_experiment(
     term_reduction: Literal["none", "aicc"] = "none",
     run_order: ArrayLike | None = None,
 ) -> ExperimentResult:
-    """Everything that the runs of one experiment say together."""
+    """All results from the runs of one experiment."""
     low, high = (np.array([getattr(one, end) for one in factors]) for end in ("low", "high"))
     notes = _remarks_of_runs(runs)
     coded = coded_from_engineering(runs.level, low=low, high=high)
@@ -400,7 +400,7 @@ def fit_experiment(
 def _screening(
     runs: RunTable, coded: Floats, names: tuple[str, ...], response_names: tuple[str, ...]
 ) -> tuple[ScreeningEffects, list[Note]]:
-    """Effects by the plan, where the runs kept to it."""
+    """Effects by the plan, if the runs kept to it."""
     notes = _levels_off_plan(
         runs, coded, names, code="screening-levels-off-plan", noted=_OFF_SCREENING
     )
@@ -429,10 +429,10 @@ def _screening(
 
 
 _LOGARITHMIC = ("hysteresis_energy", "relaxation_time")
-"""Above zero by nature and spread over decades: fitted as logarithms, unless the runs object."""
+"""Positive by nature and spread over decades: fitted as logarithms, unless the runs object."""
 
 _OBJECTS = 0.05
-"""Probability of a ratio of variances from which the runs object to a scale."""
+"""Probability of a ratio of variances at which the runs reject a scale."""
 
 
 def _scales(
@@ -443,13 +443,13 @@ def _scales(
     response_names: tuple[str, ...],
     stated: Mapping[str, str],
 ) -> tuple[dict[str, str], list[Note]]:
-    """Scale of each response: the stated one, else the usual one unless the runs object to it.
+    """Scale of each response: the stated one, else the usual one unless the runs reject it.
 
     Scatter about a surface of logarithms is compared with that about a surface as measured over
-    the geometric mean of the runs (Box and Cox): where the usual scale has so much more that a
-    ratio of two variances of equal degrees of freedom would be as large in one case of twenty, the
-    other scale is taken.  A time is fitted as product with the frequency where a quadratic may miss
-    less of that (`_with_frequency`).
+    the geometric mean of the runs (Box and Cox).  The other scale is used where the usual one has
+    so much more scatter that a ratio of two variances of equal degrees of freedom would be as large
+    in one case of twenty.  A time is fitted as product with the frequency where a quadratic then
+    has a smaller misfit (`_with_frequency`).
     """
     scales = dict(stated)
     notes: list[Note] = []
@@ -492,7 +492,7 @@ def _scales(
 
 
 _TIMES = ("relaxation_time", "dashpot_coefficient")
-"""Fall as 1/f where the loss angle is constant."""
+"""Responses that fall as 1/f where the loss angle is constant."""
 
 
 def _with_frequency(
@@ -503,11 +503,11 @@ def _with_frequency(
     response_names: tuple[str, ...],
     times: list[str],
 ) -> dict[str, str]:
-    """Responses that are fitted as products with the frequency: where a quadratic misses less.
+    """Responses that are fitted as products with the frequency, where the misfit is then smaller.
 
-    Three levels of the frequency carry the logarithm of a power of it without residuals, whatever
-    its exponent, so that scatter cannot choose: what may be missed between the levels does, as the
-    root mean square of the discrepancy over a grid of the tested range.
+    Three levels of the frequency fit the logarithm of a power of it without residuals, whatever
+    its exponent, so that scatter cannot decide.  The decision is by the possible misfit between the
+    levels: the root mean square of the discrepancy over a grid of the tested range.
     """
     on_log: Transform = "log"
     on_product: Transform = "log-times-frequency"
@@ -532,7 +532,7 @@ def _surfaces(
     transform: Mapping[str, str],
     specimens_as: Literal["blocks", "random"],
 ) -> ResponseSurfaces:
-    """Surfaces of every response, and after them of each that is asked for on another scale."""
+    """Surfaces of every response, then of each one required on another scale."""
     bent = [
         (f"{prefix}{one}", scale, index)
         for index, one in enumerate(response_names)

@@ -1,9 +1,9 @@
-"""What a fit of response surfaces returns.
+"""Results of a fit of response surfaces.
 
-**What fitting of response surfaces hands on.** Axes: ``n_responses`` surfaces over the same
+**Structure of the results.** Axes: ``n_responses`` surfaces over the same
 ``n_runs`` runs, ``n_terms`` terms in the printed order, ``n_factors`` factors.  Responses that miss
-the same runs share a *pattern*: leverage and covariance factor belong to it, and ``pattern`` says
-which one a response has.  The unit of a coefficient in coded units is that of its response.
+the same runs share a *pattern*: leverage and covariance factor belong to it, and ``pattern`` gives
+that of each response.  The unit of a coefficient in coded units is that of its response.
 """
 
 from __future__ import annotations
@@ -34,9 +34,9 @@ class Anova:
     sum_of_squares, mean_square : ndarray, shape (n_responses, n_sources)
         [unit of the response, squared]
     f, p_value : ndarray, shape (n_responses, n_sources)
-        Against ``error_term``; NaN for residuals, pure error and total. [1]
+        Tested against ``error_term``; NaN for residuals, pure error and total. [1]
     error_term : tuple of str, length n_sources
-        What each source is tested against, empty where it is not tested.
+        Error term against which each source is tested; empty where it is not tested.
     """
 
     source: tuple[str, ...]
@@ -51,7 +51,7 @@ class Anova:
 @dataclass(frozen=True)
 @read_only_arrays
 class LackOfFit:
-    """Scatter about the surface against scatter of repeated runs; arrays (n_responses,).
+    """Scatter about the surface compared with scatter of repeated runs; arrays (n_responses,).
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ class LackOfFit:
     reason : ndarray of int8
         0, or a key of `reduction.experiments.fit_results.LACK_OF_FIT_REASONS`.
     cell : ndarray of int, shape (n_runs,)
-        Runs with one number count as repeats of each other; -1 where a run has no levels.
+        Runs with the same number count as repeats of each other; -1 for a run without levels.
     tolerance : float
         Largest difference of coded levels within a cell. [1]
     """
@@ -92,21 +92,21 @@ class Canonical:
     stationary_point_engineering : ndarray, shape (n_responses, n_factors)
         [SI unit of each factor]
     stationary_point_standard_uncertainty : ndarray, shape (n_responses, n_factors)
-        Coded, first order in the coefficients: too small where an eigenvalue is not clear of
-        zero. [1]
+        Coded, first order in the coefficients: too small where an eigenvalue is not clearly
+        different from zero. [1]
     stationary_value : ndarray, shape (n_responses,)
-        Of the surface there. [unit of the response]
+        Value of the surface there. [unit of the response]
     eigenvalue : ndarray, shape (n_responses, n_factors)
-        Falling. [unit of the response]
+        In falling order. [unit of the response]
     eigenvalue_standard_uncertainty : ndarray, shape (n_responses, n_factors)
-        First order. [unit of the response]
+        To first order. [unit of the response]
     eigenvector : ndarray, shape (n_responses, n_factors, n_factors)
         Column j belongs to eigenvalue j; its largest component is positive. [1]
     kind : ndarray of int8, shape (n_responses,)
-        Key of `reduction.experiments.fit_results.STATIONARY_KINDS`, by the signs of the
-        eigenvalues alone.
+        Key of `reduction.experiments.fit_results.STATIONARY_KINDS`, only by the signs of the
+        eigenvalues.
     is_inside : ndarray of bool, shape (n_responses,)
-        The stationary point lies between the low and high levels.
+        True if the stationary point is between the low and high levels.
     reason : ndarray of int8, shape (n_responses,)
         0, or a key of `reduction.experiments.fit_results.STATIONARY_REASONS`.
     """
@@ -126,20 +126,20 @@ class Canonical:
 @dataclass(frozen=True)
 @read_only_arrays
 class Diagnostics:
-    """Residuals of each run, looked at; shape (n_responses, n_runs) unless said.
+    """Diagnostics of the residual of each run; shape (n_responses, n_runs) unless stated.
 
     Parameters
     ----------
     leverage : ndarray
-        Share of a run's own value in its fitted one. [1]
+        Weight of a run's own value in its fitted one. [1]
     cooks_distance : ndarray
-        Shift of the whole surface if the run were left out. [1]
+        Shift of the whole surface without the run. [1]
     studentized_residual : ndarray
         Residual over its own standard deviation. [1]
     deleted_residual : ndarray
-        The same with the scatter found without the run: Student's t. [1]
+        The same with the scatter estimated without the run: Student's t. [1]
     probability_plot_correlation : ndarray, shape (n_responses,)
-        Of the ordered studentized residuals with normal scores, squared. [1]
+        Correlation of the ordered studentized residuals with normal scores, squared. [1]
     """
 
     leverage: Floats
@@ -163,12 +163,12 @@ class BlockEffects:
     treatment : str
         ``fixed`` or ``random``.
     effect : ndarray, shape (n_responses, n_blocks)
-        Above the mean over the blocks; predicted (shrunk) where random; NaN for a block in
+        Difference from the mean over the blocks; predicted (shrunk) if random; NaN for a block in
         which the response has no value. [unit of the response]
     standard_deviation : ndarray, shape (n_responses,)
         Between blocks, by REML; NaN where fixed. [unit of the response]
     at_boundary : ndarray of bool, shape (n_responses,)
-        The scatter between blocks is no larger than that within explains; False where fixed.
+        True if the scatter within blocks explains that between them; False if fixed.
     """
 
     names: tuple[str, ...]
@@ -191,13 +191,13 @@ FIT_REASONS: dict[int, str] = {
 """1, 2 and 6: no surface.  3: a surface without uncertainty.  4 and 5: without tests of it."""
 
 NO_SURFACE = (1, 2, 6)
-"""Keys of `FIT_REASONS` of which there is no surface."""
+"""Keys of `FIT_REASONS` for which there is no surface."""
 
 
 @dataclass(frozen=True)
 @read_only_arrays
 class LeastSquares:
-    """Batched least squares of many responses on one matrix; the baseline columns stand first.
+    """Batched least squares of many responses on one matrix; the baseline columns come first.
 
     Parameters
     ----------
@@ -210,16 +210,16 @@ class LeastSquares:
     is_used : ndarray of bool, shape (n_patterns, n_runs)
         Runs with a value.
     pattern : ndarray of int, shape (n_responses,)
-        Row of the three above.
+        Row of the three above for each response.
     fitted, residual : ndarray, shape (n_responses, n_runs)
         Residuals are NaN where a run is missing. [unit of the response]
     residual_sum_of_squares, total_sum_of_squares : ndarray, shape (n_responses,)
         The total is about the baseline. [unit of the response, squared]
     prediction_sum_of_squares : ndarray, shape (n_responses,)
-        PRESS: of each run predicted from the others; NaN where a run alone fixes a term.
+        PRESS: each run predicted from the others; NaN where a run alone determines a term.
         [unit of the response, squared]
     degrees_of_freedom : ndarray of int, shape (n_responses,)
-        Runs less columns. [1]
+        Number of runs less columns. [1]
     reason : ndarray of int8, shape (n_responses,)
         0, or a key of `FIT_REASONS`.
     """
@@ -275,31 +275,31 @@ class ResponseSurfaces:
     factor_names : tuple of str, length n_factors
     run_names : tuple of str, length n_runs
     low, high : ndarray, shape (n_factors,)
-        Levels that are -1 and +1. [SI unit of each factor]
+        Levels coded -1 and +1. [SI unit of each factor]
     coded : ndarray, shape (n_runs, n_factors)
-        As fitted. [1]
+        Levels as fitted. [1]
     exponents : ndarray of int, shape (n_terms, n_factors)
         Power of each factor in each term.
     term_names : tuple of str, length n_terms
         B1, B2, .. in printed order: mean, squares, linear terms, interactions.
     transform : tuple of str, length n_responses
         ``none``, ``log``, ``box-cox`` or ``log-times-frequency`` (the logarithm of the product
-        of the frequency and the response): everything below is of the transformed response.
+        of the frequency and the response): everything below is for the transformed response.
     transform_exponent : ndarray, shape (n_responses,)
-        Of Box and Cox; 1 for none, 0 for a logarithm. [1]
+        Exponent of Box and Cox; 1 for none, 0 for a logarithm. [1]
     transform_exponent_interval : ndarray, shape (n_responses, 2)
-        By profile likelihood; NaN where the exponent was not found from the runs. [1]
+        By profile likelihood; NaN where the exponent was not fitted to the runs. [1]
     coefficient, coefficient_standard_uncertainty : ndarray, shape (n_responses, n_terms)
-        Coded units. [unit of the response]
+        In coded units. [unit of the response]
     t, p_value : ndarray, shape (n_responses, n_terms)
-        Of no effect, two-sided, with ``term_degrees_of_freedom``. [1]
+        For no effect, two-sided, with ``term_degrees_of_freedom``. [1]
     term_degrees_of_freedom : ndarray, shape (n_responses, n_terms)
         Those of the error term of each coefficient. [1]
     error_term : tuple of str, length n_terms
-        What each coefficient is judged by.
+        Error term by which each coefficient is judged.
     coefficient_engineering, coefficient_engineering_standard_uncertainty : ndarray, \
 shape (n_responses, n_terms)
-        Of the factors in their own units. [unit of the response over that of the term]
+        For the factors in their own units. [unit of the response over that of the term]
     covariance_factor : ndarray, shape (n_patterns, n_terms, n_terms)
         Covariance of the coefficients over the variance ``sigma**2``. [1]
     engineering_matrix : ndarray, shape (n_terms, n_terms)
@@ -315,20 +315,20 @@ shape (n_responses, n_terms)
     r2, adjusted_r2, predicted_r2 : ndarray, shape (n_responses,)
         About the mean, or about the means of the blocks. [1]
     overall_f, overall_p_value : ndarray, shape (n_responses,)
-        All terms but the mean at once, with n_terms - 1 and degrees_of_freedom. [1]
+        All terms except the mean together, with n_terms - 1 and degrees_of_freedom. [1]
     printed_f : ndarray, shape (n_responses,)
-        The statistic CG-D-39-80 prints, which counts the mean twice (10 and 4 for fifteen
-        runs); for comparison alone. [1]
+        The statistic printed in CG-D-39-80, which counts the mean twice (10 and 4 for fifteen
+        runs); for comparison only. [1]
     fitted, residual : ndarray, shape (n_responses, n_runs)
         [unit of the response]
     anova, lack_of_fit, canonical, diagnostics, blocks
-        The parts of their own; blocks is None where there is one.
+        Separate results; blocks is None if there is only one.
     condition_number : float
-        Of the model matrix over all runs that are used. [1]
+        Of the model matrix over all runs used. [1]
     reason : ndarray of int8, shape (n_responses,)
         0, or a key of `FIT_REASONS`.
     notes : tuple of Note
-        What a reader of the numbers has to know.
+        Remarks for the reader of the numbers.
     """
 
     response_names: tuple[str, ...]

@@ -1,18 +1,18 @@
 r"""Least squares of many responses at once, F of a printed r2, and lack of fit.
 
-**Least squares of one response or ten thousand on one matrix, by one orthogonal factorisation**:
+**Least squares of one or ten thousand responses on one matrix, by one orthogonal factorisation**:
 
 .. math::
 
     X = QR, \qquad b = R^{-1} Q^T y, \qquad \operatorname{cov} b = s^2 (R^T R)^{-1}, \qquad
     s^2 = \frac{\lVert y - Q Q^T y \rVert^2}{n - p}
 
-Responses that miss the same runs are solved together; there is a loop over the patterns of
-missing runs and none over responses.
+Responses that miss the same runs are solved together; the loop is over the patterns of
+missing runs, not over responses.
 
-**F statistic of a whole surface from its r2: the right one, and the one the report prints.** As
+**F statistic of a whole surface from its r2: the correct one, and the one the report prints.** As
 printed, [2]_ computes :math:`F = (r^2 / 10) / ((1 - r^2) / 4)` for fifteen runs and ten terms,
-which counts the mean twice, and holds it against 3.48, which is the 5 % point for 4 and 10 degrees
+which counts the mean twice, and compares it with 3.48, which is the 5 % point for 4 and 10 degrees
 of freedom, transposed.  As computed, r2 is about the mean: 9 and 5.  The two errors nearly cancel
 (3.48 against 3.44 on the printed scale).
 
@@ -40,13 +40,13 @@ from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import Bools, Floats, Integers
 
 _ROUNDING = 1e-12
-"""Residuals smaller than this share of the response are rounding of the arithmetic."""
+"""Residuals smaller than this fraction of the response are rounding errors."""
 
 _HUGE = 1e150
-"""Numbers beyond it cannot be squared."""
+"""Larger numbers cannot be squared."""
 
 FIXES_A_TERM = 1 - 1e-9
-"""Leverage from which a run is fitted by itself alone and has no residual to look at."""
+"""Leverage from which a run determines its own fit and has no residual to examine."""
 
 
 def two_sided_p(t: ArrayLike, degrees_of_freedom: ArrayLike) -> Floats:
@@ -64,7 +64,7 @@ def two_sided_p(t: ArrayLike, degrees_of_freedom: ArrayLike) -> Floats:
     Returns
     -------
     p_value : ndarray, shape (...)
-        NaN where t or the degrees of freedom are missing or none. [1]
+        NaN where t or the degrees of freedom are missing or zero. [1]
 
     Raises
     ------
@@ -73,12 +73,12 @@ def two_sided_p(t: ArrayLike, degrees_of_freedom: ArrayLike) -> Floats:
 
     Notes
     -----
-    The tail below -``|t|`` keeps its digits where p is small; 1 less a distribution function does
+    The tail below -``|t|`` keeps its digits where p is small; one less a distribution function does
     not.
 
     Examples
     --------
-    2.571 is the 5 % point for 5 degrees of freedom.
+    2.571 is the 5 % point for 5 degrees of freedom:
 
     >>> print(two_sided_p(2.570582, 5).round(4))
     0.05
@@ -94,7 +94,7 @@ def fit_least_squares(
     n_baseline: int = 1,
     block: Integers | None = None,
 ) -> LeastSquares:
-    """Fit every response to the columns of a matrix, with what tests of it need.
+    """Fit every response to the columns of a matrix, with the inputs for tests of the fit.
 
     Parameters
     ----------
@@ -104,27 +104,27 @@ def fit_least_squares(
     responses : array_like, shape (n_responses, n_runs)
         NaN where a run is missing. [unit of the response]
     n_baseline : int
-        Columns about which r2 is taken.
+        Number of columns about which r2 is taken.
     block : ndarray of int, shape (n_runs,), optional
-        Block of each run, from 0, where the baseline behind the mean are its contrasts. [1]
+        Block of each run, from 0, where the baseline after the mean holds its contrasts. [1]
 
     Returns
     -------
     fit : LeastSquares
-        NaN and a reason for a response whose runs do not carry the columns.
+        NaN and a reason for a response whose runs do not support the columns.
 
     Raises
     ------
     DataError
-        If the shapes do not pair up, a response is infinite, or a run has a value and no
+        If the shapes do not pair up, a response is infinite, or a run has a value but no
         levels.
 
     Notes
     -----
-    A response that misses runs is fitted to those it has, and has leverage, covariance and
-    degrees of freedom of its own.  Where it misses a whole block, its mean is that over the
-    blocks it has, and the columns of blocks it does without have no coefficient.  Residuals
-    below 1e-12 of the response are rounding.
+    A response that misses runs is fitted to those it has, with its own leverage, covariance and
+    degrees of freedom.  Where it misses a whole block, its mean is that over the
+    remaining blocks, and the columns of missing blocks have no coefficient.  Residuals
+    below 1e-12 of the response are rounding errors.
 
     Examples
     --------
@@ -171,7 +171,7 @@ def fit_least_squares(
         out["coefficient"][rows] = _spread(coefficient, kept, n_columns)
         out["covariance_factor"][index][np.ix_(kept, kept)] = inverse @ inverse.T
         out["leverage"][index, used] = leverage
-        # without its block a run that is missing has no level
+        # the level of a missing run without its block is unknown
         out["fitted"][rows] = (
             times(coefficient, columns.T)
             if whole
@@ -226,7 +226,7 @@ def _checked(matrix: ArrayLike, responses: ArrayLike) -> tuple[Floats, Floats]:
 def _present(
     columns: Floats, used: Bools, n_baseline: int, block: Integers | None
 ) -> tuple[Floats, Integers, int]:
-    """Matrix of the runs used, place of its columns, and columns of its baseline."""
+    """Matrix of the runs used, place of its columns, and number of its baseline columns."""
     part, places = columns[used], np.arange(columns.shape[1])
     if block is None or np.unique(block[used]).size in (0, n_baseline):
         return part, places, n_baseline
@@ -246,7 +246,7 @@ def _spread(values: Floats, places: Integers, count: int) -> Floats:
 
 
 class _OverallF(NamedTuple):
-    """Statistics of one r2: the right test, and the one the report printed.
+    """Statistics of one r2: the correct test, and the one the report printed.
 
     ``critical`` and ``printed_critical`` are on the scale of their own statistic.
     """
@@ -261,7 +261,7 @@ class _OverallF(NamedTuple):
 def statistics_from_r2(
     r2: ArrayLike, *, n_runs: ArrayLike, n_terms: int, level: float = 0.05
 ) -> _OverallF:
-    r"""Overall F of a surface from its r2, and the statistic CG-D-39-80 prints.
+    r"""Overall F of a surface from its r2, and the statistic printed in CG-D-39-80.
 
     .. math::
 
@@ -273,17 +273,17 @@ def statistics_from_r2(
     r2 : array_like, shape (...)
         About the mean. [1]
     n_runs : array_like, shape (...)
-        Runs fitted. [1]
+        Number of runs fitted. [1]
     n_terms : int
-        With the mean, two or more.
+        Including the mean; at least two.
     level : float
-        Of the test. [1]
+        Level of the test. [1]
 
     Returns
     -------
     statistics : OverallF
         f, p_value, critical; printed_f and printed_critical, which is the critical value as
-        the report looked it up, with its degrees of freedom transposed.
+        looked up in the report, with its degrees of freedom transposed.
 
     Raises
     ------
@@ -294,12 +294,12 @@ def statistics_from_r2(
     -----
     Source: [2]_, Tables 3-5 and 11-19: 54 of 58 printed statistics follow from the printed r2
     and 10 and 4 degrees of freedom within its rounding, 3 from 9 and 5.  The text "if F-Stat >
-    F-Crit the data fits equation 5 with 95 % confidence" is not what the test says: that not
-    all slopes are nil.  NaN where no degree of freedom is left.
+    F-Crit the data fits equation 5 with 95 % confidence" does not state the result of the test,
+    which is that not all slopes are zero.  NaN where no degree of freedom is left.
 
     Examples
     --------
-    Polyester, new, K_ap: 26.98 is printed beside r2 = 0.985, which may be 0.9845 to 0.9855.
+    Polyester, new, K_ap: 26.98 is printed for r2 = 0.985, which may be 0.9845 to 0.9855:
 
     >>> print(statistics_from_r2([0.9845, 0.9855], n_runs=15, n_terms=10).printed_f.round(2))
     [25.41 27.19]
@@ -320,7 +320,7 @@ def statistics_from_r2(
     runs = np.asarray(n_runs, dtype=np.float64)
     above, below = n_terms - 1.0, _positive_or_nan(runs - n_terms)
     printed_below = _positive_or_nan(runs - n_terms - 1)
-    # critical values are dear, and numbers of runs few
+    # critical values are slow to compute, and there are few different numbers of runs
     different, which = np.unique(runs, return_inverse=True)
     right = fdtri(above, _positive_or_nan(different - n_terms), 1 - level)
     transposed = fdtri(_positive_or_nan(different - n_terms - 1), n_terms, 1 - level)
@@ -341,7 +341,7 @@ def _positive_or_nan(values: Floats) -> Floats:
 
 
 _LEVEL_ROUNDING = 1e-9
-"""Coded levels closer than this are one level: rounding of the change of units."""
+"""Coded levels closer than this are equal apart from rounding in the change of units."""
 
 
 def replicate_cells(coded: ArrayLike, *, tolerance: float = 0.1) -> Integers:
@@ -352,7 +352,7 @@ def replicate_cells(coded: ArrayLike, *, tolerance: float = 0.1) -> Integers:
     coded : array_like, shape (n_runs, n_factors)
         Coded levels as achieved; a row that is NaN is a run without levels. [1]
     tolerance : float
-        Largest difference of any two runs of a cell in any factor, on the scale where the
+        Largest difference of any two runs of a cell in any factor, on the scale on which the
         range of a factor is 2. [1]
 
     Returns
@@ -367,7 +367,7 @@ def replicate_cells(coded: ArrayLike, *, tolerance: float = 0.1) -> Integers:
 
     Notes
     -----
-    Complete linkage: no chain of near runs joins two that are far apart.  The runs of a
+    Complete linkage: no chain of close runs joins two that are far apart.  The runs of a
     Box-Behnken design are 1 apart.
 
     Examples
@@ -411,8 +411,8 @@ def lack_of_fit(
     -----
     Repeats whose levels differ are compared by their residuals, that is, after the surface has
     moved each to the same place; for exact repeats the surface drops out and the result is
-    that of [1]_.  With blocks, what is left after an additive model of blocks and cells is
-    pure error (as R's rsm): it holds the scatter of a block's answer to a run.
+    that of [1]_.  With blocks, pure error is the residual of an additive model of blocks and
+    cells (as in R's rsm): it includes the scatter in the response of a block to a run.
 
     Examples
     --------

@@ -1,15 +1,15 @@
 r"""Cycles to failure: life, fatigue and abrasion, with run-outs as lower bounds.
 
-**Maximum likelihood of a straight law with scatter, where some values are lower bounds**:
+**Maximum likelihood of a linear law with scatter, where some values are lower bounds**:
 
 .. math:: y = X b + \sigma\,\varepsilon
 
 with normal or smallest-extreme-value scatter; a lognormal or Weibull life has y = ln N.
 In :math:`\theta = 1/\sigma` and :math:`\gamma = b/\sigma` the log likelihood is concave, so that
-Newton steps reach its one maximum from any start, and a quantile that is held fixed is a linear
+Newton steps reach its only maximum from any start.  A quantile that is held fixed is a linear
 condition, so that its profile is a problem of the same form.
 
-**Cycles to wear through: how much longer a jacket, a material or a construction lasts.** Mean,
+**Cycles to wear through: relative life of a jacket, a material or a construction.** Mean,
 deviation and relative variability of a group, and ratios of the means of two, are those of
 `reduction.experiments.strength_statistics`.
 
@@ -52,7 +52,7 @@ def cutoff(confidence: float, *, n_failed: int, n_coefficients: int) -> float:
 
     With normal scatter and no lower bound this makes the profile interval the exact one
     of Student; with many failures it is the usual chi square.  Chi square alone is too
-    short for the three to five specimens of a load level.
+    small for the three to five specimens of a load level.
 
     Examples
     --------
@@ -82,7 +82,7 @@ def profile_bounds(
     step: float,
     drop: float,
 ) -> tuple[float, float]:
-    """Where twice the profile log likelihood has dropped by ``drop``, on both sides.
+    """Values on both sides where twice the profile log likelihood has dropped by ``drop``.
 
     Examples
     --------
@@ -116,7 +116,7 @@ Scatter = Literal["normal", "smallest_extreme_value"]
 
 _MOST_STEPS = 200
 
-_DECREMENT = 1e-18  # of the log likelihood, below which a Newton step changes nothing
+_DECREMENT = 1e-18  # of the log likelihood: below this a Newton step changes nothing
 
 _LEAST_SCATTER = 1e-12  # over the greatest value
 
@@ -134,7 +134,7 @@ class _CensoredFit:
 
 
 def _scatter_quantile(share: float, *, scatter: Scatter) -> float:
-    """Standard scatter below which a share of the specimens lies.
+    """Standard scatter below which a given fraction of the specimens lies.
 
     Examples
     --------
@@ -152,7 +152,7 @@ def _terms(deviate: Floats, is_bound: Bools, scatter: Scatter) -> tuple[Floats, 
         log_survival = log_ndtr(-deviate)
         density = -(deviate**2) / 2 - _HALF_LOG_2_PI
         with np.errstate(over="ignore", invalid="ignore"):
-            # far below the mean the hazard is 0 and its difference to the density too
+            # far below the mean the hazard is 0, and so is its difference from the density
             hazard = np.exp(np.where(is_bound, density - log_survival, -inf))
         value = np.where(is_bound, log_survival, density)
         slope = np.where(is_bound, -hazard, -deviate)
@@ -163,9 +163,9 @@ def _terms(deviate: Floats, is_bound: Bools, scatter: Scatter) -> tuple[Floats, 
 
 
 def _check_maximum(response: Floats, design: Floats, is_bound: Bools) -> None:
-    """Refuse what has no maximum: a coefficient, or the precision, that may grow for ever."""
+    """Refuse data without a maximum: a coefficient or precision that may grow without bound."""
     failed, columns = response[~is_bound], design[~is_bound]
-    # numpy before 2.4 gives no rank to a matrix without rows or columns
+    # numpy before 2.4 gives no rank for a matrix without rows or columns
     rank = np.linalg.matrix_rank(columns) if columns.size else 0
     if rank < design.shape[1]:
         raise FitError(
@@ -175,7 +175,7 @@ def _check_maximum(response: Floats, design: Floats, is_bound: Bools) -> None:
         )
     coefficient = np.linalg.lstsq(columns, failed)[0]
     on_the_law = np.abs(failed - columns @ coefficient).max(initial=0.0) < _LEAST_SCATTER
-    # a lower bound above the law shows that there is scatter even so
+    # a lower bound above the law is evidence of scatter nevertheless
     if on_the_law and not (response - design @ coefficient)[is_bound].max(initial=0.0) > 0:
         raise FitError(
             "the failures have no scatter about the law",
@@ -232,7 +232,7 @@ def fit_censored(
             break
         share = 1.0
         trial = evaluate(parameters + step)
-        # the last part of the bound is rounding: at the maximum no step can gain
+        # the last part of the bound is for rounding: at the maximum no step can gain
         while trial[0] < total + 1e-4 * share * decrement - 1e-13 * (1 + abs(total)):
             share /= 2
             trial = evaluate(parameters + share * step)
@@ -263,7 +263,7 @@ SCATTER_OF: dict[LifeDistribution, Scatter] = {
 
 
 def _as_log_lives(cycles: ArrayLike, is_suspended: ArrayLike) -> tuple[Floats, Bools]:
-    """Logarithm of lives, and which of them are lower bounds.
+    """Logarithm of lives, with a mark for lower bounds.
 
     Examples
     --------
@@ -288,9 +288,9 @@ def _runout_bound(
 
     Notes
     -----
-    If ``failed_share`` q of all specimens failed before N, m of them would all pass N with a
-    chance of at most (1 - q)^m.  The bound is the greatest N that enough tests passed.
-    Three run-outs, as [5]_ has at its lowest load, bound the median only with 87.5 %.
+    If a fraction ``failed_share`` q of all specimens failed before N, m of them would all pass N
+    with a chance of at most (1 - q)^m.  The bound is the greatest N that enough tests passed.
+    Three run-outs, as in [5]_ at its lowest load, bound the median with only 87.5 %.
 
     Examples
     --------
@@ -298,7 +298,7 @@ def _runout_bound(
     nan 200000.0
     """
     lives = np.sort(as_positive("cycles", cycles))[::-1]
-    _scatter_quantile(failed_share, scatter="normal")  # refuses what is no share
+    _scatter_quantile(failed_share, scatter="normal")  # refuses an invalid fraction
     enough = int(np.ceil(np.log((1 - confidence) / 2) / np.log1p(-failed_share) - 1e-12))
     return float(lives[enough - 1]) if lives.size >= enough else float("nan")
 
@@ -311,12 +311,12 @@ def fit_life(
     failed_share: float = 0.5,
     confidence: float = 0.95,
 ) -> LifeFit:
-    """Life of specimens that were tested alike, by maximum likelihood.
+    """Life of specimens that were tested under equal conditions, by maximum likelihood.
 
     Notes
     -----
-    The bounds are of the profile likelihood, with the drop of `profile.cutoff`: exact
-    for a lognormal law without run-outs.  Over generated lives bounds of 95 % held the true
+    The bounds are those of the profile likelihood, with the drop of `cutoff`: exact
+    for a lognormal law without run-outs.  For generated lives, bounds of 95 % held the true
     median in 95 % of groups of three failures, and in 97 to 98 % of groups with run-outs.
 
     Examples
@@ -340,7 +340,7 @@ def fit_life(
         return replace(unknown, low=low, high=inf, reason=5)
     if failed.size == 1:
         return replace(unknown, reason=6)
-    # a later run-out shows that the lives scatter even where the failures do not
+    # a later run-out is evidence of scatter even where the failures have none
     if not np.ptp(failed) > 0 and not (logs[suspended] > failed[0]).any():
         return replace(unknown, reason=7)
     centre = float(logs.mean())
@@ -385,11 +385,11 @@ def ratio_of_lives(
     distribution: LifeDistribution = "lognormal",
     confidence: float = 0.95,
 ) -> tuple[float, float, float]:
-    """How many times longer one group lives than a reference group, run-outs included.
+    """Ratio of the life of one group to that of a reference group, run-outs included.
 
     Examples
     --------
-    Lives twice as long, one specimen for one:
+    Lives twice as long, specimen by specimen:
 
     >>> lives = [8e3, 9e3, 16e3, 18e3]
     >>> ratio, _, _ = ratio_of_lives(lives, [False] * 4, [True, True, False, False])
@@ -424,12 +424,12 @@ def ratio_of_lives(
 
 
 LEVEL_WIDTH = 0.01
-"""Peak loads no further apart, in rated break strengths, are one level: a machine does not
-reach the same load twice."""
+"""Peak loads within this distance, in rated break strengths, are one level: a machine does not
+reach exactly the same load twice."""
 
 
 def load_levels(peak_load_ratio: ArrayLike) -> Integers:
-    """Level of each test, by peak loads that lie together.
+    """Level of each test, by grouping of close peak loads.
 
     Parameters
     ----------
@@ -439,7 +439,7 @@ def load_levels(peak_load_ratio: ArrayLike) -> Integers:
     Returns
     -------
     level : ndarray of int, shape (n,)
-        From 0 for the lowest; a gap of more than `LEVEL_WIDTH` parts two levels. [1]
+        From 0 for the lowest; a gap of more than `LEVEL_WIDTH` separates two levels. [1]
 
     Raises
     ------
@@ -454,7 +454,7 @@ def load_levels(peak_load_ratio: ArrayLike) -> Integers:
     load = as_positive("peak_load_ratio", peak_load_ratio)
     order = np.argsort(load, kind="stable")
     level = np.empty(load.size, dtype=np.intp)
-    # a thousandth more, so that 0.30 and 0.31 are together whatever their last bit
+    # a thousandth more, so that 0.30 and 0.31 are grouped whatever their last bit
     level[order] = np.cumsum(np.diff(load[order], prepend=load[order][:1]) > 1.001 * LEVEL_WIDTH)
     return level
 
@@ -462,9 +462,9 @@ def load_levels(peak_load_ratio: ArrayLike) -> Integers:
 def _log_likelihood_of_levels(
     about: Floats, load: Floats, suspended: Bools, scatter: Scatter
 ) -> tuple[float, int]:
-    """Greatest log likelihood with a median of each level, and how many levels there are.
+    """Greatest log likelihood with a median for each level, and the number of levels.
 
-    A level without failure takes a median as high as it likes, and adds nothing.
+    The median of a level without failure is unbounded, and the level adds nothing.
     """
     place = load_levels(load)
     n_levels = int(place.max()) + 1
@@ -488,9 +488,9 @@ def fit_load_life(
 
     Notes
     -----
-    The mean of the failures alone, which Figure 19 of [7]_ joins, is too short wherever
-    a test was stopped.  A line in logarithms has no fatigue limit; the lack of fit says
-    whether medians of their own fit the levels better (twice the gain in log
+    The mean of the failures alone, as joined in Figure 19 of [7]_, is too low wherever
+    a test was stopped.  A line in logarithms has no fatigue limit; the lack of fit shows
+    whether separate medians fit the levels better (twice the gain in log
     likelihood, taken as chi square).
 
     Examples
@@ -525,7 +525,7 @@ def fit_load_life(
     design = np.column_stack([np.ones(load.size), -np.log(load / reference)])
     fit = fit_censored(about, design, suspended, scatter=scatter)
     median = _scatter_quantile(0.5, scatter=scatter)
-    # of (location, exponent, scale) to (median, exponent, scale)
+    # from (location, exponent, scale) to (median, exponent, scale)
     to_median = np.array([[1.0, 0.0, median], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
     chi_square = p_value = float("nan")
     n_levels = int(level.max()) + 1
@@ -598,14 +598,14 @@ def ratio_to_published_life(
     reference_n: int,
     confidence: float = 0.95,
 ) -> tuple[float, float, float]:
-    r"""Median life over that of a group of which only mean, deviation and number are printed.
+    r"""Median life over that of a group with only mean, deviation and number printed.
 
     Notes
     -----
     The reference has :math:`s_{\ln}^2 = \ln(1 + s^2/m^2)` and the median
-    :math:`m \exp(-s_{\ln}^2/2)`.  The bounds of the two medians, the profile's and Student's, are
-    put together as in [10]_.  In [9]_ the tests of jacketed line were stopped after 13
-    samples since lives rose from test to test, three lives are printed, and the ratio
+    :math:`m \exp(-s_{\ln}^2/2)`.  The bounds of the two medians, by profile and by Student, are
+    combined as in [10]_.  In [9]_ the tests of jacketed line were stopped after 13
+    samples since lives rose from test to test; three lives are printed, and the ratio
     of "5 to 6" is that of these three to the mode: a ratio to the first, shortest lives.
 
     Examples

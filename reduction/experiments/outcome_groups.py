@@ -54,7 +54,7 @@ _USE = {"value": VALUE, "lower_bound": LOWER_BOUND, "excluded": EXCLUDED}
 
 @dataclass(frozen=True)
 class Group:
-    """One line in one condition; ``diameter`` [m] and ``exposure`` [year] None where not given."""
+    """One line in one condition; ``diameter`` [m] and ``exposure`` [year] are None if not given."""
 
     line: str
     material: str
@@ -65,13 +65,13 @@ class Group:
 
     @property
     def product(self) -> tuple[str, str, str, float | None]:
-        """What stays the same when the line wears."""
+        """Properties that do not change when the line wears."""
         return self.line, self.material, self.construction, self.diameter
 
 
 @dataclass(frozen=True)
 class _Grouped:
-    """Rows of one quantity: its groups in order of appearance, and the group of each row."""
+    """Rows of one quantity: the groups in order of appearance, and the group of each row."""
 
     groups: tuple[Group, ...]
     outcomes: tuple[Outcome, ...]
@@ -118,7 +118,7 @@ def _group_outcomes(outcomes: Iterable[Outcome], quantity: OutcomeQuantity) -> _
 
 
 def _reference_of(groups: Sequence[Group], *, reference_condition: str = "new") -> Integers:
-    """Against which group each one is held.
+    """Reference group of each group.
 
     Examples
     --------
@@ -143,7 +143,7 @@ def _reference_of(groups: Sequence[Group], *, reference_condition: str = "new") 
 
 
 def _ratio(force: float, ratio: float, strength: float | None) -> tuple[float, float]:
-    """A load and its share of the break strength, each from the other."""
+    """A load and its fraction of the break strength, each from the other."""
     if strength is None:
         return force, ratio
     return (
@@ -155,7 +155,7 @@ def _ratio(force: float, ratio: float, strength: float | None) -> tuple[float, f
 def complete_from_specimens(
     outcomes: Iterable[Outcome], specimens: Mapping[str, Specimen]
 ) -> tuple[Outcome, ...]:
-    """Rows with what the sheets of their specimens say: what the row says itself stands.
+    """Rows completed from the sheets of their specimens; entries of the row itself take precedence.
 
     Examples
     --------
@@ -196,24 +196,24 @@ def complete_from_specimens(
 @dataclass(frozen=True)
 @read_only_arrays
 class ExposureSeries:
-    """Breaks of one line by time in the field.
+    """Strengths of one line by time in the field.
 
     Parameters
     ----------
     group : Group
-        The line; without a condition and an exposure, which differ.
+        The line, without a condition and an exposure, since these differ.
     exposure : ndarray, shape (n,)
-        Of each break. [year]
+        Exposure of each break. [year]
     strength : ndarray, shape (n,)
-        Of each break. [N]
+        Strength at each break. [N]
     is_lower_bound : ndarray of bool, shape (n,)
-        True where the line holds at least this; not in the fit.
+        True where the line holds at least this; such values are not in the fit.
     n_unused : int
         Tests of the line without an exposure or a value.
     fit : ExposureTrend or None
-        None where there is no line.
+        None where no line can be fitted.
     reason : str
-        Why; empty where there is one.
+        The reason for that; empty where there is a fit.
     """
 
     group: Group
@@ -235,17 +235,17 @@ class LoadSeries:
     group : Group
         The line in its condition.
     peak_load_ratio, minimum_load_ratio : ndarray, shape (n,)
-        Over the rated break strength; the least NaN where not stated. [1]
+        Peak and minimum load over the rated break strength; the minimum NaN if not stated. [1]
     cycles : ndarray, shape (n,)
-        To failure, or to the end of the test. [1]
+        Cycles to failure, or to the end of the test. [1]
     is_suspended : ndarray of bool, shape (n,)
         True where the line lasts at least this.
     n_unused : int
         Tests of the group without a peak load ratio, and invalid ones.
     fit : LoadLife or None
-        None where there is no line.
+        None where no line can be fitted.
     reason : str
-        Why; empty where there is one.
+        The reason for that; empty where there is a fit.
     """
 
     group: Group
@@ -259,7 +259,7 @@ class LoadSeries:
 
 
 def exposure_series(outcomes: Iterable[Outcome]) -> tuple[ExposureSeries, ...]:
-    """Strength of each line that was broken after some time in the field.
+    """Strength of each line that was broken after a time in the field.
 
     Examples
     --------
@@ -336,8 +336,8 @@ def load_series(
 class OutcomeColumn:
     """A column: name, SI unit (empty for text, ``count`` for a whole number), meaning.
 
-    ``no_uncertainty`` says why no standard uncertainty stands beside it; empty where
-    one does.
+    ``no_uncertainty`` gives the reason why it has no column of standard uncertainty; empty where
+    it has one.
     """
 
     name: str
@@ -495,7 +495,7 @@ Row = dict[str, float | int | str]
 
 
 def _empty_row(columns: Iterable[OutcomeColumn]) -> Row:
-    """A row in which nothing is known yet.
+    """A row in which all values are still unknown.
 
     Examples
     --------
@@ -509,7 +509,7 @@ def _empty_row(columns: Iterable[OutcomeColumn]) -> Row:
 
 
 def _labels_of(group: Group) -> Row:
-    """What a group is, by column.
+    """Labels of a group, by column.
 
     Examples
     --------
@@ -585,7 +585,7 @@ def strength_rows(outcomes: Iterable[Outcome], *, reference_condition: str = "ne
     outcomes : iterable of Outcome
         Rows of every quantity.
     reference_condition : str
-        Condition of the group against which others of the same line are held.
+        Condition of the group with which others of the same line are compared.
 
     Returns
     -------
@@ -595,7 +595,7 @@ def strength_rows(outcomes: Iterable[Outcome], *, reference_condition: str = "ne
     Raises
     ------
     DataError
-        If a value cannot be.
+        If a value is impossible.
 
     Examples
     --------
@@ -632,7 +632,7 @@ def exposure_rows(outcomes: Iterable[Outcome]) -> list[Row]:
     Raises
     ------
     DataError
-        If a value cannot be.
+        If a value is impossible.
 
     Examples
     --------
@@ -680,7 +680,7 @@ def exposure_rows(outcomes: Iterable[Outcome]) -> list[Row]:
 
 
 def _levels_of(grouped: _Grouped, place: int) -> list[Integers]:
-    """Rows of a group by level of peak load, rising; those without a load last."""
+    """Rows of a group by rising level of peak load; those without a load last."""
     rows = np.flatnonzero(grouped.group == place)
     ratio = np.array([grouped.outcomes[row].peak_load_ratio for row in rows])
     force = np.array([grouped.outcomes[row].peak_load for row in rows])
@@ -695,8 +695,8 @@ def _levels_of(grouped: _Grouped, place: int) -> list[Integers]:
     return [*parts, rest] if rest.size else parts
 
 
-# times, by which a value differs from every other of its group where it is odd: breaks of one line
-# scatter by a tenth, lives at one load by a factor of three or so
+# factor by which an odd value differs from every other of its group: breaks of one line
+# scatter by a tenth, lives at one load by a factor of about three
 _ODD: dict[OutcomeQuantity, float] = {
     "tensile_strength": 2.0, "strain_at_failure": 2.5,
     "cycles_to_failure": 80.0, "abrasion_cycles": 80.0,
@@ -706,7 +706,7 @@ _FEWEST_OTHERS = 2
 
 
 def odd_outcomes(outcomes: Iterable[Outcome]) -> list[Note]:
-    """Values that are far from the others of their group, and of their level of load.
+    """Values that are far from the others of their group and level of load.
 
     Examples
     --------
@@ -764,7 +764,7 @@ def fatigue_rows(
     Raises
     ------
     DataError
-        If a value cannot be.
+        If a value is impossible.
 
     Examples
     --------
@@ -794,7 +794,7 @@ _REFERENCE_MATERIAL = "polypropylene"
 def _relative_resistance(
     grouped: _Grouped, place: int, part: Integers, distribution: LifeDistribution
 ) -> Row:
-    """Ratio of lives to new polypropylene, as CG-D-39-80, sec. 6.2, gives it; none of itself."""
+    """Ratio of lives to new polypropylene, as in CG-D-39-80, sec. 6.2; empty for itself."""
 
     def is_reference(group: Group) -> bool:
         own = grouped.groups[place]
@@ -847,7 +847,7 @@ def _fatigue_of(grouped: _Grouped, part: Integers, distribution: LifeDistributio
         "median_life": fit.life,
         "median_life_standard_uncertainty": fit.life_standard_uncertainty,
         "median_life_low": fit.low,
-        # a table has no infinity; the reason says that there is a lower bound alone
+        # a table has no infinity; the reason says that there is only a lower bound
         "median_life_high": fit.high if isfinite(fit.high) else nan,
         "log_life_scale": fit.log_scale,
         "log_life_scale_standard_uncertainty": fit.log_scale_uncertainty,
@@ -875,7 +875,7 @@ def load_life_rows(
     Raises
     ------
     DataError
-        If a value cannot be.
+        If a value is impossible.
 
     Examples
     --------
@@ -889,7 +889,7 @@ def load_life_rows(
     for series in load_series(outcomes, distribution=distribution):
         load = series.peak_load_ratio
         if not load_levels(load).any():
-            continue  # one load: its row of the table of fatigue says all
+            continue  # one load: its row in the table of fatigue is sufficient
         row = _empty_row(LOAD_LIFE_COLUMNS) | _labels_of(series.group)
         row |= {
             "failed_count": int((~series.is_suspended).sum()),

@@ -26,7 +26,7 @@ OutcomeQuantity = Literal[
 Place = Literal["free", "splice_toe", "splice", "thimble", "grip", "not_stated"]
 
 IN_THE_TERMINATION = ("splice", "thimble", "grip")
-"""Places where the termination broke and not the line: its own strength is at least the value."""
+"""Breaks of the termination instead of the line: its strength is at least the value."""
 
 REASONS: dict[int, str] = {
     0: "",
@@ -38,7 +38,7 @@ REASONS: dict[int, str] = {
     6: "one failure does not tell the deviation of lives",
     7: "the failures have no deviation",
 }
-"""Why a number is NaN."""
+"""Reasons for a NaN."""
 
 
 @dataclass(frozen=True)
@@ -53,29 +53,29 @@ class Outcome:
     value : float
         In the unit of ``quantity``; NaN where an invalid test gave none.
     test, specimen : str
-        Names, where given.
+        Names, if given.
     line, material, construction, condition : str
-        What a group is; empty where not given.
+        Properties that define a group; empty if not given.
     diameter : float
-        Nominal; NaN where not given. [m]
+        Nominal diameter; NaN if not given. [m]
     exposure : float
-        Time in the field; NaN where not given, 0 for a new line. [year]
+        Time in the field; NaN if not given, 0 for a new line. [year]
     minimum_load, peak_load : float
-        Of each cycle; NaN where not given. [N]
+        Limits of each cycle; NaN if not given. [N]
     minimum_load_ratio, peak_load_ratio : float
-        The same over the rated break strength; NaN where not given. [1]
+        The same over the rated break strength; NaN if not given. [1]
     mode : str
-        How it failed, in the laboratory's words.
+        Description of the failure, in the laboratory's words.
     place : str
-        Where: `Place`.
+        Place of the failure: `Place`.
     is_valid : bool
-        The laboratory's word on the value; a break in the termination is not valid
+        Validity of the value as the laboratory states; a break in the termination is not valid
         unless the laboratory says so.
     is_suspended : bool
         True for a run-out, or a test that was stopped.
     note : str
     row : int
-        Row of the file, from 1 for the header; 0 where there is none.
+        Row of the file, counting the header as 1; 0 if there is none.
     """
 
     quantity: OutcomeQuantity
@@ -101,7 +101,7 @@ class Outcome:
 
     @property
     def use(self) -> Literal["value", "lower_bound", "excluded"]:
-        """What the value says of the line: itself, that it is at least this, or nothing."""
+        """Use of the value: as the strength of the line, as a lower bound of it, or not."""
         if not self.is_valid:
             is_bound = self.place in IN_THE_TERMINATION and self.value > 0
             return "lower_bound" if is_bound else "excluded"
@@ -111,24 +111,24 @@ class Outcome:
 @dataclass(frozen=True)
 @read_only_arrays
 class GroupStatistics:
-    """Mean and deviation of groups, shape (n_groups,); NaN with a reason where there is none.
+    """Mean and deviation of groups, shape (n_groups,); NaN with a reason if not available.
 
     Parameters
     ----------
     n : ndarray of int
-        Values that speak for the line.
+        Number of values valid for the line.
     n_lower_bound, n_excluded : ndarray of int
-        Values that are lower bounds, and that were left out.
+        Number of values that are lower bounds, and of values left out.
     mean, standard_deviation, minimum, maximum : ndarray
-        Of the ``n`` values; the deviation has n - 1 below it.
+        Of the ``n`` values; the deviation is divided by n - 1.
     relative_variability : ndarray
         Deviation over mean. [1]
     mean_standard_uncertainty : ndarray
         Deviation over root n (type A).
     lower_bound_mean : ndarray
-        Of the lower bounds alone; no strength of the line.
+        Mean of the lower bounds alone; not a strength of the line.
     reason : ndarray of int8
-        Of a missing deviation; a key of `REASONS`.
+        Reason for a missing deviation; a key of `REASONS`.
     """
 
     n: Integers
@@ -150,8 +150,8 @@ class RatioOfMeans:
     """A mean over a reference mean, and its change; every array has the shape of the input.
 
     ``change`` is ratio - 1; ``low`` and ``high`` are the ends of its interval (Fieller), and
-    ``standard_uncertainty`` is that of the ratio to first order.  ``reason`` says why
-    an interval is NaN.
+    ``standard_uncertainty`` is that of the ratio to first order.  ``reason`` explains an
+    interval of NaN.
     """
 
     ratio: Floats
@@ -169,8 +169,8 @@ class RatioOfMeans:
 class OneWay:
     """One-way analysis of groups; every array has the shape of the input without its last axis.
 
-    ``f_statistic`` takes one deviation for all groups; ``welch_f_statistic`` one of each
-    group, with ``welch_within`` degrees of freedom below.
+    ``f_statistic`` assumes one deviation for all groups; ``welch_f_statistic`` one for each
+    group, with ``welch_within`` denominator degrees of freedom.
     """
 
     f_statistic: Floats
@@ -211,21 +211,21 @@ class ExposureTrend:
     Parameters
     ----------
     intercept, slope : float
-        In the unit of the strength, and that per year.
+        In the unit of the strength, and in that unit per year.
     covariance : ndarray, shape (2, 2)
         Of intercept and slope (type A).
     residual_standard_deviation : float
-        Of one break about the line.
+        For one break about the line.
     degrees_of_freedom : int
         Of that deviation.
     lack_of_fit_f, lack_of_fit_p_value : float
-        Whether the means of the exposures lie on a line, against the deviation
-        of breaks of one exposure; NaN where no exposure is repeated or there are only two.
+        Test whether the means of the exposures lie on a line, compared with the deviation
+        of breaks of one exposure; NaN if no exposure is repeated or there are only two.
     lack_of_fit_degrees_of_freedom : tuple of (int, int)
     exposure_low, exposure_high : float
         Range of exposures. [year]
     n : int
-        Breaks.
+        Number of breaks.
     """
 
     intercept: float
@@ -242,7 +242,7 @@ class ExposureTrend:
 
 
 def reason_codes(shape: tuple[int, ...], cases: Sequence[tuple[ArrayLike, int]]) -> NDArray[int8]:
-    """Code of the first case that holds, 0 where none does.
+    """Code of the first case that holds, 0 if none does.
 
     Examples
     --------
@@ -260,20 +260,20 @@ LifeDistribution = Literal["weibull", "lognormal"]
 
 @dataclass(frozen=True)
 class LifeFit:
-    """Lives of one group of specimens, run-outs counted as what they are.
+    """Lives of one group of specimens, with run-outs as lower bounds.
 
     Parameters
     ----------
     life, low, high : float
-        Cycles by which ``failed_share`` of the specimens have failed, and its bounds. [1]
+        Cycles by which a fraction ``failed_share`` of the specimens has failed, and its bounds. [1]
     life_standard_uncertainty : float
         To first order, from the observed information (type A). [1]
     log_location, log_scale : float
-        Of ln cycles; for a Weibull law ln of the characteristic life and one over the shape.
+        Of ln cycles; for a Weibull law, ln of the characteristic life and one over the shape.
     log_location_uncertainty, log_scale_uncertainty : float
-        Standard, from the observed information.
+        Standard uncertainties, from the observed information.
     log_likelihood : float
-        Of the cycles themselves, to compare laws.
+        For the cycles themselves, to compare laws.
     reason : int
         A key of `REASONS`.
     """
@@ -305,19 +305,19 @@ class LoadLife:
     log_life : float
         ln of the median life at ``reference_load_ratio``, S_0. [1]
     exponent : float
-        m: how many times steeper ln N falls than ln S rises. [1]
+        m, the ratio of the fall of ln N to the rise of ln S. [1]
     log_scale : float
-        Of ln N about the line; for a Weibull law one over the shape. [1]
+        Of ln N about the line; for a Weibull law, one over the shape. [1]
     covariance : ndarray, shape (3, 3)
         Of log_life, exponent and log_scale, from the observed information.
     log_likelihood : float
-        Of the cycles themselves.
+        For the cycles themselves.
     lack_of_fit_chi_square, lack_of_fit_p_value : float
-        Twice the gain in log likelihood when each level has a median of its own;
-        NaN where there are no more than two levels.
+        Twice the gain in log likelihood when each level has its own median;
+        NaN if there are no more than two levels.
     lack_of_fit_degrees_of_freedom : int
     load_ratio_low, load_ratio_high : float
-        Range of peak loads tested, run-outs with them. [1]
+        Range of peak loads tested, including run-outs. [1]
     """
 
     distribution: LifeDistribution
@@ -339,7 +339,7 @@ class LoadLife:
 @dataclass(frozen=True)
 @read_only_arrays
 class SnapLevels:
-    """What tests with a slack line in each cycle say, by level of peak load, rising.
+    """Results of tests with a slack line in each cycle, by rising level of peak load.
 
     Parameters
     ----------
@@ -347,17 +347,17 @@ class SnapLevels:
         Mean of the tests of a level. [1]
     n_failed, n_suspended : ndarray of int, shape (n_levels,)
     mean_cycles : ndarray, shape (n_levels,)
-        Of the failures alone, as Figure 19 of CG-D-39-80 joins them. [1]
+        Of the failures only, as joined in Figure 19 of CG-D-39-80. [1]
     least_cycles, most_cycles : ndarray, shape (n_levels,)
         Over all tests of a level. [1]
     failed_share_high : ndarray, shape (n_levels,)
-        Upper bound of the share that fails before the shortest run-out of the level. [1]
+        Upper bound of the fraction that fails before the shortest run-out of the level. [1]
     threshold_low : float
-        Highest level without failure that has none below it either; NaN if there is none. [1]
+        Highest level with no failure at or below it; NaN if there is none. [1]
     threshold_high : float
         Lowest level with a failure; NaN if nothing failed. [1]
     n_never_slack : int
-        Tests left out, since their line keeps a tension.
+        Number of tests left out, since their line stays taut.
     confidence : float
     notes : tuple of str
     """

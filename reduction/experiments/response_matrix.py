@@ -9,14 +9,14 @@ import numpy as np
 from reduction.record.measurement import Bools, Floats, Integers
 
 _PIECE = 200_000
-"""Multiplications in one call of the linear algebra library: below it stays in one thread."""
+"""Multiplications per call of the linear algebra library: below this it stays in one thread."""
 
 
 def times(left: Floats, right: Floats) -> Floats:
     """Matrix product of many rows with a small matrix, in pieces too small for threads.
 
-    Threads of the linear algebra library cost a hundred times what they bring to a product
-    this narrow, and how they part the sums would depend on the machine.
+    Threads of the linear algebra library cost a hundred times what they gain in a product
+    this narrow, and the way they split the sums would depend on the machine.
     """
     n_rows = max(_PIECE // max(right.size, 1), 1)
     product = np.empty((left.shape[0], right.shape[1]))
@@ -27,9 +27,9 @@ def times(left: Floats, right: Floats) -> Floats:
 
 
 def block_contrasts(block: Integers) -> Floats:
-    """Columns that tell the blocks present apart, shape (n_runs, n_present - 1).
+    """Columns that distinguish the blocks present, shape (n_runs, n_present - 1).
 
-    1 in a block, -1 in the last one: their coefficients are effects that add up to nil, and
+    1 in a block, -1 in the last one: their coefficients are effects that add up to zero, and
     the mean of the surface is that over the blocks.
     """
     present, own = np.unique(block, return_inverse=True)
@@ -39,7 +39,7 @@ def block_contrasts(block: Integers) -> Floats:
 
 
 def patterns_of(known: Bools) -> tuple[Bools, Integers]:
-    """Different patterns of known runs, and which one each response has."""
+    """Different patterns of known runs, and the pattern of each response."""
     if (known == known[:1]).all():
         return known[:1].copy(), np.zeros(known.shape[0], dtype=np.intp)
     is_used, pattern = np.unique(known, axis=0, return_inverse=True)
@@ -56,8 +56,8 @@ def highest_of_each(
 ) -> tuple[Floats, Floats]:
     """Place of the top of each curve, shape (count,), and heights on the grid, (count, n_grid).
 
-    ``height`` takes one place a curve.  The search stays between the neighbours of the highest
-    place of the grid, where it takes the curve to have one top.
+    ``height`` takes one place per curve.  The search stays between the neighbours of the highest
+    grid point, where it assumes that the curve has one maximum.
     """
     on_grid = np.stack([height(np.full(count, place)) for place in grid], axis=1)
     top = np.argmax(on_grid, axis=1)

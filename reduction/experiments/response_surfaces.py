@@ -1,4 +1,4 @@
-"""Fits response surfaces of many responses over one set of runs.
+"""Fits of response surfaces of many responses over one set of runs.
 
 References
 ----------
@@ -66,7 +66,7 @@ from reduction.record.measurement import Bools, Floats, Integers
 from reduction.record.notes import Note, note
 
 _STILL = 1e-6
-"""Coded range below which a factor does not move."""
+"""Coded range below which a factor counts as constant."""
 
 
 def _coded_levels(
@@ -96,7 +96,7 @@ def _coded_levels(
 
 
 def _require_names(names: tuple[str, ...], count: int, what: str) -> None:
-    """Refuse names that do not pair up, or a name that stands twice."""
+    """Refuse names that do not pair up or are repeated."""
     if len(set(names)) < len(names):
         twice = sorted(name for name, count_of in Counter(names).items() if count_of > 1)
         raise SettingsError(
@@ -114,7 +114,7 @@ def _require_names(names: tuple[str, ...], count: int, what: str) -> None:
 
 
 def _require_motion(coded: Floats, factor_names: Sequence[str]) -> None:
-    """Refuse runs in which a factor keeps its level."""
+    """Refuse runs in which a factor is constant."""
     if len(coded) == 0:
         raise DataError("no run has a value", needed="runs with levels and responses")
     still = np.flatnonzero(np.ptp(coded, axis=0) < _STILL)
@@ -129,13 +129,13 @@ def _require_motion(coded: Floats, factor_names: Sequence[str]) -> None:
 
 
 _STRAY = 0.1
-"""Coded distance beyond the levels of the plan, or short of them, that is worth a word."""
+"""Coded distance beyond the levels of the plan, or short of them, that is noted."""
 
 _ALONE = 0.99
-"""Leverage from which a run has hardly a residual."""
+"""Leverage from which a run has hardly any residual."""
 
 _ILL = 30.0
-"""Condition number of columns of the model matrix above which terms lean on each other."""
+"""Condition number of columns of the model matrix above which terms are nearly collinear."""
 
 
 def _remarks(
@@ -150,7 +150,7 @@ def _remarks(
     response_names: Sequence[str],
     condition: float,
 ) -> tuple[Note, ...]:
-    """Notes of the surfaces, shortest list that leaves nothing out."""
+    """Notes of the surfaces, the shortest list that is complete."""
     used = np.asarray(np.isfinite(responses).any(axis=0))
     notes = [
         *_missing(responses, used, run_names, response_names),
@@ -202,7 +202,7 @@ def _repeats(
     coded: Floats, responses: Floats, used: Bools, lack: LackOfFit, run_names: Sequence[str]
 ) -> list[Note]:
     notes = []
-    # a run typed in twice looks like this, and makes pure error too small; -0 is 0, and NaN is NaN
+    # a run entered twice looks like this, and makes pure error too small; -0 is 0, and NaN is NaN
     numbers = np.column_stack([coded, responses.T]) + 0.0
     numbers[np.isnan(numbers)] = np.nan
     alike: dict[bytes, list[int]] = {}
@@ -241,7 +241,7 @@ def _levels(coded: Floats, factor_names: Sequence[str]) -> list[Note]:
 
 def _alone(fit: LeastSquares, run_names: Sequence[str]) -> list[Note]:
     alone = np.any(np.nan_to_num(fit.leverage) > _ALONE, axis=0)
-    # without degrees of freedom every run is, and the reason says so
+    # without degrees of freedom this applies to every run, and the reason says so
     alone &= bool((fit.degrees_of_freedom > 0).any())
     if not alone.any():
         return []
@@ -249,11 +249,11 @@ def _alone(fit: LeastSquares, run_names: Sequence[str]) -> list[Note]:
 
 
 _SEQUENCE = {"linear": "first order", "interaction": "interactions", "square": "squares"}
-"""Order of the sources in the analysis of variance, that of R's rsm."""
+"""Order of the sources in the analysis of variance, as in R's rsm."""
 
 
 MOST_RUNS = 2000
-"""Of one experiment: room and time grow with their square, and these take 350 MB and 3 s."""
+"""For one experiment: memory and time grow with their square; these take 350 MB and 3 s."""
 
 
 def fit_surfaces(
@@ -277,7 +277,7 @@ def fit_surfaces(
     Parameters
     ----------
     levels : array_like, shape (n_runs, n_factors)
-        Levels each run achieved; a row of NaN for a run that was not done. [SI unit of each
+        Levels that each run achieved; a row of NaN for a run not done. [SI unit of each
         factor, or 1 where coded]
     responses : array_like, shape (n_responses, n_runs)
         NaN where a run gave no value. [unit of the response]
@@ -286,36 +286,36 @@ def fit_surfaces(
     response_names : sequence of str, length n_responses
         In the order of the rows of ``responses``.
     low, high : array_like, shape (n_factors,)
-        Levels of the plan that are -1 and +1. [SI unit of each factor]
+        Levels of the plan coded -1 and +1. [SI unit of each factor]
     units : {'engineering', 'coded'}
-        Of ``levels``.
+        Units of ``levels``.
     run_names : sequence of str, length n_runs, optional
-        1, 2, .. where not given.
+        By default 1, 2, ...
     blocks : sequence of str, length n_runs, optional
-        Specimen of each run, where there are several.
+        Specimen of each run, if there are several.
     block_treatment : {'fixed', 'random'}
-        These specimens, or draws from those of their kind.
+        The effects apply to these specimens, or to random draws of their kind.
     transforms : {'none', 'log', 'box-cox', 'log-times-frequency'} or one a response
-        Scale each response is fitted on; the last one wants a factor called ``frequency``.
+        Scale on which each response is fitted; the last one needs a factor called ``frequency``.
     replicate_tolerance : float
         Runs count as repeats where no coded level differs by more. [1]
     with_tests : bool
-        Without them t and p of terms and surfaces, analysis of variance and residuals looked at
+        Without them, t and p of terms and surfaces, analysis of variance and examined residuals
         are NaN, and thousands of responses are fitted in the time of some tens.
 
     Returns
     -------
     surfaces : ResponseSurfaces
-        One surface a response; NaN and a reason where its runs do not carry one.
+        One surface per response; NaN and a reason where its runs do not support one.
 
     Raises
     ------
     SettingsError
         If names or transforms do not pair up, a run is named twice, a high level is not
-        above its low one, or a frequency to multiply by is not there or not above zero.
+        above its low one, or a frequency to multiply by is missing or not above zero.
     DataError
-        If a run has a value but no levels, a level or response is infinite, a factor never
-        moves, there is one block, a response to be transformed is not above zero, or there are
+        If a run has a value but no levels, a level or response is infinite, a factor is
+        constant, there is one block, a response to be transformed is not above zero, or there are
         more than `MOST_RUNS` runs.
     FitError
         If there are fewer runs than terms, or the runs leave terms confounded.
@@ -323,15 +323,15 @@ def fit_surfaces(
     Notes
     -----
     Source: [1]_, eq. 5, with 9 and 5 degrees of freedom where its F statistic has 10 and 4
-    (`statistics_from_r2`).  Numbers are those of R's lm and rsm [2]_; with blocks r2 is about
-    their means, where R's is about the grand mean.  The coded plan is only the plan: levels
-    are used as they were met, so that fifteen runs are seldom orthogonal.  Responses are
-    fitted apart: K_1 and tau of runs that give E' and E'' are better derived from surfaces of
-    those two, which stay positive and smooth.
+    (`statistics_from_r2`).  Numbers agree with R's lm and rsm [2]_; with blocks r2 is about
+    their means, where R's is about the grand mean.  Levels are used as they were achieved, not as
+    planned, so that fifteen runs are seldom orthogonal.  Responses are fitted separately: K_1 and
+    tau of runs with E' and E'' are better derived from surfaces of those two, which stay positive
+    and smooth.
 
     Examples
     --------
-    One factor, six runs: squares before linear terms.
+    One factor, six runs; squares precede linear terms:
 
     >>> found = fit_surfaces([[-1.0], [-1.0], [0.0], [0.0], [1.0], [1.0]],
     ...     [[1.0, 2.0, 4.0, 5.0, 3.0, 4.0]], factor_names=["frequency"],
@@ -372,7 +372,7 @@ def fit_surfaces(
     _require_motion(coded[used], factor_names)
     own = [f"block {number + 1}" for number in range(baseline.shape[1] - 1)]
     ordered = [terms[0], *own, *(terms[index] for index in np.argsort(column)[1:])]
-    covariance_factor(matrix[used], names=ordered)  # refuses runs that do not carry the terms
+    covariance_factor(matrix[used], names=ordered)  # refuses runs that do not support the terms
     condition = float(np.linalg.cond(matrix[used]))
 
     scale, power, interval = _scales(transforms, matrix, measured)
@@ -439,7 +439,7 @@ def fit_surfaces(
         predicted_r2=predicted,
         overall_f=overall_f,
         overall_p_value=overall_p_value,
-        # the report had one specimen a surface, or their mean
+        # the report had one specimen per surface, or their mean
         printed_f=printed if effects is None else np.full(len(r2), np.nan),
         fitted=fit.fitted,
         residual=fit.residual,
@@ -473,7 +473,7 @@ def fit_surfaces(
 
 
 def _columns(kinds: tuple[str, ...], *, n_baseline: int) -> tuple[Integers, dict[str, slice]]:
-    """Column of each printed term, behind the baseline, and the columns of each source."""
+    """Column of each printed term, after the baseline, and the columns of each source."""
     column = np.zeros(len(kinds), dtype=np.intp)
     groups = {"blocks": slice(1, n_baseline)} if n_baseline > 1 else {}
     start = n_baseline
@@ -489,7 +489,7 @@ def _columns(kinds: tuple[str, ...], *, n_baseline: int) -> tuple[Integers, dict
 def _scales(
     transforms: Transform | Sequence[Transform], matrix: Floats, measured: Floats
 ) -> tuple[tuple[str, ...], Floats, Floats]:
-    """Scale of each response, its exponent, and the interval of an exponent that was found."""
+    """Scale of each response, its exponent, and the interval of a fitted exponent."""
     count = measured.shape[0]
     scale = (transforms,) * count if isinstance(transforms, str) else tuple(transforms)
     strange = sorted(set(scale) - set(get_args(Transform)))

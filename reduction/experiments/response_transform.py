@@ -1,15 +1,15 @@
 r"""Responses on another scale: logarithm, Box-Cox power.
 
-**Responses that cannot be negative, fitted on another scale and brought back**:
+**Responses that cannot be negative, fitted on another scale and transformed back**:
 
 .. math::
 
     z = \frac{y^\lambda - 1}{\lambda} \quad (\lambda \ne 0), \qquad z = \ln y \quad (\lambda = 0),
     \qquad z = \ln (f y)
 
-The last one is for a relaxation time: of a rope whose loss angle hardly changes with the frequency
-f it falls as 1/f, which no quadratic of f follows between three levels, while the product of both
-is nearly constant.
+The last one is for a relaxation time: for a rope whose loss angle hardly changes with the frequency
+f it falls as 1/f, which no quadratic in f follows between three levels, while the product of the
+two is nearly constant.
 
 The printed quadratic surfaces of H, K_1 and tau of [1]_ fall below zero inside their own
 ranges; a surface of ln y cannot.
@@ -70,21 +70,21 @@ def transform(values: ArrayLike, exponent: ArrayLike) -> Floats:
 
 
 def back_transform(values: ArrayLike, exponent: ArrayLike) -> Floats:
-    r"""Response on its own scale: the median where the transformed one is normal.
+    r"""Response on its own scale: the median if the transformed one is normal.
 
     .. math:: y = (1 + \lambda z)^{1 / \lambda}, \qquad y = e^z \text{ at } \lambda = 0
 
     Parameters
     ----------
     values : array_like, shape (...)
-        Transformed. [unit of the response to the power of the exponent]
+        Transformed values. [unit of the response to the power of the exponent]
     exponent : array_like, shape broadcast against values
         :math:`\lambda`. [1]
 
     Returns
     -------
     response : ndarray, shape (...)
-        Beyond the end of the scale 0 (positive exponent) or infinity (negative one).
+        Beyond the end of the scale, 0 (positive exponent) or infinity (negative one).
         [unit of the response]
 
     Raises
@@ -94,8 +94,8 @@ def back_transform(values: ArrayLike, exponent: ArrayLike) -> Floats:
 
     Notes
     -----
-    Ends of intervals are brought back the same way and stay intervals of the same
-    probability; means do not stay means (`retransformed_mean`).
+    Ends of intervals are transformed back in the same way and remain intervals of the same
+    probability; means do not remain means (`retransformed_mean`).
 
     Examples
     --------
@@ -107,12 +107,12 @@ def back_transform(values: ArrayLike, exponent: ArrayLike) -> Floats:
     )
     base = np.maximum(1 + power * scaled, 0.0)
     log = power == 0
-    # an end of an interval may lie beyond every number, and is then infinite
+    # an end of an interval may overflow, and is then infinite
     with np.errstate(over="ignore"):
         result = np.exp(np.where(log, scaled, 0.0))
     inverse = np.divide(1.0, power, out=np.ones(power.shape), where=~log)
     ended = (base == 0) & (inverse < 0)
-    # 1 where the power does not count
+    # 1 where the power is not used
     safe = np.where(log | ended, 1.0, base)
     with np.errstate(over="ignore"):
         root = safe**inverse
@@ -120,19 +120,19 @@ def back_transform(values: ArrayLike, exponent: ArrayLike) -> Floats:
 
 
 def back_transformed_change(values: ArrayLike, change: ArrayLike, exponent: ArrayLike) -> Floats:
-    """What a small change on the transformed scale is of the response.
+    """Change of the response for a small change on the transformed scale.
 
     Parameters
     ----------
     values, change : array_like, shape (...)
-        Transformed. [unit of the response to the power of the exponent]
+        Transformed values. [unit of the response to the power of the exponent]
     exponent : array_like, shape broadcast against values
         Of the transform. [1]
 
     Returns
     -------
     change : ndarray, shape (...)
-        Signed; NaN where the scale ends within the change. [unit of the response]
+        Signed; NaN if the scale ends within the change. [unit of the response]
 
     Raises
     ------
@@ -141,11 +141,11 @@ def back_transformed_change(values: ArrayLike, change: ArrayLike, exponent: Arra
 
     Notes
     -----
-    Half of the difference of the two ends: the slope there, to the second order.
+    Half of the difference between the two ends: the slope there, to second order.
 
     Examples
     --------
-    0.1 of a logarithm is a tenth:
+    A change of 0.1 in a logarithm is a tenth:
 
     >>> print(back_transformed_change(np.log(50.0), 0.1, 0.0).round(2))
     5.01
@@ -167,8 +167,8 @@ def retransformed_mean(values: ArrayLike, exponent: ArrayLike, *, sigma: ArrayLi
 
     Notes
     -----
-    Source: [3]_; exact at 0, second order in sigma elsewhere.  The exponent and sigma count
-    as known.  A fatigue or damping budget wants this mean; a typical line the median.
+    Source: [3]_; exact at 0, second order in sigma elsewhere.  The exponent and sigma are taken
+    as known.  A fatigue or damping budget needs this mean; a typical line the median.
 
     Examples
     --------
@@ -195,7 +195,7 @@ def multipliers(
     low: ArrayLike,
     high: ArrayLike,
 ) -> Floats:
-    """What each response is multiplied by before it is transformed: the frequency, or 1.
+    """Factor of each response before it is transformed: the frequency, or 1.
 
     Parameters
     ----------
@@ -206,17 +206,17 @@ def multipliers(
     factor_names : sequence of str, length n_factors
         In the order of the columns.
     low, high : array_like, shape (n_factors,)
-        Levels that are -1 and +1. [SI unit of each factor]
+        Levels coded -1 and +1. [SI unit of each factor]
 
     Returns
     -------
     multipliers : ndarray, shape (n_responses, n_points)
-        The frequency for log-times-frequency. [Hz, or 1]
+        The frequency for log-times-frequency, else 1. [Hz, or 1]
 
     Raises
     ------
     SettingsError
-        If a response is to be multiplied by the frequency, which is no factor.
+        If a response is to be multiplied by the frequency, which is not a factor.
 
     Examples
     --------
@@ -242,7 +242,7 @@ def multipliers(
 
 
 LIMITS = (-2.0, 2.0)
-"""Exponents that are searched."""
+"""Exponents to be searched."""
 
 _GRID = 81
 
@@ -250,7 +250,7 @@ _STEPS = 60
 
 
 class _BoxCoxExponent(NamedTuple):
-    """Best exponent of each response and its interval; infinite where the search ends first."""
+    """Best exponent of each response and its interval; infinite if the search ends first."""
 
     exponent: Floats
     low: Floats
@@ -260,7 +260,7 @@ class _BoxCoxExponent(NamedTuple):
 def box_cox_exponent(
     matrix: ArrayLike, responses: ArrayLike, *, confidence: float = 0.95
 ) -> _BoxCoxExponent:
-    r"""Exponent of each response that makes its residuals smallest, by profile likelihood.
+    r"""Exponent of each response that minimises its residuals, by profile likelihood.
 
     .. math::
 
@@ -269,9 +269,9 @@ def box_cox_exponent(
 
     Notes
     -----
-    Source: [2]_, sec. 3; dividing by the geometric mean takes the Jacobian along.  Exponents
-    from -2 to 2 are searched.  Where the largest value is less than twice the smallest the
-    interval is wide and says so: the exponent is then no finding, and 1 or 0 will do.
+    Source: [2]_, sec. 3; dividing by the geometric mean includes the Jacobian.  Exponents
+    from -2 to 2 are searched.  Where the largest value is less than twice the smallest, the
+    interval is wide: the exponent is then not determined, and 1 or 0 will do.
 
     Examples
     --------
@@ -294,7 +294,7 @@ def box_cox_exponent(
     for index, used in enumerate(is_used):
         rows = np.flatnonzero(pattern == index)
         left, size, _ = np.linalg.svd(columns[used], full_matrices=False)
-        # columns of blocks that are missing add nothing
+        # columns of missing blocks add nothing
         basis = left[:, size > 1e-9 * size.max(initial=0.0)]
         if used.sum() <= basis.shape[1]:
             continue
@@ -306,7 +306,7 @@ def box_cox_exponent(
 
 
 def _likelihood(scaled: Floats, basis: Floats) -> Callable[[Floats], Floats]:
-    """Log-likelihood of one exponent a response."""
+    """Log-likelihood of one exponent for each response."""
 
     def at(exponent: Floats) -> Floats:
         transformed = scipy.special.boxcox(scaled, exponent[:, None])
@@ -318,13 +318,13 @@ def _likelihood(scaled: Floats, basis: Floats) -> Callable[[Floats], Floats]:
 
 
 def _profile(likelihood: Callable[[Floats], Floats], count: int, drop: float) -> Floats:
-    """Exponent, low and high end of each response, shape (3, count)."""
+    """Exponent, low and high end for each response, shape (3, count)."""
     grid = np.linspace(*LIMITS, _GRID)
     best, height = highest_of_each(likelihood, grid, count)
     threshold = likelihood(best) - drop
     below = height < threshold[:, None]
     before, after = below & (grid < best[:, None]), below & (grid > best[:, None])
-    # the nearest exponent of the grid on each side that the interval does not hold
+    # the nearest exponent of the grid on each side that is outside the interval
     outer_low = grid[_GRID - 1 - np.argmax(before[:, ::-1], axis=1)]
     outer_high = grid[np.argmax(after, axis=1)]
     low = _crossing(likelihood, best, outer_low, threshold)

@@ -1,14 +1,14 @@
 r"""Run sheets: order, peak loads, warnings and expected precision.
 
-**How small an effect a screening will see, before a line is broken**:
+**Smallest effect that a screening will detect, before a line is broken**:
 
 .. math:: E_{min} = t_{1 - \alpha/2;\, m}\, \frac{2 \sigma}{\sqrt{n}}
 
-**What the runs of a design tell of its terms, before any response**:
+**Information of the runs of a design about its terms, before any response**:
 
 .. math:: C = (X^T X)^{-1}, \qquad h(x) = x^T C x
 
-**How well an experiment will know its surface, before a line is broken**:
+**Precision of the surface of an experiment, before a line is broken**:
 
 .. math:: v_t = \left[(X^T X)^{-1}\right]_{tt}, \qquad v(x) = f^T (X^T X)^{-1} f, \qquad
    w = t_{\nu}\, \sigma \sqrt{v}
@@ -53,13 +53,13 @@ from reduction.record.measurement import Bools, Floats, Integers, read_only_arra
 
 RepeatPlacing = Literal["together", "spread"]
 
-SAME_LOAD = 1e-9  # of the greatest peak; levels are typed to three digits
+SAME_LOAD = 1e-9  # of the greatest peak; levels are entered with three digits
 
 
 @dataclass(frozen=True)
 @read_only_arrays
 class RunSheet:
-    """Runs in the order in which they are to be run; one row a run.
+    """Runs in the order in which they are to be made; one row a run.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ class RunSheet:
     mean_tension, tension_amplitude, peak_tension, minimum_tension : ndarray, shape (n_runs,)
         NaN where a load is not a factor. [N]
     peak_share, minimum_share : ndarray, shape (n_runs,)
-        Of the rated break strength; NaN where that is not given. [1]
+        Peak and minimum over the rated break strength; NaN where that is not given. [1]
     """
 
     factors: tuple[FactorLevels, ...]
@@ -103,7 +103,7 @@ class RunSheet:
 def _spread(order: Integers, coded: Floats) -> Integers:
     """Move repeats of a run to later places at even distances, the last to the end.
 
-    Only later: a repeat before its own place would load the line above the runs that
+    They are only moved later: a repeat before its own place would load the line above the runs that
     still follow.
     """
     _, group = np.unique(coded[order], axis=0, return_inverse=True)
@@ -134,13 +134,13 @@ def make_run_sheet(
     Notes
     -----
     Peak is mean plus amplitude, minimum mean less amplitude.  [1]_ gives the order by
-    load alone, nine blocks in fifteen runs; within a block the lower mean tension comes
+    load alone, nine blocks in fifteen runs.  Within a block the lower mean tension comes
     first, then the lower first factor (frequency in [1]_), then the standard order.
-    An order by load is confounded with load, see `reduction.experiments.run_sheet`.
+    An order by load is confounded with load.
 
     Examples
     --------
-    The peaks of [1]_ for levels of 12 to 30 and 5 to 12 % of the break strength.
+    The peaks of [1]_ for levels of 12 to 30 and 5 to 12 % of the break strength:
 
     >>> from reduction.experiments.designs import box_behnken
     >>> levels = (
@@ -204,28 +204,28 @@ CautionKind = Literal[
     "order-confounded",
 ]
 
-NEAR_ZERO = 1e-9  # of the peak: 12 % less 12 % is zero though its last bit may not be
+NEAR_ZERO = 1e-9  # of the peak: 12 % less 12 % is zero, but its last bit may not be
 
 MEASURED_SLACK = 0.01  # of the peak, as in reduction.stages.three_parameter_line.line_of_loops
 
 _CONFOUNDED = 0.05
-"""Probability of naming a factor of a plan whose order was drawn at random."""
+"""Probability that a factor is named for a plan whose order was drawn at random."""
 
 
 @dataclass(frozen=True)
 class Caution:
-    """One thing to know before the runs are run.
+    """One warning to consider before the runs are made.
 
     Parameters
     ----------
     kind : str
         A fixed name, for scripts.
     message : str
-        What is so, with its numbers.
+        Finding, with its numbers.
     hint : str
-        What can be done.
+        Possible remedy.
     runs : tuple of int
-        Numbers of the runs it is about, in the order of the sheet; empty: the sheet.
+        Numbers of the runs concerned, in the order of the sheet; empty for the whole sheet.
     """
 
     kind: CautionKind
@@ -349,7 +349,7 @@ def _repeats(sheet: RunSheet, names: Mapping[int, str]) -> list[Caution]:
 
 
 def order_cautions(coded: Floats, order: Floats, names: Sequence[str]) -> list[Caution]:
-    """Warn of factors, coded (n_runs, n_factors), that follow the order of the runs, where known.
+    """Warn of factors, coded (n_runs, n_factors), that are correlated with the order of the runs.
 
     Examples
     --------
@@ -367,7 +367,7 @@ def order_cautions(coded: Floats, order: Floats, names: Sequence[str]) -> list[C
     levels = coded[known] - coded[known].mean(axis=0)
     size = np.linalg.norm(levels, axis=0) * np.linalg.norm(place)
     correlation: Floats = np.divide(place @ levels, size, out=np.zeros_like(size), where=size > 0)
-    # of a random order the correlation of each factor has nearly Student's distribution
+    # in a random order the correlation of each factor has nearly Student's distribution
     freedom = max(n_runs - 2, 1)
     limit = scipy.special.stdtrit(freedom, 1 - _CONFOUNDED / (2 * len(names)))
     strong = np.flatnonzero(np.abs(correlation) > limit / np.hypot(limit, np.sqrt(freedom)))
@@ -393,26 +393,26 @@ def find_cautions(
     run_names: Sequence[str] | None = None,
     is_measured: bool = False,
 ) -> tuple[Caution, ...]:
-    """What to know of a run sheet before the first run.
+    """Warnings on a run sheet before the first run.
 
     Parameters
     ----------
     sheet : RunSheet
         From `make_run_sheet`.
     load_limit : float, optional
-        Greatest tension that machine, cell or laboratory allow; None: not looked at. [N]
+        Greatest tension that machine, cell or laboratory allow; None: not checked. [N]
     peak_share_limit : float, optional
-        Greatest peak as a share of the rated break strength; None: not looked at. [1]
+        Greatest peak as a fraction of the rated break strength; None: not checked. [1]
     run_names : sequence of str, length n_runs, optional
-        What the messages call the runs of the sheet; None: their numbers.
+        Names of the runs in messages; None: their numbers.
     is_measured : bool
-        The tensions were measured, where a slack line reads up to 1 % of its peak.
+        True for measured tensions, where a slack line reads up to 1 % of its peak.
 
     Returns
     -------
     cautions : tuple of Caution
         Slack runs, loads above a limit, repeats that show no drift, order confounded
-        with a factor; empty where there is nothing to say.
+        with a factor; empty if there are none.
 
     Raises
     ------
@@ -424,7 +424,7 @@ def find_cautions(
     The run with the lowest mean and the highest amplitude reaches zero tension on every
     line of [2]_ (12 less 12, 10 less 10 % of the break strength): the condition that
     [2]_ itself calls snap loading.  The three centre runs of [2]_ are
-    consecutive, and its order rises with the load.
+    consecutive, and the loads of its runs rise with their order.
 
     Examples
     --------
@@ -468,10 +468,10 @@ def find_cautions(
 
 
 ON_PLAN = 0.3
-"""Coded distance from the plan of a run that a machine with poor control still meets. [1]."""
+"""Coded distance from the plan that a machine with poor control may cause. [1]."""
 
 NOT_OF_PLAN = 0.5
-"""Coded distance from which a run is not the one of the plan, as where two are swapped. [1]."""
+"""Coded distance from which a run is not the planned one, as if two were swapped. [1]."""
 
 
 def levels_off_plan(
@@ -482,11 +482,11 @@ def levels_off_plan(
     run_names: Sequence[str],
     factor_names: Sequence[str],
 ) -> tuple[str, ...]:
-    """Runs whose levels are not those of the plan, in words, farthest first.
+    """Runs whose levels differ from the plan, in words, farthest first.
 
     Notes
     -----
-    Two runs swapped in a plan differ by 1 or 2; machines that feed back the stroke may miss
+    Two runs swapped in a plan differ by 1 or 2; machines that control the stroke may miss
     a load by some tenths.  A surface is fitted to the levels reached and needs no plan; effects
     of two levels rest on the plan alone.
 
@@ -508,18 +508,18 @@ def levels_off_plan(
 
 
 def smallest_effect(design: Design, *, sigma: ArrayLike, significance: float = 0.10) -> Floats:
-    r"""Smallest effect that the screening is expected to call significant.
+    r"""Smallest effect that the screening is expected to find significant.
 
     .. math:: E_{min} = t_{1 - \alpha/2;\, m}\, \frac{2 \sigma}{\sqrt{n}}
 
     Notes
     -----
-    An effect is the difference of two means of n / 2 runs [5]_.  The scatter that the dummies
-    will show is taken as ``sigma`` itself; interactions, which they hold too, come on top.
+    An effect is the difference of two means of n / 2 runs [5]_.  The scatter of the dummies
+    is taken as ``sigma`` itself; interactions, which they also contain, add to it.
 
     Examples
     --------
-    Five factors in twelve runs, six dummies: 1.943 times 2 / sqrt(12).
+    Five factors in twelve runs, six dummies: 1.943 times 2 / sqrt(12):
 
     >>> from reduction.experiments.designs import plackett_burman
     >>> print(smallest_effect(plackett_burman(5), sigma=1.0).round(3))
@@ -537,15 +537,15 @@ def smallest_effect(design: Design, *, sigma: ArrayLike, significance: float = 0
 
 
 _SINGULAR = 1e-9
-"""Smallest over largest singular value, columns of equal length, below which terms are one."""
+"""Smallest over largest singular value, columns of equal length, below which terms coincide."""
 
 
 def _find_confounded(matrix: ArrayLike, names: Sequence[str]) -> tuple[str, ...]:
-    """Say which columns are sums of the columns before them.
+    """Name the columns that are sums of the columns before them.
 
     Examples
     --------
-    Two levels do not tell a square from the mean.
+    Two levels do not distinguish a square from the mean:
 
     >>> levels = np.array([-1.0, 1.0, -1.0, 1.0])
     >>> _find_confounded(np.stack([np.ones(4), levels**2, levels], axis=1), ["mean", "f^2", "f"])
@@ -586,17 +586,17 @@ def covariance_factor(matrix: ArrayLike, *, names: Sequence[str]) -> Floats:
     matrix : array_like, shape (n_runs, n_columns)
         Model matrix. [1]
     names : sequence of str, length n_columns
-        Of the columns, for the message.
+        Names of the columns, for the message.
 
     Returns
     -------
     covariance_factor : ndarray, shape (n_columns, n_columns)
-        Symmetric. [1]
+        Symmetric matrix. [1]
 
     Raises
     ------
     FitError
-        If there are fewer runs than terms, or terms are confounded: their names.
+        If there are fewer runs than terms, or terms are confounded, which are named.
 
     Notes
     -----
@@ -643,16 +643,16 @@ def variance_factor(
     Parameters
     ----------
     matrix : array_like, shape (..., n_points, n_terms)
-        Terms at the points; the leading axis is that of the responses, or there is none. [1]
+        Terms at the points; with a leading axis for the responses, or without. [1]
     factor : array_like, shape (n_terms, n_terms) or (n_patterns, n_terms, n_terms)
         Covariance of the coefficients over the variance of a run. [1]
     pattern : ndarray of int, shape (n_responses,), optional
-        Which ``factor`` each response has, where there are several. [1]
+        Index of the ``factor`` of each response, where there are several. [1]
 
     Returns
     -------
     variance_factor : ndarray, shape (..., n_points)
-        Leverage where the point is a run. [1]
+        The leverage where the point is a run. [1]
 
     Raises
     ------
@@ -675,11 +675,11 @@ def variance_factor(
 
 
 def is_singular(columns: Floats) -> bool:
-    """Whether the runs leave columns of a matrix without information of their own.
+    """Whether the runs give no separate information on some columns of a matrix.
 
     Examples
     --------
-    Two levels do not tell a square from the mean, three do.
+    Two levels do not distinguish a square from the mean, three do:
 
     >>> levels = np.array([-1.0, 1.0, 0.0])
     >>> two, three = (np.stack([x**2, x**0], axis=1) for x in (levels[:2], levels))
@@ -705,7 +705,7 @@ class ExpectedPrecision:
     term_variance_factor : ndarray, shape (n_terms,)
         Variance of a coefficient over that of one run. [1]
     term_half_width : ndarray, shape (..., n_terms)
-        Of the confidence interval of each coefficient. [unit of sigma]
+        Half width of the confidence interval of each coefficient. [unit of sigma]
     points : ndarray, shape (n_points, n_factors)
         Centre, the other points of the design, and the corners of the cube, coded. [1]
     point_kind : tuple of str, length n_points
@@ -713,9 +713,9 @@ class ExpectedPrecision:
     point_variance_factor : ndarray, shape (n_points,)
         Variance of the fitted response over that of one run. [1]
     confidence_half_width, prediction_half_width : ndarray, shape (..., n_points)
-        Of the mean response, and of one more run there. [unit of sigma]
+        Half width for the mean response, and for one more run there. [unit of sigma]
     is_beyond_design : ndarray of bool, shape (n_points,)
-        The variance factor is above the greatest of the runs themselves.
+        True where the variance factor exceeds that of every run.
     degrees_of_freedom : int
         Of the residual.
     confidence : float
@@ -739,7 +739,7 @@ class ExpectedPrecision:
 
 
 def _points(coded: Floats) -> tuple[Floats, tuple[str, ...]]:
-    """Centre first, then the design, then corners that are no runs."""
+    """Centre first, then the design, then corners that are not runs."""
     n_factors = coded.shape[1]
     runs = np.unique(coded, axis=0)
     runs = runs[np.any(runs != 0, axis=1)]
@@ -760,14 +760,14 @@ def expected_precision(
 
     Notes
     -----
-    The quantile is Student's for the residual of the runs to come, so that the price of
-    five degrees of freedom is in the width; the scatter they will show is taken as
-    ``sigma`` itself.  The width holds for a quadratic surface: where the response is
-    not one, its misfit comes on top.
+    The quantile is Student's for the residual of the runs to come, so that the width includes the
+    cost of few degrees of freedom; the scatter of the runs is taken as
+    ``sigma`` itself.  The width holds for a quadratic surface: otherwise
+    the misfit adds to it.
 
     Examples
     --------
-    The design of [8]_: mean, squares, linear terms, interactions, then the corners.
+    The design of [8]_: mean, squares, linear terms, interactions, then the corners:
 
     >>> from reduction.experiments.designs import box_behnken
     >>> precision = expected_precision(box_behnken(3).coded, sigma=0.02)

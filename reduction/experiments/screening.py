@@ -1,6 +1,6 @@
-r"""Plackett-Burman screening: which of many factors move a response.
+r"""Plackett-Burman screening: which of many factors affect a response.
 
-**Screening: which of many factors move a response at all**:
+**Screening: which of many factors affect a response at all**:
 
 .. math:: E_j = \bar y_{j+} - \bar y_{j-}, \qquad
    S_{FE} = \sqrt{\frac{1}{m} \sum_{dummies} E_d^2}, \qquad
@@ -50,7 +50,7 @@ class _HalfNormal:
 
 
 def _two_level_columns(name: str, columns: ArrayLike) -> Floats:
-    """Columns of a two-level design as numbers, or a refusal that names them.
+    """Columns of a two-level design as numbers; a refusal names invalid ones.
 
     Examples
     --------
@@ -68,19 +68,19 @@ def _two_level_columns(name: str, columns: ArrayLike) -> Floats:
 
 
 def half_normal_coordinates(effects: ArrayLike) -> _HalfNormal:
-    r"""Coordinates of a half-normal plot: effects of noise alone lie on a line from zero.
+    r"""Coordinates of a half-normal plot: effects due to noise alone lie on a line from zero.
 
     .. math:: q_i = \Phi^{-1}\!\left(\tfrac12 + \tfrac12 \frac{i - \tfrac12}{m}\right)
 
     Parameters
     ----------
     effects : array_like, shape (..., n_effects)
-        Of factors and dummies together. [unit of the response]
+        Effects of factors and dummies together. [unit of the response]
 
     Returns
     -------
     points : HalfNormal
-        Sizes in rising order with their quantiles.
+        Absolute effects in rising order with their quantiles.
 
     Raises
     ------
@@ -107,31 +107,31 @@ def half_normal_coordinates(effects: ArrayLike) -> _HalfNormal:
 
 
 def alias_matrix(coded: ArrayLike) -> tuple[tuple[tuple[int, int], ...], Floats]:
-    r"""Share of each two-factor interaction that stands in the mean and in each main effect.
+    r"""Fraction of each two-factor interaction contained in the mean and in each main effect.
 
     .. math:: A = (X_1^T X_1)^{-1} X_1^T X_2, \qquad E[E_j] = E_j + \sum_{kl} A_{j,kl} E_{kl}
 
     Parameters
     ----------
     coded : array_like, shape (n_runs, n_factors)
-        Columns of the factors, dummies not among them. [1]
+        Columns of the factors, without dummies. [1]
 
     Returns
     -------
     pairs : tuple of (int, int), length n_pairs
         Factors of each interaction, from 0.
     alias : ndarray, shape (1 + n_factors, n_pairs)
-        First row the mean, then one row a factor. [1]
+        First row the mean, then one row per factor. [1]
 
     Raises
     ------
     DataError
-        If the columns are not of two levels, or two factors always move together.
+        If the columns do not have two levels, or two factors always vary together.
 
     Notes
     -----
-    Source: [1]_.  In twelve runs every interaction of two other factors stands in a main
-    effect with a third of its size, plus or minus: a factor that looks active may be
+    Source: [1]_.  In twelve runs every interaction of two other factors is contained in a main
+    effect with a third of its size, plus or minus: a factor that appears active may be
     the sum of interactions.
 
     Examples
@@ -163,7 +163,7 @@ EffectError = Literal["dummy", "lenth"]
 @dataclass(frozen=True)
 @read_only_arrays
 class ScreeningEffects:
-    """Effects of the factors on one response or many.
+    """Effects of the factors on one or many responses.
 
     Parameters
     ----------
@@ -171,9 +171,9 @@ class ScreeningEffects:
     effect : ndarray, shape (..., n_factors)
         Mean response at the high level less that at the low one. [unit of the response]
     dummy_effect : ndarray, shape (..., n_dummy)
-        The same of the columns that no factor uses. [unit of the response]
+        The same for the columns that no factor uses. [unit of the response]
     mean : ndarray, shape (...)
-        Of all runs. [unit of the response]
+        Mean of all runs. [unit of the response]
     effect_standard_error : ndarray, shape (...)
         From the dummies, or Lenth's pseudo standard error. [unit of the response]
     error_from : str
@@ -181,17 +181,17 @@ class ScreeningEffects:
     degrees_of_freedom : float
         Of the standard error. [1]
     t_value, p_value : ndarray, shape (..., n_factors)
-        Of each effect, two-sided. [1]
+        For each effect, two-sided. [1]
     minimum_significant_effect : ndarray, shape (...)
-        At the level of one effect. [unit of the response]
+        At the level for one effect. [unit of the response]
     simultaneous_minimum_effect : ndarray, shape (...)
-        At the level of all effects of a response together (Sidak). [unit of the response]
+        At the level for all effects of a response together (Sidak). [unit of the response]
     is_significant : ndarray of bool, shape (..., n_factors)
-        The effect is above the minimum of one effect.
+        True if the effect exceeds the minimum for one effect.
     significance : float
         The level, two-sided. [1]
     reason : ndarray of str, shape (...)
-        Why a response has no number; empty where it has.
+        Reason why a response has no number; else empty.
     """
 
     names: tuple[str, ...]
@@ -211,34 +211,34 @@ class ScreeningEffects:
 
 
 def _pseudo_standard_error(effects: Floats) -> Floats:
-    """Lenth's: 1.5 medians of the effects, taken again without the large ones [4]_."""
+    """Lenth's estimate: 1.5 medians of the effects, repeated without the large ones [4]_."""
     size = np.abs(effects)
     first = 1.5 * np.median(size, axis=-1, keepdims=True)
-    # A response that never moves has every effect zero, and none to leave out.
+    # A constant response has zero effects only, and none to leave out.
     small = np.where((size < 2.5 * first) | (first == 0), size, np.nan)
     second: Floats = 1.5 * np.nanmedian(small, axis=-1)
     return second
 
 
 def screening_remarks(n_dummy: int, has_blocks: bool) -> list[Note]:
-    """What the error of effects rests on.
+    """Remarks on the origin of the error of effects.
 
     Parameters
     ----------
     n_dummy : int
-        Columns that no factor uses. [1]
+        Number of columns that no factor uses. [1]
     has_blocks : bool
-        The runs are of several specimens.
+        True if the runs are of several specimens.
 
     Returns
     -------
     remarks : list of Note
-        Empty where dummies of one specimen give the error.
+        Empty if dummies of one specimen give the error.
 
     Raises
     ------
     SettingsError
-        If the number of columns is below zero.
+        If the number of columns is negative.
 
     Examples
     --------
@@ -258,17 +258,17 @@ def screening_effects(
     names: Sequence[str] | None = None,
     significance: float = 0.10,
 ) -> ScreeningEffects:
-    """Effects of a two-level screening, their error, and the smallest that counts.
+    """Effects of a two-level screening, their error, and the smallest significant one.
 
     Parameters
     ----------
     design : Design
-        Two levels; from `plackett_burman`, or the table of an experiment run elsewhere.
+        With two levels; from `plackett_burman`, or the table of an experiment made elsewhere.
     response : array_like, shape (..., n_runs)
         In the order of the rows of the design; any number of responses at once.
         [unit of the response]
     names : sequence of str, optional
-        Of the factors; None: X1, X2, ..
+        Names of the factors; None: X1, X2, ..
     significance : float
         Two-sided level; 0.10 is the 90 % of [3]_. [1]
 
@@ -281,7 +281,7 @@ def screening_effects(
     Raises
     ------
     SettingsError
-        If the names do not fit, or the level is not a share.
+        If the names do not fit, or the level is not a fraction.
     DataError
         If the design is not of two levels, balanced and orthogonal, or the response
         does not fit its runs.
@@ -290,13 +290,13 @@ def screening_effects(
     -----
     With dummy columns the error is their root mean square, with as many degrees of
     freedom; without, Lenth's pseudo standard error with a third of the effects [4]_.
-    Both hold two-factor interactions beside noise (`confounding.alias_matrix`).  [3]_
+    Both include two-factor interactions besides noise (`alias_matrix`).  [3]_
     prints neither runs nor formula: this is the published method, with
     ``t(0.10, 6) = 1.943`` for its five factors and six dummies.
 
     Examples
     --------
-    Cast fatigue [5]_: the factor F has the greatest effect, 0.915.
+    Cast fatigue [5]_; the factor F has the greatest effect, 0.915:
 
     >>> rows = ["++-+++-", "+-+++--", "-+++---", "+++---+", "++---+-", "+---+-+",
     ...         "---+-++", "--+-++-", "-+-++-+", "+-++-++", "-++-+++", "-------"]

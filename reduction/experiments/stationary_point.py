@@ -1,6 +1,6 @@
 r"""Stationary point, principal curvatures and ridge path of quadratic surfaces.
 
-**How stationary points and principal curvatures follow the coefficients of a surface**:
+**How stationary points and principal curvatures follow from the coefficients of a surface**:
 
 .. math::
 
@@ -35,7 +35,7 @@ from reduction.record.measurement import Floats, Integers
 def canonical_slopes(
     point: ArrayLike, eigenvalue: ArrayLike, eigenvector: ArrayLike, exponents: Integers
 ) -> tuple[Floats, Floats]:
-    r"""What a change of each coefficient does to stationary points and to curvatures.
+    r"""How stationary points and curvatures change with each coefficient.
 
     .. math::
 
@@ -44,12 +44,12 @@ def canonical_slopes(
 
     Notes
     -----
-    Source: [1]_; of an eigenvalue [2]_.
+    Source: [1]_; for an eigenvalue [2]_.
 
     Examples
     --------
-    1 + 2 X - X^2: a curvature that is 0.1 weaker moves the maximum from 1 to 2 / 1.8, by 0.1 to
-    the first order.
+    1 + 2 X - X^2: a curvature weaker by 0.1 moves the maximum from 1 to 2 / 1.8, by 0.1 to
+    first order.
 
     >>> from reduction.experiments.designs import quadratic_exponents
     >>> of_point, _ = canonical_slopes([[1.0]], [[-1.0]], [[[1.0]]], quadratic_exponents(1))
@@ -68,10 +68,10 @@ def canonical_slopes(
 
 
 _FLAT = 1e-10
-"""Smallest over largest curvature below which a direction has none."""
+"""Ratio of smallest to largest curvature below which a direction counts as flat."""
 
 _HALVINGS = 100
-"""Bisection steps of the multiplier: below the last digit of a double."""
+"""Bisection steps for the multiplier: enough to reach the last digit of a double."""
 
 
 class _RidgePath(NamedTuple):
@@ -130,9 +130,9 @@ def canonical_analysis(
 
     Notes
     -----
-    Source: [1]_; uncertainty of an eigenvalue as [2]_.  Eigenvalues belong to coded units: a
-    change of the levels changes them, not the stationary point.  R's rsm sets small
-    eigenvalues to zero and then moves the stationary point; here they stand as they are.
+    Source: [1]_; uncertainty of an eigenvalue as in [2]_.  Eigenvalues refer to coded units: a
+    change of the levels changes them, but not the stationary point.  R's rsm sets small
+    eigenvalues to zero, which moves the stationary point; here they are left as they are.
 
     Examples
     --------
@@ -157,7 +157,7 @@ def canonical_analysis(
     flat = known & ~(size.min(axis=1) > _FLAT * size.max(axis=1))
     sound = known & ~flat
 
-    # in the axes of the curvature each coordinate of the point is a quotient of its own
+    # in the axes of the curvature each coordinate of the point is a separate quotient
     double = np.where(sound[:, None], 2 * eigenvalue, np.nan)
     along = np.einsum("rij,ri->rj", eigenvector, slope) / -double
     point = np.einsum("rij,rj->ri", eigenvector, along)
@@ -200,10 +200,10 @@ def ridge_path(
 
     Notes
     -----
-    Source: [3]_.  The multiplier is found by bisection: the length of x falls with it beyond
-    the largest eigenvalue.  Where b has no part along that eigenvector the path ends on the
-    axis and its sign is free: the positive one is given.  A Box-Behnken design has no runs
-    at the corners of the cube; a radius above sqrt(2) leaves the runs behind.
+    Source: [3]_.  The multiplier is found by bisection: beyond the largest eigenvalue the length
+    of x falls as it grows.  Where b has no component along that eigenvector, the path ends on
+    the axis with either sign; the positive one is given.  A Box-Behnken design has no runs at
+    the corners of the cube; a radius above sqrt(2) leaves the runs behind.
 
     Examples
     --------
@@ -229,7 +229,7 @@ def ridge_path(
     slope, form = _curvature(sign * np.where(known[:, None], values, 0.0), exponents)
     eigenvalue, eigenvector = np.linalg.eigh(form)
     half = np.einsum("rij,ri->rj", eigenvector, slope)[:, None, :] / 2
-    # x = V half / (mu - lambda); written in the excess of mu over the largest eigenvalue
+    # x = V half / (mu - lambda), in terms of the excess of mu over the largest eigenvalue
     gap = (eigenvalue[:, -1:] - eigenvalue)[:, None, :]
     reach = np.where(length > 0, length, 1.0)
     least = np.abs(half[..., -1]) / reach

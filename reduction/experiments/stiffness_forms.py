@@ -1,6 +1,6 @@
-r"""Dynamic stiffness in the forms that mooring codes take.
+r"""Dynamic stiffness in the forms used by mooring codes.
 
-**Dynamic stiffness of a rope in the forms that mooring codes take, from the same runs**:
+**Dynamic stiffness of a rope in the forms used by mooring codes, from the same runs**:
 
 .. math::
 
@@ -45,7 +45,7 @@ Texts = np.ndarray[tuple[int, ...], np.dtype[np.str_]]
 @dataclass(frozen=True)
 @read_only_arrays
 class FormQuality:
-    """How well forms fit the same runs; stiffness over break strength throughout.
+    """Quality of fit of forms to the same runs; stiffness over break strength throughout.
 
     Parameters
     ----------
@@ -55,14 +55,14 @@ class FormQuality:
     sigma : ndarray, shape (..., n_forms)
         Standard deviation of a run about the form. [1]
     r2, adjusted_r2, predicted_r2 : ndarray, shape (..., n_forms)
-        The last from the runs predicted each without itself. [1]
+        The last is from predictions of each run without itself. [1]
     prediction_sum_of_squares : ndarray, shape (..., n_forms)
         PRESS. [1]
     aicc : ndarray, shape (..., n_forms)
-        Lowest is best; NaN where the runs are too few for it. [1]
+        Lowest is best; NaN where there are too few runs for it. [1]
     degrees_of_freedom : ndarray of int, shape (..., n_forms)
     reason : ndarray of str, shape (..., n_forms)
-        Why a form has no number; empty where it has.
+        Reason why a form has no number; else empty.
     """
 
     forms: tuple[str, ...]
@@ -87,22 +87,22 @@ class StiffnessForm:
     form : str
         ``del-vecchio`` or ``mean-load``.
     equation : str
-        The form in words a table can carry, with what the amplitude is.
+        The form in words for a table, with the meaning of the amplitude.
     coefficient_names : tuple of str, length n_coefficients
         a, b, c, d or alpha, beta.
     coefficient_units : tuple of str, length n_coefficients
     coefficient, coefficient_standard_uncertainty : ndarray, shape (..., n_coefficients)
-        With the signs of the equation: c and d are taken away. [``coefficient_units``]
+        With the signs of the equation: c and d are subtracted. [``coefficient_units``]
     coefficient_low, coefficient_high : ndarray, shape (..., n_coefficients)
         Ends of the confidence interval. [``coefficient_units``]
     p_value : ndarray, shape (..., n_coefficients)
-        Of no effect, two-sided. [1]
+        For no effect, two-sided. [1]
     covariance : ndarray, shape (..., n_coefficients, n_coefficients)
-        Of the coefficients.
+        Covariance of the coefficients.
     stiffness_fitted, stiffness_residual : ndarray, shape (..., n_runs)
-        Of each run. [N]
+        Values of each run. [N]
     quality : FormQuality
-        Of this form alone (n_forms is 1).
+        Quality of this form alone (n_forms is 1).
     mean_load_range : tuple of (float, float)
         Lowest and highest mean tension over the break strength: the range of use. [1]
     rated_break_strength : float
@@ -136,12 +136,12 @@ def _form_quality(
 
     Notes
     -----
-    Source of AICc: [1]_, as n log(RSS / n) + 2 k + 2 k (k + 1) / (n - k - 1), k the
+    Source of AICc: [1]_, as n log(RSS / n) + 2 k + 2 k (k + 1) / (n - k - 1), where k counts the
     coefficients and the scatter.
 
     Examples
     --------
-    A mean of three runs has the scatter of a deviation and no r2.
+    A mean of three runs has the scatter of a deviation and no r2:
 
     >>> from reduction.experiments.least_squares_fit import fit_least_squares
     >>> fit = fit_least_squares(np.ones((3, 1)), [[1.0, 2.0, 3.0]])
@@ -190,7 +190,7 @@ LoadAmplitude = Literal["half-range", "full-range"]
 
 
 def _checked_strength(rated_break_strength: float | None) -> float:
-    """Return the break strength, or raise where there is none."""
+    """Return the break strength, or raise if there is none."""
     if rated_break_strength is None:
         raise SettingsError(
             "stiffness over break strength has no break strength",
@@ -236,7 +236,7 @@ def _del_vecchio_matrix(
 
 
 def _positive_levels(**named: ArrayLike) -> tuple[Floats, ...]:
-    """Return levels as series of runs, none of them zero or less."""
+    """Return levels as a series over the runs, all of them positive."""
     arrays = as_same_shape(**named)
     if arrays[0].ndim != 1:
         raise DataError(
@@ -325,8 +325,8 @@ def fit_del_vecchio_stiffness(
     Notes
     -----
     Source: [2]_.  It was written for polyester, at loads and periods above those of [4]_:
-    the coefficients hold for the runs they come from.  Papers print :math:`L_a` as half
-    and as full range; ``load_amplitude`` has no default for that reason.
+    the coefficients hold for the runs from which they are fitted.  Papers print :math:`L_a` both as
+    half and as full range; for that reason ``load_amplitude`` has no default.
 
     Examples
     --------
@@ -366,22 +366,22 @@ def fit_mean_load_stiffness(
     rated_break_strength: float | None,
     confidence: float = 0.95,
 ) -> StiffnessForm:
-    r"""Coefficients of the form that MoorDyn and MoorPy take.
+    r"""Coefficients of the form used by MoorDyn and MoorPy.
 
     .. math:: EA_d = \alpha\, MBL + \beta\, T_m
 
     Notes
     -----
     Source: [3]_.  alpha is EAd_MBL and beta EAd_MBL_Lm of MoorPy; MoorDyn takes the product
-    of alpha and MBL in newtons, and beta.  MoorDyn has alpha MBL as the stiffness at no
-    mean load and wants it above the static EA; a stiffness that rises steeply with the mean
-    load gives an alpha near or below zero, and then the form is not for MoorDyn.
-    Amplitude and frequency are averaged over as the runs have them.
+    of alpha and MBL in newtons, and beta.  In MoorDyn alpha MBL is the stiffness at zero
+    mean load and must exceed the static EA; a stiffness that rises steeply with the mean
+    load gives an alpha near or below zero, and the form cannot be used in MoorDyn.
+    The fit averages over amplitude and frequency as they occur in the runs.
 
     Examples
     --------
     The surface of 8-strand nylon in [4]_, Table 3, at the centre of frequency and amplitude
-    (B1 + B3 -+ B6 in 1e4 lb per unit strain), break strength 5760 lb.
+    (B1 + B3 -+ B6 in 1e4 lb per unit strain), break strength 5760 lb:
 
     >>> form = fit_mean_load_stiffness([1.667e4, 3.088e4, 4.511e4], mean_tension=[691.2, 1209.6,
     ...     1728.0], rated_break_strength=5760.0)
@@ -415,18 +415,18 @@ def compare_stiffness_forms(
     coded: ArrayLike,
     rated_break_strength: float | None,
 ) -> FormQuality:
-    """Both forms beside the quadratic surface of the same runs.
+    """Both forms compared with the quadratic surface of the same runs.
 
     Notes
     -----
-    A run without one of its levels is left out of all three.  What the amplitude is makes
-    no difference here: it scales the coefficient c alone.  AICc [1]_ counts the scatter as
-    a parameter: on fifteen runs ten terms pay 110 for their number, four pay 17 and two
-    8, so that a form may win by it though its r2 is less.
+    A run without one of its levels is left out of all three.  The meaning of the amplitude does not
+    matter here: it scales only the coefficient c.  AICc [1]_ counts the scatter as
+    a parameter: for fifteen runs the penalty is 110 for ten terms, 17 for four and
+    8 for two, so that a form may win by it though its r2 is lower.
 
     Examples
     --------
-    A stiffness that follows the mean load alone needs no more than that form.
+    A stiffness that follows the mean load alone needs no more than that form:
 
     >>> from reduction.experiments.designs import box_behnken
     >>> coded = box_behnken(3).coded

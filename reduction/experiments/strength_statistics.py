@@ -55,20 +55,20 @@ def ratio_of_means(
     Parameters
     ----------
     mean, standard_deviation : array_like
-        Of the groups, one unit; the deviation NaN where not known. [N, 1]
+        Of the groups, in one unit; the deviation NaN where not known. [N, 1]
     n : array_like of int
-        Values of each group. [1]
+        Number of values of each group. [1]
     reference_mean, reference_standard_deviation : array_like
         Of the reference, in the same unit. [N, 1]
     reference_n : array_like of int
-        Values of the reference. [1]
+        Number of values of the reference. [1]
     confidence : float
         Of the interval, two-sided. [1]
 
     Returns
     -------
     ratio : RatioOfMeans
-        The shape of the arguments together.
+        With the broadcast shape of the arguments.
 
     Raises
     ------
@@ -77,14 +77,14 @@ def ratio_of_means(
 
     Notes
     -----
-    Fieller's interval [2]_, each group with a deviation of its own and Welch's degrees of
-    freedom at the estimated ratio.  Not the delta method, since the reference mean is
-    itself of a few breaks and the interval of a quotient is not symmetric; not a common
+    Fieller's interval [2]_, with a separate deviation for each group and Welch's degrees of
+    freedom at the estimated ratio.  The delta method is not used, since the reference mean is
+    itself from a few breaks and the interval of a quotient is not symmetric; nor is a common
     deviation, since a worn line of half the strength does not scatter as a new one
     (Table 21 of [1]_: 473 and 321 lb, .014 and .045).  With only one value in a group
-    its scatter is not known and there is no interval.  Over generated groups an interval of
-    95 % held the true change in 94 % with four breaks against sixteen, in 88 % with two: of
-    two breaks no interval is to be trusted.
+    its scatter is not known and there is no interval.  For generated groups an interval of
+    95 % held the true change in 94 % with four breaks against sixteen, in 88 % with two: no
+    interval from two breaks can be trusted.
 
     Examples
     --------
@@ -113,7 +113,7 @@ def ratio_of_means(
         variance = v1 + ratio**2 * v0
         freedom = variance**2 / (v1**2 / (n1 - 1) + ratio**4 * v0**2 / (n0 - 1))
         t = stdtrit(freedom, (1 + confidence) / 2)
-        # roots of the quadratic in rho; the leading term is above zero for a closed interval
+        # roots of the quadratic in rho; the leading term is positive for a closed interval
         lead = m0**2 - t**2 * v0
         root = t * np.sqrt(v0 * m1**2 + v1 * m0**2 - t**2 * v0 * v1)
         lead = np.where(lead > 0, lead, np.nan)
@@ -140,7 +140,7 @@ def ratio_of_means(
 def one_way(
     mean: ArrayLike, standard_deviation: ArrayLike, n: ArrayLike, *, significance: float = 0.05
 ) -> OneWay:
-    r"""One-way F of groups of which mean, deviation and number are known.
+    r"""One-way F of groups from their means, deviations and numbers.
 
     .. math:: F = \frac{\sum n_i (m_i - m)^2 / (k - 1)}{\sum (n_i - 1) s_i^2 / (N - k)}
 
@@ -149,14 +149,14 @@ def one_way(
     mean, standard_deviation : array_like, shape (..., n_groups)
         In one unit; the deviation of a group of one is not used. [N, 1]
     n : array_like of int, shape (..., n_groups)
-        Values of each group. [1]
+        Number of values of each group. [1]
     significance : float
         For the critical value. [1]
 
     Returns
     -------
     analysis : OneWay
-        Shape without the last axis.
+        With the shape of the arguments without the last axis.
 
     Raises
     ------
@@ -165,9 +165,9 @@ def one_way(
 
     Notes
     -----
-    F takes one deviation for all groups.  Table A-4 of [1]_ compares deviations of 2.0 and 6.8
-    %; Welch's F [3]_, with a deviation of each group, stands beside it (NaN where a group has
-    one value or no scatter).
+    F assumes one deviation for all groups.  Table A-4 of [1]_ compares deviations of 2.0 and 6.8
+    %; Welch's F [3]_, with a separate deviation for each group, is given beside it (NaN where a
+    group has one value or no scatter).
 
     Examples
     --------
@@ -232,31 +232,31 @@ def fit_exposure_trend(
     Parameters
     ----------
     exposure : array_like, shape (n_groups,)
-        Time in the field, 0 for a new line; groups of one exposure are joined. [year]
+        Time in the field, 0 for a new line; groups of equal exposure are joined. [year]
     mean : array_like, shape (n_groups,)
         Mean strength of a group, or single breaks. [N]
     standard_deviation : array_like, shape (n_groups,), optional
         NaN where not known; not needed for single breaks. [N]
     n : array_like of int, shape (n_groups,), optional
-        Breaks of a group; 1 where not given. [1]
+        Number of breaks of a group; 1 where not given. [1]
 
     Returns
     -------
     trend : ExposureTrend
-        With lack of fit against the scatter of breaks of one exposure.
+        With lack of fit compared with the scatter of breaks of equal exposure.
 
     Raises
     ------
     DataError
-        If the series do not pair up or a number cannot be.
+        If the series do not pair up or a number is impossible.
     FitError
-        If there are fewer than two exposures, or nothing is left to tell the scatter.
+        If there are fewer than two exposures, or no information on the scatter.
 
     Notes
     -----
     Groups given by mean, deviation and number give the line of their single breaks.
-    A group of several breaks without a deviation counts for the line, and not for the
-    scatter.  One deviation is taken for all exposures.
+    A group of several breaks without a deviation counts for the line, but not for the
+    scatter.  One deviation is assumed for all exposures.
 
     Examples
     --------
@@ -311,7 +311,7 @@ def fit_exposure_trend(
     variance = (pure_square + lack_square) / free
     fits = lack > 0 and pure > 0 and pure_square > 0
     ratio = (lack_square / lack) / (pure_square / pure) if fits else float("nan")
-    # of (value at the centre, slope), carried to the value at no exposure
+    # from (value at the centre, slope) to the value at zero exposure
     shift = np.array([[1.0, -centre], [0.0, 1.0]])
     covariance = shift @ np.diag([variance / breaks.sum(), variance / spread]) @ shift.T
     return ExposureTrend(
@@ -362,7 +362,7 @@ def strength_after(
 def share_lost_per_year(
     trend: ExposureTrend, *, confidence: float = 0.95
 ) -> tuple[float, float, float]:
-    """Share of the new strength that the line loses in a year, with Fieller's interval.
+    """Fraction of the new strength that the line loses in a year, with Fieller's interval.
 
     Examples
     --------
@@ -386,7 +386,7 @@ def share_lost_per_year(
 
 
 VALUE, LOWER_BOUND, EXCLUDED = 0, 1, 2
-"""What a value says of the line: itself, that it is at least this, nothing."""
+"""Use of a value: as the strength of the line, as a lower bound of it, or not."""
 
 
 def _sums(group: Integers, weights: Floats, n_groups: int) -> Floats:
@@ -402,12 +402,12 @@ def _extreme(group: Integers, value: Floats, n_groups: int, which: np.ufunc) -> 
 def group_statistics(
     value: ArrayLike, group: ArrayLike, use: ArrayLike, *, n_groups: int
 ) -> GroupStatistics:
-    """Mean, deviation and number of each group; breaks in the termination apart.
+    """Mean, deviation and number of each group; breaks in the termination separately.
 
     Notes
     -----
-    The deviation has n - 1 below it.  A group of one has a mean and no deviation.  Relative
-    variability is what [5]_ calls deviation over mean.
+    The deviation is divided by n - 1.  A group of one has a mean and no deviation.  Relative
+    variability in [5]_ is deviation over mean.
 
     Examples
     --------
@@ -462,9 +462,9 @@ def censored_mean(
 
     Notes
     -----
-    Maximum likelihood of a normal strength, the deviation times :math:`\sqrt{r/(r-1)}` with r
+    Maximum likelihood of a normal strength, with the deviation times :math:`\sqrt{r/(r-1)}` for r
     breaks in the line: without lower bounds mean, deviation and interval are the usual
-    ones.  It takes the strength of termination and line of one specimen as independent.
+    ones.  The strengths of termination and line of one specimen are assumed independent.
 
     Examples
     --------
@@ -509,7 +509,7 @@ def censored_mean(
 def _threshold(
     load: Floats, failed: Integers, suspended: Integers
 ) -> tuple[float, float, tuple[str, ...]]:
-    """Highest level without failure at or below it, lowest with one, and what contradicts."""
+    """Highest level with no failure at or below it, lowest with one, and contradictions."""
     has_failed = failed > 0
     high = float(load[has_failed][0]) if has_failed.any() else float("nan")
     below = ~has_failed & ~(load > high)
@@ -533,13 +533,13 @@ def summarise_snap_loading(
     slack_load_ratio: float = 0.0,
     confidence: float = 0.95,
 ) -> SnapLevels:
-    """What each level of peak load did to lines that go slack, and where failures begin.
+    """Effect of each level of peak load on lines that go slack, and onset of failures.
 
     Notes
     -----
-    Of m lines that all survived, the share p that would have failed by then is bounded
-    by :math:`(1 - p)^m = 1 - c` [-].  The three samples a level of [6]_ leave it at 63 % (95 %):
-    its 30 % of break strength is where failures were seen to end, not a safe load.
+    If m lines all survived, the fraction p that would have failed by then is bounded
+    by :math:`(1 - p)^m = 1 - c` [-].  The three samples a level of [6]_ bound it by 63 % (95 %):
+    its 30 % of break strength is where failures ceased to be seen, not a safe load.
 
     Examples
     --------

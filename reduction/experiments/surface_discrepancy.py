@@ -1,17 +1,17 @@
-r"""What a quadratic surface may miss between its runs.
+r"""Possible error of a quadratic surface between its runs.
 
-Three levels of a factor carry a slope and a curvature; what the response does between them they
-do not say.  A power of the frequency with the exponent -0.9, quadratic in the frequency on the
-scale of its logarithm, is met at 0.1, 0.3 and 0.5 Hz and is off by 6 % at 0.2 Hz, with residuals
-of nil.  The terms of higher order that the surface does without (of one factor up to the
-eighth, of several up to the fourth) are drawn from what the lower ones say of their size,
+Three levels of a factor determine a slope and a curvature, but not the response between them.  A
+power of the frequency with the exponent -0.9, quadratic in the frequency on the
+scale of its logarithm, is met at 0.1, 0.3 and 0.5 Hz and is wrong by 6 % at 0.2 Hz, with zero
+residuals.  The terms of higher order that the surface omits (of one factor up to the
+eighth, of several up to the fourth) are drawn from the size of the lower ones,
 
 .. math::
 
     \delta(x) = \sum_\alpha \gamma_\alpha \left(x^\alpha - x^T (X^T X)^{-1} X^T X^\alpha\right),
 
-along one factor as those of a relaxing material.  Of relaxation strengths h that lie anywhere over
-the logarithm of the time, independently, the parts of the modulus along v = ln f are
+along one factor as those of a relaxing material.  For relaxation strengths h distributed over
+the logarithm of time, independently, the parts of the modulus along v = ln f are
 
 .. math::
 
@@ -19,7 +19,7 @@ the logarithm of the time, independently, the parts of the modulus along v = ln 
     E' = \int h(u)\,\tfrac{1}{2} [1 + \tanh(v - u)]\,du, \qquad
     k'' \propto \frac{d}{\sinh d}, \qquad k' \propto -\frac{d}{\tanh d},
 
-with k the covariance at a distance d, of E' but for a constant.
+with k the covariance at a distance d, for E' up to a constant.
 
 References
 ----------
@@ -51,44 +51,44 @@ from reduction.record.measurement import Bools, Floats, Integers, read_only_arra
 _ORDERS = (3, 4)
 
 _NO_ZERO = 0.5
-"""Fall of the terms from order to order of a factor that may be zero or less."""
+"""Ratio of the terms from order to order of a factor that may be zero or less."""
 
 _ALONE = range(5, 9)
-"""Further orders along one factor: of a logarithm over levels of 1 to 25, 2 % is left beyond."""
+"""Further orders along one factor: for a logarithm over levels of 1 to 25, 2 % remains beyond."""
 
 _NO_LEVEL = 1e-6
-"""Share of the centre below which a coded level beyond the range stands for none."""
+"""Least level over the centre, for coded levels beyond the range."""
 
 _ALONG = np.linspace(-1.0, 1.0, 41)
 """Coded levels at which a response along one factor is drawn."""
 
 _STORING = ("apparent_spring_constant", "dissipation_spring_constant", "storage_spring_constant")
-"""Responses that go along the frequency as a storage modulus."""
+"""Responses that vary with frequency as a storage modulus."""
 
 _FROM_LOSS = ("relaxation_time", "dashpot_coefficient")
-"""Responses that are made from the loss."""
+"""Responses that are derived from the loss."""
 
 _OF_ONE_TIME = ("dissipation_spring_constant", *_FROM_LOSS)
-"""Responses that a single relaxation leaves alone along the frequency."""
+"""Responses that a single relaxation leaves constant over frequency."""
 
 _ODDS = 0.1
-"""Of a single relaxation time against a spectrum, before the runs: a judgement."""
+"""Prior odds of a single relaxation time against a spectrum: a judgement."""
 
 
 @dataclass(frozen=True)
 @read_only_arrays
 class SurfaceDiscrepancy:
-    """Second moments of what surfaces miss, on the scale that they were fitted on.
+    """Second moments of the errors of surfaces, on the scale on which they were fitted.
 
     Parameters
     ----------
     exponents : ndarray of int, shape (n_all, n_factors)
-        Terms of the surface, then those of third and fourth order, then more of one factor.
+        Terms of the surface, then those of third and fourth order, then higher ones of one factor.
     moment : ndarray, shape (n_responses, n_all, n_all)
         Expected products of the coefficients of the difference between response and surface; NaN
         for a response without a surface. [unit of the fitted response, squared]
     degrees_of_freedom : ndarray, shape (n_responses,)
-        Squares that the size of the terms was found from, two a factor. [1]
+        Number of squares from which the size of the terms was found, two per factor. [1]
     """
 
     exponents: Integers
@@ -108,7 +108,7 @@ def discrepancy_at(terms: Floats, moment: Floats) -> Floats:
 
 
 def discrepancy_of(surfaces: ResponseSurfaces) -> SurfaceDiscrepancy:
-    r"""Size of the terms that quadratic surfaces do without, and what that does between the runs.
+    r"""Size of the terms that quadratic surfaces omit, and the resulting error between the runs.
 
     .. math::
 
@@ -124,7 +124,7 @@ def discrepancy_of(surfaces: ResponseSurfaces) -> SurfaceDiscrepancy:
     Returns
     -------
     discrepancy : SurfaceDiscrepancy
-        Of every response, on the scale of its fit.
+        For every response, on the scale of its fit.
 
     Raises
     ------
@@ -135,24 +135,24 @@ def discrepancy_of(surfaces: ResponseSurfaces) -> SurfaceDiscrepancy:
     -----
     Method: the bias of [2]_ with the sizes of its terms drawn, as the discrepancy of [1]_.
     Along a factor, a normal process with the covariance C gives slope and curvature, b,
-    together with the terms beyond them; what b says of those, and how large the process is,
-    follows. Along the frequency the process is the one of [3]_ above; of storage, and of what
-    is made from the loss, it is as large as the mean of what they and what the loss say, if
-    that is more: slope and curvature of three levels may miss a relaxation that the loss shows.
-    A single relaxation time makes K_1 and tau constant and the loss not: what the loss adds to them
-    is weighted by the chance of their slope and curvature against that of scatter about none.
-    Along other factors the process of the loss stands over the level and over its logarithm,
-    weighted by how likely they make slope and curvature, whatever its size. Terms of several
-    factors have one scale, from the interactions and from what the runs scatter about the
+    together with the terms beyond them; b then determines the distribution of those terms and the
+    size of the process. Along the frequency the process is that of [3]_ above.  For storage, and
+    for responses derived from the loss, its size is at least the mean of their own and that
+    by the loss: slope and curvature of three levels may miss a relaxation that the loss shows.
+    A single relaxation time makes K_1 and tau constant but not the loss: the contribution of the
+    loss to them is weighted by the chance of their slope and curvature against that of scatter
+    about none.  Along other factors the process of the loss is taken over the level and over its
+    logarithm, weighted by the likelihood of slope and curvature, whatever its size. Terms of
+    several factors have one scale, from the interactions and from the scatter of the runs about the
     surface beyond their repeats (or at all, where none is repeated): the only terms of third
-    order of which a Box-Behnken design sees anything. From every square the part that scatter
-    alone gives is taken off. A response that turns within less than the distance of two levels
-    (a step, a kink) is not covered: no run says so.
+    order that a Box-Behnken design can detect. From every square the part due to scatter
+    alone is subtracted. A response that turns within less than the distance of two levels
+    (a step, a kink) is not covered, since no run shows it.
 
     Examples
     --------
-    ln f^-0.9 of runs at 0.1, 0.3 and 0.5 Hz: what is stated at 0.2 and 0.4 Hz beside what the
-    parabola misses there.
+    ln f^-0.9 with runs at 0.1, 0.3 and 0.5 Hz: stated error at 0.2 and 0.4 Hz compared with the
+    actual error of the parabola there.
 
     >>> from reduction.experiments.response_surfaces import fit_surfaces
     >>> def law(x):
@@ -202,16 +202,16 @@ def _higher_orders(n_factors: int) -> Integers:
 
 
 def _logarithm_of(ratio: float) -> Callable[[Floats], Floats]:
-    """Logarithm of a level over that of the centre, by coded level; none of a level of zero."""
+    """Logarithm of a level over that of the centre, by coded level; finite for a level of zero."""
     return lambda coded: np.asarray(np.log(np.maximum(1 + ratio * coded, _NO_LEVEL)))
 
 
 def _falls(low: Floats, high: Floats) -> Floats:
-    """Half range over centre of each factor: the series of a power of it falls by that.
+    """Half range over centre of each factor: ratio of the terms in the series of a power of it.
 
     Examples
     --------
-    0.1 to 0.5 Hz, and 12 to 30 % of a strength:
+    For 0.1 to 0.5 Hz, and 12 to 30 % of a strength:
 
     >>> print(_falls(np.array([0.1, 0.12, -1.0]), np.array([0.5, 0.3, 1.0])).round(3))
     [0.667 0.429 0.5  ]
@@ -240,7 +240,7 @@ def _runs_of(surfaces: ResponseSurfaces, is_used: Bools) -> _Runs:
 
 
 def _aliases(surfaces: ResponseSurfaces, runs: _Runs, more: Integers) -> tuple[Floats, Floats]:
-    """Coefficients of what a surface misses of each term, and how much of it the residuals see."""
+    """Coefficients of the misfit of each term, and its sum of squares in the residuals."""
     higher = model_matrix(runs.coded, more)
     solved = runs.inverse @ higher
     change = np.vstack([-solved[: len(surfaces.exponents)], np.eye(len(more))])
@@ -249,7 +249,7 @@ def _aliases(surfaces: ResponseSurfaces, runs: _Runs, more: Integers) -> tuple[F
 
 
 def _without_scatter(own: Floats, scatter: Floats) -> Floats:
-    """Products of some coefficients less what scatter alone gives, none of them negative."""
+    """Products of some coefficients less the part due to scatter alone, none of them negative."""
     value, vector = np.linalg.eigh(np.outer(own, own) - scatter)
     return np.asarray((vector * np.maximum(value, 0.0)) @ vector.T)
 
@@ -261,15 +261,15 @@ def _loss_kernel(distance: Floats) -> Floats:
 
 
 def _storage_kernel(distance: Floats) -> Floats:
-    """The same of their storage, but for a constant."""
+    """The same for their storage, up to a constant."""
     apart = np.maximum(np.abs(distance), 1e-9)
     return np.asarray(-apart / np.tanh(apart))
 
 
 class _OneFactor(NamedTuple):
-    """What slope and curvature along a factor say of the terms of higher order.
+    """Information of slope and curvature along a factor on the terms of higher order.
 
-    ``unlikely`` is one over the likelihood of both, of whatever size the process is.
+    ``unlikely`` is one over the likelihood of both, for any size of the process.
     """
 
     own: Floats
@@ -282,11 +282,11 @@ class _OneFactor(NamedTuple):
     unlikely: float
 
     def moment(self, size: float) -> Floats:
-        """Mean products of the coefficients of higher order, for a process of a size."""
+        """Mean products of the coefficients of higher order, for a process of a given size."""
         return np.asarray(self.gain @ self.products @ self.gain.T + size * self.left)
 
     def chance(self, size: float) -> float:
-        """That a process of a size made slope and curvature, and not scatter about none. [1]."""
+        """Chance that a process of a size made slope and curvature, not scatter about none. [1]."""
         none, some = self.scatter, self.scatter + size * self.process
         if not np.linalg.det(none) > 0:
             return 1.0
@@ -307,10 +307,10 @@ def _drawn(
     *,
     is_storage: bool = False,
 ) -> _OneFactor:
-    """Terms of a process along a factor, by the slope and curvature of a response.
+    """Terms of a process along a factor, from the slope and curvature of a response.
 
-    Drawn at the levels of the runs and between them, carried through the parabola that the runs
-    make of it, and what that misses through the terms of higher order, less their own parabolas.
+    The process is drawn at the levels of the runs and between them.  Its parabola is that through
+    the runs; its misfit is expanded in the terms of higher order, less their own parabolas.
     """
     place = np.concatenate([_ALONG, runs.coded[:, factor]])
     shift = along(place)
@@ -339,7 +339,7 @@ def _drawn(
 
 
 class _Loss(NamedTuple):
-    """Size of the process of the loss along the frequency, and what the loss stands beside."""
+    """Size of the process of the loss along the frequency, with its spring constant and share."""
 
     size: float
     spring: float
@@ -349,7 +349,7 @@ class _Loss(NamedTuple):
 def _loss_of(
     surfaces: ResponseSurfaces, ratio: Floats, of_pattern: Sequence[_Runs]
 ) -> _Loss | None:
-    """Loss along the frequency, from the surfaces of H; None where they do not say.
+    """Loss along the frequency, from the surfaces of H; None if they do not determine it.
 
     The size is relative to the loss; the share is that of the loss in K_ap at the centre, H K_ap /
     (pi a^2), zero where no amplitude of the tension is a factor.
@@ -371,7 +371,7 @@ def _loss_of(
         amplitude = (surfaces.low[place] + surfaces.high[place]) / 2
         spring = _centre(surfaces, known["apparent_spring_constant"])
         share = _centre(surfaces, row) * spring / (np.pi * amplitude**2)
-    # more than the whole is that of other units
+    # more than the whole means different units
     return _Loss(size, spring, share if 0 < share <= 1 else 0.0)
 
 
@@ -413,7 +413,7 @@ def _of_one_factor(
         scale = centre ** surfaces.transform_exponent[row]
         # two estimates of one size, from two squares each
         more = max(loss.size * (share * scale) ** 2 - size, 0.0) / 2
-        # of a single relaxation the loss goes its own way, and these stand still
+        # with a single relaxation time the loss varies while these stay constant
         size += more * (drawn.chance(size + more) if name in _OF_ONE_TIME else 1.0)
     return drawn.moment(size)
 
@@ -421,7 +421,7 @@ def _of_one_factor(
 def _of_several_factors(
     surfaces: ResponseSurfaces, row: int, more: Integers, ratio: Floats, seen: Floats
 ) -> Floats:
-    r"""Mean square of the coefficient of each term of several factors, nil of the others.
+    r"""Mean square of the coefficient of each term of several factors, zero for the others.
 
     .. math:: \gamma_\alpha^2 = \theta \prod_k \rho_k^{2 \alpha_k} / \bar\rho^2
     """

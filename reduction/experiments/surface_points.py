@@ -1,6 +1,6 @@
 r"""Values of response surfaces at points, with intervals.
 
-**Values of response surfaces at points, with intervals and with what the runs say there**:
+**Values of response surfaces at points, with intervals and the support by the runs there**:
 
 .. math::
 
@@ -41,18 +41,18 @@ from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import Bools, Floats, read_only_arrays
 
 ABOVE_LEVERAGE = 1 + 1e-9
-"""Leverage of a point over the greatest of a tested one beyond which the runs say less. [1]."""
+"""Leverage of a point over the greatest of a tested one, beyond which support is less. [1]."""
 
 _EDGE = 1e-9
-"""Rounding of the change of units, by which a point on the edge may lie outside."""
+"""Rounding in the change of units, by which a point on the edge may appear outside."""
 
 
 def is_within_levels(coded: ArrayLike, *, allowed: ArrayLike = 0.0) -> Bools:
-    """Whether points lie between the low and the high level of every factor.
+    """Whether points are between the low and the high level of every factor.
 
     Notes
     -----
-    The range is that of the plan ([1]_).  A point within can still lie where no run was near.
+    The range is that of the plan ([1]_).  A point within it may still be far from every run.
 
     Examples
     --------
@@ -66,12 +66,12 @@ def is_within_levels(coded: ArrayLike, *, allowed: ArrayLike = 0.0) -> Bools:
 
 
 def _levels_tested(reached: Floats, plan: Floats) -> Floats:
-    """Coded levels that count as tested: those reached, and those of the plan beside them.
+    """Coded levels that count as tested: those reached, and those of the plan near them.
 
     Notes
     -----
-    A planned level is no farther from its run than the run is from its plan: that scatter of the
-    machine is no reason to call the level untested.  Of a run that went elsewhere it says nothing.
+    A planned level is no farther from its run than the run is from its plan: scatter of the
+    machine does not make the level untested.  This does not apply to a run that went elsewhere.
 
     Examples
     --------
@@ -83,15 +83,15 @@ def _levels_tested(reached: Floats, plan: Floats) -> Floats:
 
 
 def greatest_leverage(surfaces: ResponseSurfaces, plan: ArrayLike | None = None) -> Floats:
-    """Greatest leverage of a tested level, by response: beyond it the runs say less.
+    """Greatest leverage of a tested level, by response; beyond it there is less support by runs.
 
     Parameters
     ----------
     surfaces : ResponseSurfaces
         As fitted.
     plan : array_like, shape (n_runs or more, n_factors), optional
-        Coded levels as planned, in the order of the runs; without it the levels reached count
-        alone. [1]
+        Coded levels as planned, in the order of the runs; without it only the levels reached
+        count. [1]
 
     Returns
     -------
@@ -105,7 +105,7 @@ def greatest_leverage(surfaces: ResponseSurfaces, plan: ArrayLike | None = None)
 
     Examples
     --------
-    A parabola through runs at three levels, of which the upper one was nearly reached:
+    A parabola through runs at three levels, the upper one nearly reached:
 
     >>> from reduction.experiments.response_surfaces import fit_surfaces
     >>> plan = np.array([[-1.0], [-1.0], [0.0], [0.0], [1.0], [1.0]])
@@ -134,7 +134,7 @@ def greatest_leverage(surfaces: ResponseSurfaces, plan: ArrayLike | None = None)
 @dataclass(frozen=True)
 @read_only_arrays
 class _PlanPoints:
-    """Points of a plan, none twice."""
+    """Points of a plan, without repeats."""
 
     coded: Floats
     name: tuple[str, ...]
@@ -142,13 +142,13 @@ class _PlanPoints:
 
 
 def plan_points(plan: ArrayLike) -> _PlanPoints:
-    """Centre of the cube, then the points of the plan that differ, then the corners.
+    """Centre of the cube, then the distinct points of the plan, then the corners.
 
     Notes
     -----
     A Box-Behnken plan of three factors has its runs at the centre and on the 12 edge midpoints:
     with the 8 corners 21 points.  The corners belong to the tested range of each factor [1]_,
-    and no run was near: an interval there says so.
+    but no run was near; intervals there show it.
 
     Examples
     --------
@@ -168,7 +168,7 @@ def plan_points(plan: ArrayLike) -> _PlanPoints:
         )
     n_factors = levels.shape[1]
     corners = np.array(list(product((-1.0, 1.0), repeat=n_factors)))
-    # a sum with nil makes of -0 the 0 that it is
+    # adding zero converts -0 to 0
     every = np.vstack([np.zeros((1, n_factors)), levels, corners]) + 0.0
     _, first = np.unique(every, axis=0, return_index=True)
     kept = every[np.sort(first)]
@@ -202,40 +202,40 @@ def _kinds(coded: Floats) -> tuple[str, ...]:
 class SurfaceValues:
     """Surfaces at points; shape (n_responses, n_points), intervals with a last axis of 2.
 
-    Values and intervals are of the response itself; a transformed one is brought back.
+    Values and intervals are those of the response itself; transformed ones are transformed back.
 
     Parameters
     ----------
     coded, engineering : ndarray, shape (n_points, n_factors)
         The points. [1], [SI unit of each factor]
     value : ndarray
-        Of the surface; the median response where it was transformed. [unit of the response]
+        Value of the surface; the median response if it was transformed. [unit of the response]
     mean_value : ndarray
-        The mean response: the same where it was not transformed. [unit of the response]
+        The mean response: the same if it was not transformed. [unit of the response]
     fitted_standard_uncertainty : ndarray
-        Of the surface, on the scale it was fitted on. [unit of the fitted response]
+        Of the surface, on the scale on which it was fitted. [unit of the fitted response]
     run_standard_uncertainty : ndarray
-        Of one more run at the point, on the same scale. [unit of the fitted response]
+        For one more run at the point, on the same scale. [unit of the fitted response]
     variance_factor : ndarray
         Leverage of the point. [1]
     confidence_interval : ndarray
-        Of the surface at this point. [unit of the response]
+        For the surface at this point. [unit of the response]
     prediction_interval : ndarray
-        Of one more run at this point, of one more specimen where specimens are random.
+        For one more run at this point, with another specimen if specimens are random.
         [unit of the response]
     simultaneous_interval : ndarray
-        Of the surface at all points at once. [unit of the response]
+        For the surface at all points at once. [unit of the response]
     is_inside : ndarray of bool, shape (n_points,)
-        Between the low and high levels of every factor.
+        True between the low and high levels of every factor.
     above_leverage : ndarray of bool
-        Inside, and the runs say less there than at the worst of them, as in the corners of the
-        cube of a Box-Behnken design (1.396 against 0.75).
+        True inside, if there is less support by the runs than at the worst of them, as in the
+        corners of the cube of a Box-Behnken design (1.396 against 0.75).
     degrees_of_freedom : ndarray, shape (n_responses,)
         Of the intervals. [1]
     confidence : float
         Of each interval. [1]
     notes : tuple of str
-        What the intervals hold and what not.
+        Contributions included in the intervals, and those not included.
     """
 
     coded: Floats
@@ -271,15 +271,15 @@ def evaluate_surfaces(
     surfaces : ResponseSurfaces
         As fitted.
     points : array_like, shape (n_points, n_factors)
-        Where to evaluate. [SI unit of each factor, or 1 where coded]
+        Points at which to evaluate. [SI unit of each factor, or 1 where coded]
     units : {'engineering', 'coded'}
-        Of the points.
+        Units of the points.
     confidence : float
-        Of each interval. [1]
+        Confidence of each interval. [1]
     outside : {'refuse', 'flag'}
-        What to do with a point beyond the levels of the plan.
+        Treatment of a point beyond the levels of the plan.
     plan : array_like, shape (n_runs, n_factors), optional
-        Coded levels as planned: those that a run came near count as tested too. [1]
+        Coded levels as planned: those that a run came near also count as tested. [1]
 
     Returns
     -------
@@ -291,15 +291,15 @@ def evaluate_surfaces(
     SettingsError
         If the confidence is not between 0 and 1.
     DataError
-        If a point is not finite, has other factors, or lies outside and is not to be flagged.
+        If a point is not finite, has other factors, or is outside and is to be refused.
 
     Notes
     -----
-    The range is that of the plan ([1]_, "range of usefulness"); a point inside it can still lie
-    where no run was near: `above_leverage`.  Simultaneous intervals hold for the whole surface
+    The range is that of the plan ([1]_, "range of usefulness"); a point inside it may still be
+    far from every run: `above_leverage`.  Simultaneous intervals hold for the whole surface
     at once ([2]_, [3]_) and are the ones to draw; a confidence interval holds for one point
-    chosen beforehand.  With fixed blocks everything is of the mean over these specimens; with
-    random ones of the population, with the fewest degrees of freedom of any term.
+    chosen beforehand.  With fixed blocks all results are for the mean over these specimens; with
+    random ones for the population, with the fewest degrees of freedom of any term.
 
     Examples
     --------
@@ -391,9 +391,9 @@ _MOST_POINTS = 20000
 
 
 def extremes_in_box(surfaces: ResponseSurfaces) -> tuple[Floats, Floats, Floats]:
-    """Return least and greatest value of each surface within the levels, and where it is least.
+    """Return least and greatest value of each surface within the levels, and place of the least.
 
-    On a grid of up to 21 levels of each factor.
+    Evaluated on a grid of up to 21 levels of each factor.
     """
     n_factors = surfaces.coded.shape[1]
     n_side = max(3, min(21, int(_MOST_POINTS ** (1 / n_factors))))

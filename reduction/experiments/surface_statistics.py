@@ -2,12 +2,12 @@ r"""Statistics of one regression at a time, by statsmodels: tests, variance, res
 
 Analysis of variance of response surfaces.  Sources are sequential: blocks, first order,
 interactions, squares, as R's rsm prints them [3]_; in a design whose levels are met exactly the
-order makes no difference.
+order does not matter.
 
 Leverage, Cook's distance, studentized residuals, and how straight their probability plot is.
 
-statsmodels takes half a second to import: it is imported where the first regression is fitted,
-so that what fits nothing does not wait for it.
+statsmodels takes half a second to import: it is imported when the first regression is fitted,
+so that a reduction without fits does not wait for it.
 
 References
 ----------
@@ -37,10 +37,10 @@ from reduction.experiments.response_matrix import block_contrasts
 from reduction.record.measurement import Floats, Integers
 
 _NO_RATIO, _ALL_BETWEEN = 1e-8, 1e6
-"""Ratio of variances below which the search for it has come to nil, and the largest."""
+"""Ratio of variances below which the search counts as having reached zero, and the largest."""
 
 Regressions = Mapping[int, Any]
-"""Results of statsmodels by the row of their response; there is none where there is no surface."""
+"""Results of statsmodels by row of the response; none where there is no surface."""
 
 
 def regress(response: Floats, matrix: Floats, covariance: Floats | None = None) -> Any:
@@ -72,15 +72,15 @@ def anova_table(
 
     Notes
     -----
-    Sequential sums: each source after those above it, as tests of columns that are orthogonal.
-    Every source is tested against the residuals, lack of fit against pure error.
+    Sequential sums: each source after those above it, like tests of orthogonal columns.
+    Every source is tested against the residuals, and lack of fit against pure error.
     """
     n_groups = len(groups)
     table = np.full((4, fit.reason.size, n_groups + 4), np.nan)
     for row, result in regressions.items():
         orthogonal = regress(result.model.endog, np.linalg.qr(result.model.exog)[0])
         n_columns = orthogonal.params.size
-        # behind the mean; a response may have fewer blocks
+        # after the mean; a response may have fewer blocks
         edges = [1, *(part.stop - fit.coefficient.shape[1] + n_columns for part in groups.values())]
         for at, (start, stop) in enumerate(pairwise(edges)):
             table[:2, row, at] = stop - start, np.sum(orthogonal.params[start:stop] ** 2)
@@ -103,7 +103,7 @@ def anova_table(
 
 
 def diagnose(regressions: Regressions, fit: LeastSquares) -> Diagnostics:
-    r"""Look at the residuals of every run of every surface.
+    r"""Examine the residuals of every run of every surface.
 
     .. math::
 
@@ -113,9 +113,9 @@ def diagnose(regressions: Regressions, fit: LeastSquares) -> Diagnostics:
 
     Notes
     -----
-    Source: [1]_; the correlation of [2]_ is with the scores of Blom.  Fifteen residuals of a
-    surface of ten terms have five degrees of freedom among them and look more normal than the
-    scatter is: a low correlation says something, a high one little.
+    Source: [1]_; the correlation of [2]_ uses Blom's scores.  Fifteen residuals of a surface
+    of ten terms have five degrees of freedom between them and look more normal than the
+    scatter is: a low correlation means something, a high one little.
     """
     leverage = fit.leverage[fit.pattern]
     found = np.full((3, *leverage.shape), np.nan)
@@ -127,7 +127,7 @@ def diagnose(regressions: Regressions, fit: LeastSquares) -> Diagnostics:
         with np.errstate(divide="ignore", invalid="ignore"):
             inner = np.where(own, influence.resid_studentized_internal, np.nan)
             distance = np.where(own, influence.cooks_distance[0], np.nan)
-            # statsmodels fits anew without each run, and without one that fixes a term cannot
+            # statsmodels refits without each run, which fails without a run that fixes a term
             without = freedom - inner**2
             outer = inner * np.sqrt((freedom - 1) / np.where(without > 1e-9 * freedom, without, 0))
         found[:, row, used] = distance, inner, outer if freedom > 1 else np.nan * outer
@@ -142,10 +142,10 @@ def diagnose(regressions: Regressions, fit: LeastSquares) -> Diagnostics:
 def term_tests(
     regressions: Regressions, fit: LeastSquares, column: Integers
 ) -> tuple[Floats, Floats, Floats, Floats]:
-    """Student's t and p of each term at its column, F and p of all terms but the mean."""
+    """Student's t and p of each term at its column; F and p of all terms but the mean."""
     t, p_value = np.full((2, fit.reason.size, column.size), np.nan)
     overall_f, overall_p_value = np.full((2, fit.reason.size), np.nan)
-    # from the end: a response may have fewer blocks
+    # counted from the end: a response may have fewer blocks
     place = np.where(column > 0, column - fit.coefficient.shape[1], 0)
     for row, result in regressions.items():
         t[row], p_value[row] = result.tvalues[place], result.pvalues[place]
@@ -160,7 +160,7 @@ def ratio_of_variances(response: Floats, matrix: Floats, block: Integers) -> flo
         MixedLM,
     )
 
-    # warnings are of a variance that is nil, which is an answer
+    # the warnings concern a variance of zero, which is a valid answer
     with warnings.catch_warnings(), np.errstate(divide="ignore", invalid="ignore"):
         warnings.simplefilter("ignore")
         try:
@@ -169,5 +169,5 @@ def ratio_of_variances(response: Floats, matrix: Floats, block: Integers) -> flo
             )
             ratio = float(np.nan_to_num(found.cov_re[0, 0] / found.scale))
         except np.linalg.LinAlgError:
-            ratio = _ALL_BETWEEN  # where runs of a block do not scatter
+            ratio = _ALL_BETWEEN  # where the runs of a block do not scatter
     return min(ratio, _ALL_BETWEEN) if ratio > _NO_RATIO else 0.0

@@ -1,6 +1,6 @@
 r"""Warnings about fitted surfaces: impossible values, drift over the run order, stray runs.
 
-**Whether a response drifts over the order of the runs, beyond what the surface says**:
+**Test for drift of a response over the order of the runs, beyond its surface**:
 
 .. math:: y = x^T \beta + \delta\,(k - \bar k) + e
 
@@ -36,7 +36,7 @@ from reduction.record.notes import Note, note
 
 
 class Drift(NamedTuple):
-    """Slope over the order, its standard uncertainty, t and p; NaN where it is not told apart."""
+    """Slope over the order, its standard uncertainty, t and p; NaN if it cannot be separated."""
 
     slope: Floats
     standard_uncertainty: Floats
@@ -45,7 +45,7 @@ class Drift(NamedTuple):
 
 
 def drift_over_order(surfaces: ResponseSurfaces, order: ArrayLike) -> Drift:
-    r"""Slope of every response over the order of the runs, beside all terms of its surface.
+    r"""Slope of every response over the order of the runs, in addition to its surface.
 
     .. math:: t = \delta / s_\delta, \qquad \nu = n - p - 1
 
@@ -54,14 +54,14 @@ def drift_over_order(surfaces: ResponseSurfaces, order: ArrayLike) -> Drift:
     surfaces : ResponseSurfaces
         As fitted.
     order : array_like, shape (n_runs,)
-        Place of each run, counted in its block where there are several; NaN where it is not
+        Place of each run, counted within its block if there are several; NaN if it is not
         known. [1]
 
     Returns
     -------
     drift : Drift
-        Of the response as fitted, a run; NaN where the order says nothing that the terms do
-        not say, or no degree of freedom is left for it. [unit of the fitted response]
+        For the response as fitted, per run; NaN where the terms determine the order, or no
+        degree of freedom is left for it. [unit of the fitted response]
 
     Raises
     ------
@@ -70,12 +70,12 @@ def drift_over_order(surfaces: ResponseSurfaces, order: ArrayLike) -> Drift:
 
     Notes
     -----
-    Source: [2]_.  In an order by rising load [1]_ drift lies mostly in the terms of the loads
-    and only what is left over is seen: no drift here is not proof of none.
+    Source: [2]_.  In an order by rising load [1]_, drift is mostly absorbed by the terms of the
+    loads and only the remainder is seen: absence of drift here is no proof.
 
     Examples
     --------
-    Centre runs first, in the middle and last see a drift of 0.2 a run.
+    Centre runs first, in the middle and last reveal a drift of 0.2 a run:
 
     >>> from reduction.experiments.designs import box_behnken
     >>> from reduction.experiments.response_surfaces import fit_surfaces
@@ -99,7 +99,7 @@ def drift_over_order(surfaces: ResponseSurfaces, order: ArrayLike) -> Drift:
         return Drift(*np.full((4, surfaces.reason.size), np.nan))
     terms = np.zeros((place.size, len(surfaces.exponents)))
     terms[known] = model_matrix(surfaces.coded[known], surfaces.exponents)
-    # of about the size of the coded terms, as the check of the columns wants it
+    # of about the size of the coded terms, as needed for the check of the columns
     turn = np.where(known, (place - place[known].mean()) / place.size, 0.0)
     blocks = surfaces.blocks
     own = np.empty((place.size, 0)) if blocks is None else block_contrasts(blocks.index)
@@ -119,11 +119,11 @@ def drift_over_order(surfaces: ResponseSurfaces, order: ArrayLike) -> Drift:
 
 
 _DRIFTS = 0.05
-"""Probability of naming a response of an experiment in which nothing drifts; an upper bound."""
+"""Probability that a response is named in an experiment without drift; an upper bound."""
 
 
 def _replaced(surfaces: ResponseSurfaces) -> set[str]:
-    """Responses that have a transformed surface beside their own, which is the one in use."""
+    """Responses with an additional transformed surface, which is the one in use."""
     return {
         name
         for name in surfaces.response_names
@@ -132,7 +132,7 @@ def _replaced(surfaces: ResponseSurfaces) -> set[str]:
 
 
 def negative_surfaces(surfaces: ResponseSurfaces) -> tuple[Note, ...]:
-    """Surfaces that fall below zero among the levels, over runs that are all above it.
+    """Surfaces that fall below zero within the levels, for runs that are all above zero.
 
     Parameters
     ----------
@@ -142,7 +142,7 @@ def negative_surfaces(surfaces: ResponseSurfaces) -> tuple[Note, ...]:
     Returns
     -------
     notes : tuple of Note
-        One per response that has no transformed surface beside it.
+        One for each response without a transformed surface.
 
     Raises
     ------
@@ -151,12 +151,12 @@ def negative_surfaces(surfaces: ResponseSurfaces) -> tuple[Note, ...]:
 
     Notes
     -----
-    In the corners a Box-Behnken design has no run, and between two levels a parabola may dip
-    below both.  Of the quantities of [3]_ none can be below zero.
+    A Box-Behnken design has no run in the corners, and between two levels a parabola may fall
+    below both.  None of the quantities of [3]_ can be negative.
 
     Examples
     --------
-    One less 1.1 of the factor is -0.1 at its high level, which no run reached.
+    One less 1.1 of the factor is -0.1 at its high level, which no run reached:
 
     >>> from reduction.experiments.response_surfaces import fit_surfaces
     >>> found = fit_surfaces([[-1.0], [-1.0], [0.0], [0.0], [0.8], [0.8]],
@@ -185,21 +185,21 @@ def drifting_responses(surfaces: ResponseSurfaces, drift: Drift) -> tuple[Note, 
     surfaces : ResponseSurfaces
         As fitted.
     drift : Drift
-        Of the same surfaces.
+        Drift of the same surfaces.
 
     Returns
     -------
     notes : tuple of Note
-        One a response with a p below 0.05 over the number of responses.
+        One for each response with a p below 0.05 over the number of responses.
 
     Raises
     ------
     DataError
-        If the drift is that of other surfaces.
+        If the drift belongs to other surfaces.
 
     Notes
     -----
-    In one experiment of twenty, at most, a response is named though nothing drifts: Bonferroni's
+    At most one experiment in twenty names a response though nothing drifts: Bonferroni's
     bound over the responses, each by the surface in use.  Runs in an order by load [3]_ hide a
     drift in the terms of the loads.
 
@@ -221,7 +221,7 @@ def drifting_responses(surfaces: ResponseSurfaces, drift: Drift) -> tuple[Note, 
             found=f"{drift.p_value.size} responses",
             needed=f"{surfaces.reason.size}",
         )
-    # of a logarithm the slope is a share itself
+    # for a logarithm the slope is itself relative
     size = np.where(
         surfaces.transform_exponent == 0, 1.0, np.nan_to_num(np.abs(surfaces.fitted)).mean(axis=1)
     )
@@ -239,16 +239,16 @@ def drifting_responses(surfaces: ResponseSurfaces, drift: Drift) -> tuple[Note, 
 
 
 _STRAY = 1e-3
-"""Probability of naming a run of a response where all runs scatter alike; an upper bound."""
+"""Probability that a run is named in a response with uniform scatter; an upper bound."""
 
 _STRAY_SHARE = 0.03
-"""Distance of a run from the others below which it is not named, as a share of the response.
+"""Distance of a run from the others below which it is not named, as a fraction of the response.
 
-What a quadratic misses is no scatter, and may be as unlikely for one; it is seldom as large."""
+The misfit of a quadratic is not scatter, and may be as improbable; it is seldom as large."""
 
 
 def stray_runs(surfaces: ResponseSurfaces) -> tuple[Note, ...]:
-    r"""Runs that the surface of all others misses by far more than their scatter.
+    r"""Runs that differ from the surface of all others by far more than their scatter.
 
     .. math::
 
@@ -263,7 +263,7 @@ def stray_runs(surfaces: ResponseSurfaces) -> tuple[Note, ...]:
     Returns
     -------
     notes : tuple of Note
-        One for each run, or set of runs that are alike, with the responses that it is stray in.
+        One for each run, or set of similar runs, with the responses in which it is stray.
 
     Raises
     ------
@@ -272,10 +272,10 @@ def stray_runs(surfaces: ResponseSurfaces) -> tuple[Note, ...]:
 
     Notes
     -----
-    Method: the largest deleted residual against the Student distribution of as many as there are
+    Method: the largest deleted residual compared with the Student distribution for that number of
     runs [4]_, and a distance of at least 3 % of the response.  In a Box-Behnken design of three
     factors the residuals of two runs on opposite sides of the centre are equal and opposite: one
-    too high looks like the other too low, and both are named.
+    that is too high looks like the other too low, and both are named.
 
     Examples
     --------

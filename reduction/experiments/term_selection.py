@@ -28,13 +28,13 @@ from reduction.record.measurement import Bools, Floats, Integers, read_only_arra
 from reduction.record.notes import Note, note
 
 _MOST = 50_000
-"""Subsets that are looked at before the search is refused."""
+"""Number of subsets examined before the search is refused."""
 
 
 @dataclass(frozen=True)
 @read_only_arrays
 class ReducedSurfaces:
-    """The subset of terms of each surface; the full surface stays what it was.
+    """The subset of terms of each surface; the full surface is unchanged.
 
     Parameters
     ----------
@@ -52,14 +52,14 @@ class ReducedSurfaces:
     degrees_of_freedom : ndarray of int, shape (n_responses,)
         [1]
     criterion, full_criterion : ndarray, shape (n_responses,)
-        Of the subset and of the full surface; infinite where it has too many terms for the
+        For the subset and for the full surface; infinite where there are too many terms for the
         correction. [1]
     n_within_two : ndarray of int, shape (n_responses,)
         Subsets that are not clearly worse: within 2 of the best. [1]
     hierarchical : bool
-        A square or an interaction keeps its linear terms.
+        Whether a square or an interaction keeps its linear terms.
     notes : tuple of Note
-        What a reader of the numbers has to know.
+        What a reader of the numbers needs to know.
     """
 
     is_kept: Bools
@@ -78,17 +78,17 @@ class ReducedSurfaces:
 
 
 def reduce_terms(surfaces: ResponseSurfaces, *, hierarchical: bool = True) -> ReducedSurfaces:
-    """Best subset of the terms of every surface by the corrected criterion of Akaike.
+    """Best subset of the terms of every surface by the corrected Akaike criterion.
 
     Notes
     -----
-    Source: [1]_ for the criterion, [2]_ for the hierarchy.  All subsets are looked at (95 of
-    three factors with hierarchy, 512 without).  In fifteen runs ten terms cost so much that
-    the full surface seldom wins: that is a statement on fifteen runs, not on the line.
+    Source: [1]_ for the criterion, [2]_ for the hierarchy.  All subsets are examined (95 for
+    three factors with hierarchy, 512 without).  In fifteen runs ten terms cost so much that the
+    full surface seldom wins, which says something about fifteen runs, not about the line.
 
     Examples
     --------
-    A plane over two factors, and scatter of the three centre runs that no term can follow.
+    A plane over two factors, with scatter of the three centre runs that no term can follow:
 
     >>> from reduction.experiments.designs import box_behnken
     >>> from reduction.experiments.response_surfaces import fit_surfaces
@@ -159,7 +159,7 @@ def reduce_terms(surfaces: ResponseSurfaces, *, hierarchical: bool = True) -> Re
 
 
 def _subsets(exponents: Integers, *, hierarchical: bool) -> list[Integers]:
-    """Places of the terms beside the mean, fewest first, all of them last."""
+    """Indices of the terms other than the mean, fewest first, all of them last."""
     order = exponents.sum(axis=1)
     linear = np.flatnonzero(order == 1)
     second = np.flatnonzero(order == 2)
@@ -189,7 +189,7 @@ def _subsets(exponents: Integers, *, hierarchical: bool) -> list[Integers]:
 
 
 def _criterion(columns: Floats, values: Floats) -> Floats:
-    """Of each response, shape (n_responses,); infinite where the correction has no meaning."""
+    """Criterion of each response, shape (n_responses,); infinite where the correction fails."""
     n_runs, n_parameters = columns.shape[0], columns.shape[1] + 1
     if n_runs - n_parameters - 1 <= 0:
         return np.full(values.shape[0], np.inf)

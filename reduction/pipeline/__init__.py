@@ -1,1 +1,1 @@
-"""The way of one test from its located record to a reduced test."""
+"""The path of one test from its located record to a reduced test."""

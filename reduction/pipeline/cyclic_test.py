@@ -1,4 +1,4 @@
-"""What the cycles and the first loading of a test give."""
+"""Results of the cycles and of the first loading of a test."""
 
 from __future__ import annotations
 
@@ -53,13 +53,13 @@ from reduction.stages.moduli.tangent_modulus import tangent_curves
 from reduction.stages.reduced_test import History
 from reduction.stages.standstills import median_step
 
-_SAME_STRAIN = 0.05  # share by which equal greatest strains may differ: one crosshead, two splices
+_SAME_STRAIN = 0.05  # relative difference of greatest strains that count as equal: two splices
 
 
 def _compare_specimens(
     curves: ModulusCurves, specimens: tuple[Specimen, ...], history: History | None
 ) -> list[Ratio]:
-    """Modulus of each specimen over that of the first, with notes on what they had seen."""
+    """Modulus of each specimen over that of the first, with notes on their histories."""
     first = specimens[0]
     ratios = []
     for index, specimen in enumerate(specimens[1:], start=1):
@@ -75,7 +75,7 @@ def _compare_specimens(
 
 
 def _unequal(first: Specimen, other: Specimen, index: int, history: History | None) -> list[Note]:
-    """Every way in which two specimens are known to come from unequal histories."""
+    """All known differences between the histories of two specimens."""
     found = []
     if first.condition != other.condition:
         told = " against ".join(
@@ -120,7 +120,7 @@ def _curves_of_cycles(
     area: Floats,
     settings: ReductionSettings,
 ) -> ModulusCurves:
-    """Curves over the cycles, which are laid on each other where their mean strain drifts."""
+    """Curves over the cycles, which are aligned where their mean strain drifts."""
     break_in = settings.cycles.break_in_cycles
 
     def curves_of(series: Floats) -> ModulusCurves:
@@ -162,15 +162,15 @@ def _curves_of_cycles(
     )
 
 
-# cycles on each side of a jump of which stiffness and amplitudes are compared, and what is another
-# one: a slip leaves the amplitudes as they are
+# cycles on each side of a jump whose stiffness and amplitudes are compared, and the relative
+# differences that count: a slip does not change the amplitudes
 _BESIDE, _OTHER_STIFFNESS, _OTHER_AMPLITUDE = 10, 0.05, 0.05
 
 
 def notes_on_jumps(
     loops: Loops, names: Sequence[str], *, break_in: int, number: Integers | None = None
 ) -> list[Note]:
-    """Say where something slipped or parted, or a load cell was knocked, between two cycles."""
+    """Note slips, partings or shifts of a load cell between two cycles."""
     found = []
     for index, name in enumerate(names):
         time, strain, tension, slope, of_strain, of_tension = (
@@ -200,7 +200,7 @@ def notes_on_jumps(
                     - 1
                     for one in (slope, of_strain, of_tension)
                 )
-                # the machine went to another amplitude, about which a bent curve has another mean
+                # the machine changed its amplitude, at which a bent curve has another mean
                 if min(larger) > _OTHER_AMPLITUDE or max(larger) < -_OTHER_AMPLITUDE:
                     continue
                 place += break_in
@@ -214,7 +214,7 @@ def notes_on_jumps(
     return found
 
 
-# cycles at each end of a long test of which the kept curves are compared
+# number of cycles at each end of a long test whose kept curves are compared
 ENDS = 6
 
 
@@ -229,7 +229,7 @@ def parts_of_cycles(
     lag: Sequence[float],
     is_open: bool = False,
 ) -> dict[str, Any]:
-    """Loops, curves, segments and what follows from them, by field of `ReducedTest`."""
+    """Loops, curves, segments and derived results, by field of `ReducedTest`."""
     record, cycles = located.record, located.cycles
     if cycles is None:
         return {}
@@ -245,7 +245,7 @@ def parts_of_cycles(
     loops = without_backward_loops(loops)
     if is_open:
         loops = without_loss(loops)
-    # both channels have the corner of a ramp, as far apart as the lag that is stated
+    # both channels have the corner of a ramp, separated by the stated lag
     alike = np.zeros(len(specimens))
     if settings.cycles.waveform == "triangular" and np.any(lag):
         late = np.array(lag)
@@ -314,7 +314,7 @@ def _elastomers(
     *,
     is_first: bool,
 ) -> tuple[tuple[ElastomerFit, ...], Note | None]:
-    """Hyperelastic laws of one first loading, or the reason why there are none."""
+    """Hyperelastic laws of one first loading, or the reason for their absence."""
     known = np.isfinite(stress)
     if not (strain[known] > 0).any():
         reached = "no stress is known on it"
@@ -332,18 +332,18 @@ def _elastomers(
 
 
 def _first_finite(series: Floats) -> float:
-    """First finite sample of a series; NaN where there is none."""
+    """First finite sample of a series; NaN if there is none."""
     at = first_sample(lambda part: np.isfinite(series[part]), 0, series.size, series)
     return float("nan") if at is None else float(series[at])
 
 
 def _is_new(history: History, index: int) -> bool:
-    """Whether a specimen had seen nothing before the test, logged or not."""
+    """Whether a specimen was unused before the test, by logged and unlogged history."""
     return not (history.earlier_tests[index] or history.earlier_cycles[index] > 0)
 
 
 def _without_modulus(curves: ModulusCurves, lacks_area: Bools) -> ModulusCurves:
-    """Leave the tension alone to specimens without an area."""
+    """Curves without modulus for specimens without an area; the tension remains."""
     moduli = [item.name for item in fields(curves) if item.name.startswith("tangent_modulus")]
     emptied = {}
     for name in moduli:
@@ -368,9 +368,9 @@ def parts_of_first_loading(
     *,
     kind: str,
 ) -> tuple[dict[str, Any], list[Note]]:
-    """The first rise of a record that begins slack: curve; of rubber, stress and laws too.
+    """The first rise of a record that begins slack: curve; for rubber, also stress and laws.
 
-    A coupon of anything else may be pulled from a preload.
+    A coupon of any other material may be pulled from a preload.
     """
     begins = [_first_finite(force) for force in tension]
     may_be_loaded = kind in PULLED and not any(one.is_rubber for one in specimens)
@@ -399,7 +399,8 @@ def parts_of_first_loading(
     parts: dict[str, Any] = {"first_loading": curves}
     rubber = np.array([specimen.is_rubber for specimen in specimens])
     if not rubber.any():
-        # cords carry a hose: neither a law of rubber nor its trade's stress at an elongation
+        # cords carry a hose: neither a law of rubber nor the trade's stress at an elongation
+        # applies
         return parts, []
     levels = settings.modulus.stress_at_strain
     stresses = run_blocks(

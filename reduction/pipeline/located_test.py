@@ -1,4 +1,4 @@
-"""Where a test rests, holds and cycles, and which samples may be used."""
+"""Rests, holds and cycles of a test, and its usable samples."""
 
 from __future__ import annotations
 
@@ -65,12 +65,12 @@ _SLACK, _TAUT = 0.05, 0.25
 
 _FEWEST_SLACK = 3  # readings
 
-# of the travel, while a load falls from the one to the other: of any log, and of few readings
+# of the travel, while a load falls from one to the other: for any log, and with few readings
 _GIVEN_BACK, _MOST_BACK = 0.05, 0.15
 
-_TOP_SHARE = 0.02  # of the travel, in which a position counts as the greatest
+_TOP_SHARE = 0.02  # of the travel: positions within this count as the greatest
 
-_FEW_STEPS = 5  # of the clock: what is flagged for the repeats of a load lasts longer
+_FEW_STEPS = 5  # of the clock: flagged repeats of a load last longer than this
 
 
 @dataclass(frozen=True)
@@ -78,9 +78,9 @@ class Located:
     """A record with its standstills and, where the test has them, its cycles.
 
     ``position`` (n_samples,) [m] and ``tension`` (n_specimens, n_samples) [N] are those of
-    the record, NaN where they are not usable; ``load_at_slack`` is what each load cell reads at
-    the slack rests of its log, by specimen, empty where nobody looked; ``parted`` is the sample
-    from which a specimen is slack for good, by specimen, -1 where it is not.
+    the record, NaN where they are not usable; ``load_at_slack`` is the reading of each load cell at
+    the slack rests of its log, by specimen, empty if it was not determined; ``parted`` is the
+    sample from which a specimen is slack for good, by specimen, -1 if it is not.
     """
 
     record: Record
@@ -101,7 +101,7 @@ def locate(
 ) -> Located:
     """Find the standstills and the cycles of a record; only cyclic kinds have cycles.
 
-    With the specimens what mass and give of the load train do is taken off the record.
+    With the specimens given, the effects of mass and compliance of the load train are removed.
     """
     if kind not in (*CYCLIC, *PULLED, *HELD):
         raise DataError(
@@ -142,7 +142,7 @@ def locate(
         record, position, tension, standstills=standstills, cycles=cycles, specimens=specimens
     )
     if not on_tension:
-        # the crosshead stands still in a hold; slack is a share of the tension of the specimen
+        # the crosshead stands still in a hold; slack is a fraction of the tension of the specimen
         standstills = find_standstills(
             record.time, crosshead, tension, settings=settings.phases, is_held=kind in HELD
         )
@@ -153,15 +153,15 @@ def locate(
 
 
 def _parted_at(position: Floats, load: Floats) -> int:
-    """First sample from which a specimen is slack for good, where it was always taut before; or -1.
+    """First sample from which a specimen is slack for good, after being taut throughout; or -1.
 
-    One that is unloaded is slack because the crosshead went back.
+    An unloaded specimen is slack because the crosshead went back.
     """
     peak = finite_extremes(load)[1]
     if not peak > 0:
         return -1
     n_samples = load.size
-    # a taut sample near the end, as most logs have it, ends the search in its first block
+    # a taut sample near the end, as in most logs, ends the search in its first block
     last = last_sample(lambda part: load[part] > _SLACK * peak, 0, n_samples, load)
     if last is None or n_samples - 1 - last < _FEWEST_SLACK:
         return -1
@@ -171,8 +171,8 @@ def _parted_at(position: Floats, load: Floats) -> int:
     taut = last_sample(lambda part: load[part] > _TAUT * peak, 0, last + 1, load)
     if after.size < _FEWEST_SLACK or taut is None:
         return -1
-    # a line that is let slack goes back first, the more so one that stays longer; one that breaks
-    # on the way back does so by a reading
+    # a line that is let slack goes back first, and more so if it has yielded; one that breaks
+    # on the way back goes slack within a reading
     travel = high - low
     reading = abs(float(position[taut] - position[taut - 1])) if taut > 0 else 0.0
     allowed = max(_GIVEN_BACK * travel, min(1.5 * reading, _MOST_BACK * travel))
@@ -186,13 +186,13 @@ def _parted_at(position: Floats, load: Floats) -> int:
     was_there = first_sample(lambda part: position[part] >= least, 0, last + 1, position)
     if was_there is None:
         return -1
-    # the load falls over some readings, of which the first may still be above
+    # the load falls over some readings, the first of which may still be above
     fell_over = is_slack_there is not None and last + 1 - is_slack_there <= _FEWEST_SLACK
     return last + 1 if is_slack_there is None or fell_over else -1
 
 
 def _before_break(standstills: Standstills, parted: Sequence[int]) -> Standstills:
-    """Leave out what stands still after all specimens parted: no rest there is a slack length."""
+    """Leave out standstills after all specimens parted: no rest there is a slack length."""
     if min(parted) < 0:
         return standstills
     before = standstills.first < max(parted)
@@ -209,7 +209,7 @@ def _before_break(standstills: Standstills, parted: Sequence[int]) -> Standstill
 def _without_parted(
     record: Record, tension: Floats, parted: Sequence[int], *, kind: str
 ) -> tuple[Record, Floats]:
-    """Leave out what a load cell reads once its specimen parted, and say so."""
+    """Leave out readings of a load cell after its specimen parted, with a note."""
     tension = copied(tension)
     code = "specimen-parted" if kind in ("cyclic", "bedding-in") else "specimen-parted-as-meant"
     told = []
@@ -221,7 +221,7 @@ def _without_parted(
 
 
 def slips_of(located: Located, settings: ReductionSettings) -> Slips | None:
-    """Slips of the splices; None of a test without the cycles to find them in."""
+    """Slips of the splices; None for a test without cycles in which to find them."""
     cycles = located.cycles
     if cycles is None or cycles.n_cycles < settings.slip.minimum_cycles:
         return None
@@ -242,12 +242,12 @@ def slips_of(located: Located, settings: ReductionSettings) -> Slips | None:
 def _held_on_tension(
     record: Record, position: Floats, settings: ReductionSettings, *, is_held: bool
 ) -> tuple[Record, Standstills]:
-    """Holds at constant tension, in which a load that repeats one value is no fault."""
+    """Holds at constant tension, in which a load that repeats one value is not a fault."""
     repeats = _without_flagged_samples(record.tension, record.quality_flag, but=_REPEATS)
     standstills = stands = find_tension_stands(
         record.time, position, repeats, settings=settings.phases, is_held=is_held
     )
-    if settings.cycles.waveform == "other":  # it may rest for less than a hold takes
+    if settings.cycles.waveform == "other":  # it may rest for less than the duration of a hold
         few = _FEW_STEPS * median_step(record.time)
         if few < settings.phases.minimum_duration:
             shorter = replace(settings.phases, minimum_duration=few)
@@ -271,13 +271,13 @@ def _held_on_tension(
 
 
 def _goes_on(position: Floats) -> bool:
-    """Whether a crosshead creeps on, where it would turn at a peak that a load cell cannot read."""
+    """Whether a crosshead creeps on, instead of turning at a peak that a load cell cannot read."""
     low, high = finite_extremes(position)
     return bool(abs(position[-1] - position[0]) > (high - low) / 2)
 
 
 def _without_flagged_samples(values: Floats, flags: NDArray[np.uint16], *, but: int = 0) -> Floats:
-    """A channel without the samples that no number may rest on, NaN there."""
+    """A channel with NaN for the samples that must not be used."""
     masks = UNUSABLE & ~np.uint16(but)
     n_samples = values.shape[-1]
     if not any(np.any(flags[..., part] & masks) for part in sample_blocks(n_samples, flags)):
@@ -297,7 +297,7 @@ def strain_of_record(
     Raises
     ------
     DataError
-        If it is at or below -100 % anywhere.
+        If strain is at or below -100 % anywhere.
     """
     strain = empty_like(tension)
     measured = record.measured_strain

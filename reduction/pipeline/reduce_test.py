@@ -1,11 +1,11 @@
-"""The way of one test: from its located record to strain, cycles, moduli, holds and notes.
+"""Reduction of one test: from its located record to strain, cycles, moduli, holds and notes.
 
-Before it, for every test of a campaign: `reduction.pipeline.located_test` finds where the crosshead
-stands still and where it cycles, `reduction.pipeline.located_test` measures the tension at the
+Beforehand, for every test of a campaign, `reduction.pipeline.located_test` finds where the
+crosshead stands still and where it cycles and measures the tension at the
 splice marks there, and `reduction.batch.test_history` pools the marks of a specimen into strain
 models.
-`reduce_test` does the rest; what the cycles give is in `reduction.pipeline.cyclic_test`, what the
-first rise gives in `reduction.pipeline.cyclic_test`.  `reduce_stepwise_test` is for tests read by
+`reduce_test` does the rest; results of the cycles and of the first rise are computed in
+`reduction.pipeline.cyclic_test`.  `reduce_stepwise_test` is for tests read by
 a person.
 """
 
@@ -104,17 +104,17 @@ from reduction.uncertainty.shared_contributions import (
 
 _GREATEST_STRAIN = 10.0  # no rubber is stretched to eleven times its length
 
-# a sine logged thirteen times a cycle misses 1.5 % of its range, a triangle has 23 % more
+# a sine logged thirteen times a cycle deviates by 1.5 % of its range, a triangle by 23 % more
 _OFF_THE_SINE = 0.05
 
-_TRIANGULAR_SHARE = 0.6  # of samples at a constant rate; a sine has a half
+_TRIANGULAR_SHARE = 0.6  # of samples at a constant rate; a sine has half of them
 
 _MOST_DRIFT = 0.2  # of the range of a cycle: a rope that creeps drifts by a hundredth
 
-# of what counts as slack without a reading at slack: what a line at speed may read beyond that
+# of the slack level used without a reading at slack: allowance for readings of a line at speed
 _BEYOND_REST = 0.25
 
-_FEWEST_SAMPLES = 10  # of a branch: below, its two ends are a good part of it
+_FEWEST_SAMPLES = 10  # of a branch: in a shorter one its two ends are a large part
 
 
 def _plausibility_notes(
@@ -130,7 +130,7 @@ def _plausibility_notes(
     is_snap: bool = False,
     is_bedding: bool = False,
 ) -> tuple[Note, ...]:
-    """Name what is hardly so: sign, unit of position, slack or drift in cycles, waveform."""
+    """Name implausible signs, units of position, slack or drift in cycles, and waveforms."""
     notes = []
     greatest = [finite_extremes(one)[1] for one in strain]
     for specimen, one in zip(specimens, greatest, strict=True):
@@ -142,7 +142,7 @@ def _plausibility_notes(
         name = specimen.name
         slopes = None if curves is None else curves.tangent_modulus[index]
         slack = _taut if is_snap else _slack
-        # of a channel of the wrong sign a valley says nothing about slack
+        # in a channel of the wrong sign a valley is no evidence of slack
         half_strain = _half_range(strain[index], cycles)
         if waveform != "sinusoidal" and not is_bedding:  # the first cycles leave a rope longer
             notes += _drift(name, loops, index, half_strain)
@@ -163,7 +163,7 @@ def _half_range(strain: Floats, cycles: Cycles) -> Floats:
 
 
 def _drift(name: str, loops: Loops, index: int, half_strain: Floats) -> list[Note]:
-    """Cycles whose loop is what is left of a drift: half of it has been taken off the range."""
+    """Cycles whose loop is the small remainder of a drift: half of it was subtracted."""
     half_tension = (loops.peak_tension[index] - loops.valley_tension[index]) / 2
     kept = [
         amplitude[index][half > 0] / half[half > 0]
@@ -172,7 +172,7 @@ def _drift(name: str, loops: Loops, index: int, half_strain: Floats) -> list[Not
             (loops.strain_amplitude, half_strain),
         )
     ]
-    # NaN, where nothing is left, is no comparison either
+    # NaN, where nothing is left, counts as far off
     n_far = max(int(np.count_nonzero(~(share >= 1 - _MOST_DRIFT / 2))) for share in kept)
     if not n_far:
         return []
@@ -181,9 +181,9 @@ def _drift(name: str, loops: Loops, index: int, half_strain: Floats) -> list[Not
 
 
 def _sign(name: str, loops: Loops, index: int, slopes: Floats | None) -> list[Note]:
-    """Tension that falls with stretch; of one that is negative the log itself says which it is.
+    """Tension that falls with stretch; where it is negative, the log itself shows the wrong sign.
 
-    Of loops that run backward, the loops say which channel is reversed.
+    Where loops run backward, the loops show which channel is reversed.
     """
     level = _median(loops.mean_tension[index])
     slope = np.nan if slopes is None else _median(slopes)
@@ -193,14 +193,14 @@ def _sign(name: str, loops: Loops, index: int, slopes: Floats | None) -> list[No
     return [note("sign-of-tension", name, slope=slope)]
 
 
-_PUSHED = 5.0  # times the level at which a specimen counts as slack, below zero
+_PUSHED = 5.0  # times the slack level, below zero
 
 
 def _slack_in_cycles(located: Located, settings: ReductionSettings) -> list[float]:
     """Tension at or below which each specimen is slack in its cycles. [N].
 
-    Two hundredths of the peak, unless the log says what the cell reads at slack: a hose or a soft
-    rope that stiffens pulls well below that.
+    Two hundredths of the peak, unless the log shows the reading of the cell at slack: the tension
+    of a hose or soft rope that stiffens is well below that.
     """
     level = located.standstills.slack_tension
     if settings.phases.slack_tension is not None:
@@ -213,7 +213,7 @@ def _slack_in_cycles(located: Located, settings: ReductionSettings) -> list[floa
 
 
 def _slack(name: str, valley_tension: Floats, slack_tension: float) -> list[Note]:
-    """Cycles that go slack: strain below it is no strain of the specimen."""
+    """Cycles that go slack: below slack, the strain is not that of the specimen."""
     slack = int(np.count_nonzero(valley_tension <= slack_tension))
     if not slack:
         return []
@@ -232,7 +232,7 @@ def _slack(name: str, valley_tension: Floats, slack_tension: float) -> list[Note
 
 
 def _taut(name: str, valley_tension: Floats, slack_tension: float) -> list[Note]:
-    """Snap loads that are none: cycles in which the line stays taut."""
+    """Cycles without a snap load, in which the line stays taut."""
     taut = int(np.count_nonzero(valley_tension > slack_tension))
     if not taut:
         return []
@@ -248,7 +248,7 @@ def _taut(name: str, valley_tension: Floats, slack_tension: float) -> list[Note]
 
 
 def _waveform(cycles: Cycles, waveform: str) -> list[Note]:
-    """A triangular test of which little runs at a constant rate."""
+    """A triangular test with too small a part at a constant rate."""
     n_samples = cycles.branch_last - cycles.branch_first + 1
     if waveform != "triangular" or np.median(n_samples) < _FEWEST_SAMPLES:
         return []
@@ -265,7 +265,7 @@ _TIMES = 10.0  # the greatest reading of a log
 
 _RECORD = 0.25  # of a record without cycles, for a lag
 
-_LINEAR = 0.05  # of a cycle: a loop that is turned by more has lost 5 % of its stiffness
+_LINEAR = 0.05  # of a cycle: a loop turned by more than this has lost 5 % of its stiffness
 
 
 @dataclass(frozen=True)
@@ -280,7 +280,7 @@ class _Limit:
 def check_stated_errors(
     located: Located, instruments: Sequence[InstrumentErrors], *, place: str
 ) -> tuple[Note, ...]:
-    """Refuse standard uncertainties that a log shows to be impossible; say which are too large."""
+    """Refuse standard uncertainties that a log shows to be impossible; note those too large."""
     for index, errors in enumerate(instruments):
         for limit in _limits(located, index, errors):
             if np.isfinite(limit.most) and limit.stated > limit.most:
@@ -303,7 +303,7 @@ def check_stated_errors(
 
 
 def _not_used(record: Record, instruments: Sequence[InstrumentErrors]) -> Iterator[Note]:
-    """Noise and resolution that are stated beside what the layout declares of the same readings."""
+    """Noise and resolution stated for readings for which the layout already declares them."""
     pairs = (
         ("tension", "N", record.tension_standard_uncertainty, "tension_reading"),
         (
@@ -332,7 +332,7 @@ def _limits(located: Located, index: int, errors: InstrumentErrors) -> Iterator[
     of_position = "ten times the greatest position"
     yield _Limit("tension.offset", errors.tension_offset, tension, "N", of_tension)
     yield _Limit("crosshead_position.offset", errors.position_offset, position, "m", of_position)
-    # readings as they count here; one that the layout declares is not of this table
+    # readings as used here; one that the layout declares is not in this table
     declared = (*record.tension_standard_uncertainty, *len(located.tension) * (np.nan,))[index]
     if not np.isfinite(declared):
         yield _Limit(
@@ -352,7 +352,7 @@ def _limits(located: Located, index: int, errors: InstrumentErrors) -> Iterator[
 
 
 def _periods(located: Located) -> Floats:
-    """How long each cycle lasts; empty where there are none. [s]."""
+    """Duration of each cycle; empty where there are none. [s]."""
     time, cycles = located.record.time, located.cycles
     if cycles is None:
         return np.empty(0)
@@ -370,7 +370,7 @@ _SAMPLES = 4096  # spread over the record: the uncertainty changes slowly with s
 def _readings_of(
     record: Record, instruments: Sequence[InstrumentErrors]
 ) -> tuple[InstrumentErrors, ...]:
-    """Errors with that of one reading of each channel: the one rule of which statement counts."""
+    """Errors with that of one reading of each channel; decides which statement is used."""
     known = instruments or tuple(InstrumentErrors(name) for name in record.specimens)
     tension = record.tension_standard_uncertainty or (np.nan,) * len(known)
     position = record.position_standard_uncertainty
@@ -387,7 +387,7 @@ def _readings_of(
 def _with_late_readings(
     record: Record, instruments: Sequence[InstrumentErrors]
 ) -> tuple[InstrumentErrors, ...]:
-    """Errors with the lag of a channel whose new readings come some time within a row."""
+    """Errors with the lag of a channel whose new readings come at an unknown time within a row."""
     steps = [
         one.numbers["step"]
         for one in record.notes
@@ -400,10 +400,10 @@ def _with_late_readings(
 def _with_late_loads(
     record: Record, instruments: Sequence[InstrumentErrors], late: Sequence[Note]
 ) -> tuple[InstrumentErrors, ...]:
-    """Errors with the delay of a load that is later than is stated: a filter, or a clock."""
+    """Errors with the delay of a load that lags more than stated, by a filter or a clock."""
     found = dict.fromkeys(record.specimens, 0.0)
     for one in late:
-        # damping makes tension early: what is found is the least of a delay
+        # damping makes tension lead, so the lag found is a lower bound of the delay
         found[one.subject] = 2 * one.numbers["lag"] + _BEYOND_LAG * one.numbers["spread"]
     known = instruments or tuple(InstrumentErrors(name) for name in found if late)
     return tuple(
@@ -418,7 +418,7 @@ def _late_extensometers(
     strain: Floats,
     instruments: Sequence[InstrumentErrors],
 ) -> list[Note]:
-    """Extensometers that are logged later than the crosshead, by more than is stated."""
+    """Extensometers that lag the crosshead by more than stated."""
     if located.cycles is None:
         return []
     stated = [one.lag for one in instruments] or [0.0] * len(models)
@@ -443,7 +443,7 @@ _BEYOND_LAG = 2.0  # stated standard uncertainties
 def _with_drift_of_zero(
     located: Located, instruments: Sequence[InstrumentErrors]
 ) -> tuple[InstrumentErrors, ...]:
-    """Errors with the zero of a load cell known no better than it moved during the log."""
+    """Errors with the zero of a load cell uncertain by its drift during the log."""
     rests = located.load_at_slack or (None,) * len(instruments)
     moved = [
         0.0 if rest is None else rest.drift_uncertainty(errors.tension_offset)
@@ -456,7 +456,7 @@ def _with_drift_of_zero(
 
 
 def _with_readings(record: Record, readings: Sequence[InstrumentErrors]) -> Record:
-    """Record with the standard uncertainty of one reading; NaN where nothing says it."""
+    """Record with the standard uncertainty of one reading; NaN where unknown."""
     tension = tuple(one.tension_reading or np.nan for one in readings)
     return replace(
         record,
@@ -472,7 +472,7 @@ def _reading_spread(
     *,
     phase: NDArray[np.int8],
 ) -> Floats:
-    """Standard uncertainty of strain by one reading of position and tension. [1]."""
+    """Standard uncertainty of strain due to one reading of position and tension. [1]."""
     rows = _rows_of(phase)
     position, tension = take_samples(located.position, rows), take_samples(located.tension, rows)
     found = np.full(len(models), np.nan)
@@ -486,7 +486,7 @@ def _reading_spread(
             (errors.position_reading, 0.0),
             (0.0, errors.tension_reading),
         ):
-            # a step of one standard uncertainty: finite where a law is steep near no tension
+            # a step of one standard uncertainty: finite where a law is steep near zero tension
             high, low = (
                 strain_by_model(
                     model,
@@ -509,7 +509,7 @@ def _channel_contributions(
     *,
     phase: NDArray[np.int8],
 ) -> Contributions:
-    """What shared errors do to the samples, by archive name of the channel."""
+    """Effect of shared errors on the samples, by archive name of the channel."""
     if not errors:
         return Contributions(())
     rows = _rows_of(phase)
@@ -575,7 +575,7 @@ def _of_channel(name: str, stated: dict[Component, float]) -> Contributions:
 
 
 def _rows_of(phase: NDArray[np.int8]) -> Integers:
-    """Cycling samples, or all but rests where none cycles."""
+    """Cycling samples, or all but rests if none is cycling."""
     cycling, rest = PHASE_VALUES["cycling"], PHASE_VALUES["rest"]
     rows = thinned(lambda part: phase[part] == cycling, phase.size, most=_SAMPLES, samples=(phase,))
     if rows.size:
@@ -593,7 +593,7 @@ def _signed_rms(values: Floats) -> float:
     return float(np.copysign(_rms(known), known.mean())) if known.size else 0.0
 
 
-# share of the greatest tension up to which the first rise is kept, to tell where slack ends
+# fraction of the greatest tension up to which the first rise is kept, to find where slack ends
 _FIRST_RISE = 0.5
 
 _MOST_KEPT = 1 << 20  # samples, or up to twice as many
@@ -611,25 +611,25 @@ class _Samples:
 
 @dataclass(frozen=True)
 class Extremes:
-    """How far one test went, by specimen; empty where it could not be read.
+    """Extremes reached in one test, by specimen; empty where it could not be read.
 
     Parameters
     ----------
     greatest_tension : mapping of str to float
-        [N]
+        Greatest tension. [N]
     greatest_measured_strain : mapping of str to float
-        Of the extensometer, where there is one, or of the readings of a stepwise test. [1]
+        From the extensometer, where there is one, or the readings of a stepwise test. [1]
     at_greatest_position : mapping of str to Samples
-        Outermost samples at the greatest position: at a held length the rubber goes on stretching
-        as its splices relax, so the greatest strain is at one of them, by the strain model.
+        Outermost samples at the greatest position.  At a held length the rubber goes on stretching
+        as its splices relax, so the strain model has its greatest strain at one of them.
     first_rise : mapping of str to Samples
-        Up to half of the peak tension.
+        Samples up to half of the peak tension.
     all_over : mapping of str to Samples
         Some samples spread over the whole test, with those at the least and greatest position.
     slack_tension : float
-        At or below which the specimens are slack; NaN where there is no record. [N]
+        At or below this the specimens are slack; NaN where there is no record. [N]
     position_is_length : bool
-        False where a displacement from slack begins at zero in every test.
+        False where the channel is a displacement from slack, zero at the start of every test.
     has_extensometer, is_stepwise : bool
         Whether strain was measured on the specimen, and whether a person read it.
     """
@@ -646,7 +646,7 @@ class Extremes:
 
 
 def extremes_of_test(located: Located) -> Extremes:
-    """How far a logged test went."""
+    """Extremes reached in a logged test."""
     record = located.record
     measured = record.measured_strain
     return Extremes(
@@ -657,7 +657,7 @@ def extremes_of_test(located: Located) -> Extremes:
         at_greatest_position=_at_greatest_position(located),
         first_rise=_first_rise(located),
         all_over=_all_over(located),
-        # what a drifting zero makes of slack is no pull
+        # readings at slack due to a drifting zero do not count as a pull
         slack_tension=max(
             (
                 located.standstills.slack_tension,
@@ -672,7 +672,7 @@ def extremes_of_test(located: Located) -> Extremes:
 def extremes_of_readings(
     readings: StepReadings, specimen: str, *, stated_gauge_length: float | None
 ) -> Extremes:
-    """How far a stepwise test went; weights hang from one specimen."""
+    """Extremes reached in a stepwise test; weights hang from one specimen."""
     strain = greatest_step_strain(readings, stated_gauge_length=stated_gauge_length)
     return Extremes(
         greatest_tension={specimen: float(readings.tension.max())},
@@ -730,7 +730,7 @@ def growth_of_slack_length(
         spreads.append(at.standard_uncertainty[0])
         compliances.append(at.compliance[0])
     spread = float(np.hypot(*spreads))
-    # a crossing through two samples alone has no residual, and so no uncertainty to give
+    # a crossing through only two samples has no residual, and so no uncertainty
     if not np.isfinite(spread):
         return nothing
     return (
@@ -741,13 +741,13 @@ def growth_of_slack_length(
 
 
 def _greatest_known(specimens: tuple[str, ...], values: Floats) -> dict[str, float]:
-    """The greatest value of each specimen that has one."""
+    """The greatest value of each specimen, where one is known."""
     greatest = [finite_extremes(one)[1] for one in values]
     return {name: most for name, most in zip(specimens, greatest, strict=True) if np.isfinite(most)}
 
 
 def _at_greatest_position(located: Located) -> dict[str, _Samples]:
-    """Samples within the tolerance of a standstill of the greatest position, some of many."""
+    """Samples within the standstill tolerance of the greatest position, thinned if many."""
     position = located.position
     near = finite_extremes(position)[1] - located.standstills.position_tolerance
     if not np.isfinite(near):
@@ -765,9 +765,9 @@ def _at_greatest_position(located: Located) -> dict[str, _Samples]:
 
 
 def _outermost(place: Floats, load: Floats) -> Integers:
-    """Index of the samples that no other passes both in position and in tension, either way.
+    """Index of the samples that no other exceeds both in position and in tension, either way.
 
-    The greatest strain is at one of them, whether strain falls with tension at one position, as
+    The greatest strain is at one of them, whether strain at one position falls with tension, as
     splices stretch, or rises.
 
     Examples
@@ -803,7 +803,7 @@ def _all_over(located: Located) -> dict[str, _Samples]:
 
 
 def judge_strain(extremes: Extremes, model: StrainModel, *, test_id: str) -> tuple[Note, ...]:
-    """Refuse a strain model that gives what no specimen has, and say what hardly one has.
+    """Refuse a strain model that gives impossible strain, and note improbable strain.
 
     Raises
     ------
@@ -837,14 +837,14 @@ def _first_above(series: Floats, level: float) -> int | None:
 
 
 def _first_rise(located: Located) -> dict[str, _Samples]:
-    """Samples up to the first that is over half of the greatest tension; of many, the last."""
+    """Samples up to the first above half of the greatest tension; of many, the last ones."""
     found = {}
     for name, tension in zip(located.record.specimens, located.tension, strict=True):
         taut = _FIRST_RISE * max(finite_extremes(tension)[1], 0.0)
         over = _first_above(tension, taut)
         stop = 0 if over is None else over + 1
         rise = slice(max(stop - _MOST_KEPT, 0), stop)
-        # copies, lest the whole record is kept with its first part
+        # copies, so that the whole record does not stay in memory
         found[name] = _Samples(np.array(located.position[rise]), np.array(tension[rise]))
     return found
 
@@ -861,7 +861,7 @@ def _notes_of_test(
     of_stages: Iterable[Note],
     slack_remarks: Sequence[Note | None],
 ) -> tuple[Note, ...]:
-    """What a reader has to know before the numbers are used, nothing twice."""
+    """Notes that a reader needs before using the numbers, without duplicates."""
     record, standstills = located.record, located.standstills
     notes = [one for specimen in specimens for one in check_constant_volume(specimen)]
     notes += of_stages
@@ -883,7 +883,7 @@ def _notes_of_test(
 
 
 def _stage_lines(located: Located, models: Sequence[StrainModel]) -> tuple[Step, ...]:
-    """One line a stage, with the numbers it found."""
+    """One line a stage, with the numbers that it found."""
     record, standstills, cycles = located.record, located.standstills, located.cycles
     lines = [
         Step("ingest", f"{record.n_rows_read} rows read, {record.n_samples} kept"),
@@ -916,7 +916,7 @@ def _stage_lines(located: Located, models: Sequence[StrainModel]) -> tuple[Step,
 
 
 def _no_hold(standstills: Standstills, settings: ReductionSettings) -> Note:
-    """Why a test that was to be held has no number of a hold."""
+    """Reason why a test with planned holds has no result of a hold."""
     held = standstills.tension_tolerance
     of_position = ("the crosshead", standstills.position_tolerance, "m", "position_tolerance")
     channel, tolerance, unit, key = (
@@ -931,9 +931,9 @@ def _no_hold(standstills: Standstills, settings: ReductionSettings) -> Note:
 def _with_waveform_of_log(
     settings: ReductionSettings, located: Located
 ) -> tuple[ReductionSettings, tuple[Note, ...]]:
-    """Take a wave that is neither a triangle nor a sine as what it is, whatever is stated.
+    """Treat a wave that is neither a triangle nor a sine as "other", whatever is stated.
 
-    So is a sine whose period changes on the way: its cycles have no common wave.
+    The same applies to a sine whose period changes: its cycles have no common wave.
     """
     cycles = located.cycles
     if cycles is None or not cycles.n_cycles:
@@ -972,27 +972,27 @@ def reduce_test(
     located : Located
         From `locate`.
     description : TestDescription
-        What the laboratory kept.
+        As kept by the laboratory.
     specimens : tuple of Specimen, length n_specimens
         In the order of the record.
     models : sequence of StrainModel, length n_specimens
-        How position becomes strain.
+        Conversion of position to strain.
     history : History or None
-        What the specimens had seen before.
+        Earlier tests of the specimens.
     sources : tuple of Source
         Raw files.
     settings : ReductionSettings
-        In force.
+        Settings in force.
     settings_json : str
-        The same with everything else that was in force, for the product.
+        The same, with all other inputs in force, for the product.
     pulls : sequence of SlowPull or None, length n_specimens, optional
         Slow pull of each specimen; with it the loops give a three-parameter line.
     pull_origins : sequence of PullOrigin or None, length n_specimens, optional
-        With what each pull was read, where that was not the instruments of this test.
+        Instruments of each pull, where these differ from those of this test.
     pull_conditions : PullConditions, optional
-        What a slow pull cannot tell of itself.
+        Conditions of a slow pull that its log does not show.
     instruments : sequence of InstrumentErrors, length n_specimens, optional
-        What is known of the errors that all samples share; nothing where it is left out.
+        Known errors common to all samples; none if left out.
 
     Returns
     -------
@@ -1002,7 +1002,7 @@ def reduce_test(
     Raises
     ------
     DataError
-        If the record cannot support a stage that its kind needs.
+        If the record cannot support a stage that its kind of test needs.
     """
     record, standstills, cycles = located.record, located.standstills, located.cycles
     position, tension = located.position, located.tension
@@ -1139,7 +1139,7 @@ def _with_shared_errors(
     pull_origins: Sequence[PullOrigin | None],
     of_channels: Contributions,
 ) -> ReducedTest:
-    """The test with what errors that all its samples share do to its numbers, where stated."""
+    """The test with the effect of errors common to all its samples, where these are stated."""
     if not instruments:
         return test
     of_numbers = contributions_of_test(

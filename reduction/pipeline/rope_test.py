@@ -1,4 +1,4 @@
-"""What a slow pull and the steps of a rope programme give."""
+"""Results of a slow pull and of the steps of a rope programme."""
 
 from __future__ import annotations
 
@@ -48,9 +48,9 @@ from reduction.stages.three_parameter_line.slow_pull import (
 
 @dataclass(frozen=True)
 class PullConditions:
-    """What a slow pull cannot tell of itself; None where not stated.
+    """Conditions of a slow pull that its log does not show; None where not stated.
 
-    ``waiting_time`` [s] is that since the last dynamic test, ``waiting`` the laboratory's words
+    ``waiting_time`` [s] is the time since the last dynamic test, ``waiting`` the laboratory's words
     for it; ``reference_length`` [m] is the length at zero strain, ``reference_tension`` [N] the
     tension at which it was read.
     """
@@ -69,7 +69,7 @@ def pull_specimens(
     *,
     models: Sequence[StrainModel],
 ) -> tuple[tuple[SlowPull | None, ...], list[Note]]:
-    """Load-strain curve of each specimen of a slow pull; None and a note where it has none."""
+    """Load-strain curve of each specimen of a slow pull; None and a note where there is none."""
     pulls: list[SlowPull | None] = []
     notes: list[Note] = []
     for index, name in enumerate(located.record.specimens):
@@ -92,7 +92,7 @@ def pull_specimens(
     return tuple(pulls), notes
 
 
-_BEYOND = 2.0  # of what is stated of K_0 without it
+_BEYOND = 2.0  # times the uncertainty of K_0 stated without it
 
 
 def parts_of_line(
@@ -104,7 +104,7 @@ def parts_of_line(
     tension: Floats,
     cycles: Cycles,
 ) -> dict[str, Any]:
-    """Parameters of the three-parameter line, of each cycle and of the test, and notes."""
+    """Parameters of the three-parameter line for each cycle and for the test, and notes."""
     kept = slice(settings.break_in_cycles, None)
     above = [
         tension_above_midline(
@@ -117,7 +117,7 @@ def parts_of_line(
         loops, pulls, break_in_cycles=settings.break_in_cycles, above_midline=above,
         waveform=settings.waveform, control=settings.control,
     )  # fmt: skip
-    # the amplitudes of a wave that is no sine are not those of its fundamental
+    # the amplitudes of a wave that is not a sine are not those of its fundamental
     reading = "amplitude" if settings.waveform == "sinusoidal" else "fundamental"
     if reading == "fundamental":  # a linear line has one complex stiffness at one frequency
         loops = loops.over_time(float(np.median(cycles.last - cycles.first)))
@@ -179,23 +179,23 @@ _NAMES = {
 
 _PULLS = ("tensile", "quasi-static")
 
-# asked for by name, and so of any specimen; the others are a programme with a rope alone
+# requested by name, and so for any specimen; the others are a programme for ropes only
 _OF_ALL = ("bedding-in", "fatigue", "snap", *_PULLS)
 
-# a drift over the cycles that count is told where it passes this share of the stiffness
+# a drift over the cycles used is noted if it exceeds this fraction of the stiffness
 _DRIFT_NOTED = 0.01
 
 _SIGNIFICANT = 3.0
 
-# a first valley this far from the others, over the range, makes its cycle another one
+# distance of a first valley from the others, over the range, at which its cycle is not like them
 _UNEQUAL_VALLEY = 0.05
 
-# cycles whose amplitude differs by this share, or mean by an amplitude, are of another level
+# relative difference of amplitudes, or of means over an amplitude, that makes another level
 _OTHER_LEVEL = 0.3
 
 _FEWEST_OF_LEVEL = 3
 
-# upper part of the stroke, in which a line that is sound is taut
+# upper part of the stroke, in which a sound line is taut
 _TOP = 0.25
 
 
@@ -211,7 +211,7 @@ def rope_step(
     failed: bool | None,
     settings: RopeSettings,
 ) -> RopeStep | None:
-    """Reduce one test as a step of a programme; None where its kind, or a tether, has none."""
+    """Reduce one test as a step of a programme; None if its kind, or a tether, has none."""
     is_rope = any(specimen.is_rope for specimen in specimens)
     if kind not in _NAMES or not (is_rope or kind in _OF_ALL):
         return None
@@ -278,7 +278,7 @@ def rope_step(
 def _creep(
     holds: tuple[HoldResult, ...], names: Sequence[str], strength: Floats
 ) -> tuple[CreepOfHold, ...]:
-    """Every hold where the machine kept the tension; all holds of a test are of one kind."""
+    """Creep of every hold at controlled tension; all holds of a test are of one kind."""
     if any(hold.kind != "creep" for hold in holds):
         return ()
     of_name = dict(zip(names, strength.tolist(), strict=True))
@@ -286,7 +286,7 @@ def _creep(
 
 
 def _of_first_cycle(loops: Loops, names: Sequence[str]) -> list[Note]:
-    """Bedding-in that begins elsewhere than its cycles do."""
+    """Bedding-in that begins at a different tension from its cycles."""
     if loops.frequency.shape[1] < 2:
         return [note("no-bedding-in")]
     notes = []
@@ -304,7 +304,7 @@ def _of_first_cycle(loops: Loops, names: Sequence[str]) -> list[Note]:
 def _stiffness_notes(
     dynamic: DynamicStiffness, names: Sequence[str], settings: RopeSettings
 ) -> list[Note]:
-    """Too few cycles, and a stiffness that has not settled."""
+    """Notes on too few cycles, and on a stiffness that has not settled."""
     notes = []
     for row, name in enumerate(names):
         used = int(dynamic.n_cycles[row, 0])
@@ -320,7 +320,7 @@ def _stiffness_notes(
 
 
 def _of_levels(loops: Loops, dynamic: DynamicStiffness, names: Sequence[str]) -> list[Note]:
-    """Cycles of another level than those that count: a step is one level."""
+    """Cycles of another level than those used: a step is one level."""
     notes = []
     for row, name in enumerate(names):
         mean, amplitude = dynamic.mean_tension[row, 0], dynamic.tension_amplitude[row, 0]
@@ -340,7 +340,7 @@ def _lasted(
     failed: bool | None,
     settings: RopeSettings,
 ) -> CyclesToFailure:
-    """Cycles by the machine's own count where it has one, until the record shows a failure."""
+    """Cycles by the machine's own count if it has one, until the record shows a failure."""
     cycles, counter = located.cycles, located.record.cycle_counter
     number = parted_in = None
     if cycles is not None:
@@ -360,7 +360,7 @@ def _lasted(
 def _parted_in(
     located: Located, tension: Floats, cycles: Cycles, loops: Loops, failure_share: float
 ) -> Integers:
-    """Cycle within or after which each specimen is slack where it was taut; -1 where it is not."""
+    """Cycle within or after which each specimen is slack where it was taut; -1 if none."""
     found = np.full(len(tension), -1)
     for row, peak in enumerate(loops.peak_tension):
         known = peak[np.isfinite(peak)]
@@ -373,9 +373,9 @@ def _parted_in(
         place, load = located.position[begin : last + 1], tension[row, begin : last + 1]
         least = np.nanmax(place) - _TOP * np.ptp(place[np.isfinite(place)])
         slack, lowest = located.standstills.slack_tension, np.fmin.reduce(load[place >= least])
-        if not lowest > slack:  # nor where it is not known
+        if not lowest > slack:  # nor if it is not known
             continue
-        # as logged: a channel that repeats its zero after a failure is flagged, not wrong
+        # as logged: a channel that repeats its zero after a failure is flagged, but not wrong
         sample = parting_sample(
             located.record.crosshead_position, located.record.tension[row], last=last,
             least_position=float(least), tension_low=failure_share * float(lowest),
@@ -387,7 +387,7 @@ def _parted_in(
 
 
 def _last_taut(load: Floats, stop: int, slack: float) -> int | None:
-    """Last sample before another at which a specimen is taut."""
+    """Last sample before a given one at which a specimen is taut."""
     return last_sample(lambda part: load[part] > slack, 0, stop, load)
 
 

@@ -1,7 +1,7 @@
 """The motion that leads to a standstill: where it began, how fast it came, where it ends.
 
-A servo reaches its target in two ways: it approaches it, and then it settles.  What of both is
-noise says nothing of where one becomes the other: an approach ends where it is slow and near,
+A servo reaches its target in two steps: it approaches and then it settles.  The noise of the
+record does not show where one becomes the other; an approach ends where it is slow and near,
 compared with itself.
 
 References
@@ -20,17 +20,17 @@ from reduction.record.measurement import Bools, Floats
 from reduction.record.samples import BLOCK, finite_extremes, last_sample, release_pages
 
 NEAR_SHARE = 0.02
-"""Distance from a standstill, as a share of the stroke to it, within which settling is looked for.
+"""Distance from a standstill within which settling is looked for, as a share of the stroke to it.
 [1]"""
 
 OVERRUN_SHARE = 0.1
-"""Distance beyond a standstill, as a share of the stroke to it, from which a channel that has run
-over settles back. [1]"""
+"""Distance beyond a standstill from which a channel that has overshot settles back, as a share of
+the stroke to it. [1]"""
 
 SLOW_SHARE = 0.1
 """Rate at which an approach ends, as a share of its mean rate. [1]"""
 
-_LONGEST_CHORD = 0.2  # of the time of the approach: beyond it noise hides the rate
+_LONGEST_CHORD = 0.2  # of the time of the approach: a longer chord hides the rate in noise
 
 _LEVEL_SAMPLES, _LEVEL_SAMPLES_MOST = 8, 1024
 
@@ -41,8 +41,8 @@ _RESOLVED = 4.0  # noise ranges
 class Motion:
     """The last motion of a record: its first sample, or one before it, and how far it came.
 
-    ``reach`` is its greatest distance from the last sample, times ``sign`` positive in the
-    direction from which the channel came; ``turned`` is true where a turn begins it.
+    ``reach`` is its greatest distance from the last sample; times ``sign`` it is positive in
+    the direction from which the channel came.  ``turned`` is true where it begins with a turn.
     """
 
     first: int
@@ -52,7 +52,7 @@ class Motion:
 
 
 def last_motion(place: Floats, band: float) -> Motion | None:
-    """The last motion, looked for backwards from the last sample; None without motion.
+    """The last motion, searched backwards from the last sample; None without motion.
 
     Examples
     --------
@@ -84,7 +84,7 @@ class _Approach:
     Parameters
     ----------
     end : int
-        Its last sample, which is the first of the standstill.
+        Its last sample, which is the first sample of the standstill.
     stroke : float
         Distance from its far end to the standstill. [unit of the channel]
     rate : float
@@ -99,18 +99,18 @@ class _Approach:
 def find_approach(
     time: Floats, values: Floats, *, begin: int, first: int, last: int, noise_range: float
 ) -> _Approach | None:
-    """Where a channel that comes to a stand ends its approach and begins to settle.
+    """Where a channel that comes to a standstill ends its approach and begins to settle.
 
     Parameters
     ----------
     time, values : ndarray, shape (n_samples,)
         Record, NaN where a sample is missing. [s], [any unit]
     begin : int
-        First sample after the standstill before. [1]
+        First sample after the previous standstill. [1]
     first, last : int
-        Samples in which the channel surely stands. [1]
+        Samples in which the channel certainly stands. [1]
     noise_range : float
-        Range that noise alone spans in the channel. [unit of the channel]
+        Range of the channel due to noise alone. [unit of the channel]
 
     Returns
     -------
@@ -120,20 +120,20 @@ def find_approach(
     Raises
     ------
     IndexError
-        If the standstill is outside of the record.
+        If the standstill is outside the record.
 
     Notes
     -----
-    Time of a relaxation counts from when the constraint is first obtained ([1]_).  The approach
-    ends at the first sample from which the channel keeps within 2 % of the stroke of the
-    standstill (10 % beyond it) and advances, over the next chord, at less than a tenth of the
-    mean rate of the approach.  The chord is the shortest over which noise cannot advance that
-    far; a sharp end, found early by up to a fifth of it, is where the lines before and after it
-    meet.  A target that is run over ends the approach where the channel turns.
+    The time of a relaxation counts from when the constraint is first obtained ([1]_).  The
+    approach ends at the first sample from which the channel stays within 2 % of the stroke of
+    the standstill (10 % beyond it) and moves, over the next chord, at less than a tenth of the
+    mean rate of the approach.  The chord is the shortest over which noise cannot move that far.
+    A sharp end, found up to a fifth of a chord too early, is put where the lines before and
+    after it meet.  After an overshoot the approach ends where the channel turns.
 
     Examples
     --------
-    A pull of 15 s to 1 m less a centimetre, which takes some seconds.
+    A pull of 15 s to one centimetre short of 1 m, which then takes some seconds:
 
     >>> time = np.arange(0.0, 60.0, 0.5)
     >>> place = np.where(time < 15, 0.066 * time, 1 - 0.01 * np.exp(-(time - 15) / 3))
@@ -179,9 +179,9 @@ def find_approach(
             return None
     rate = float(travelled / duration)
     chord = min(noise_range / (2 * SLOW_SHARE * rate), _LONGEST_CHORD * motion.reach / rate)
-    # in far less than a step of the log, a row beside another, an encoder does not advance either
+    # far within one step of the log, two adjacent rows: an encoder does not move either
     chord = max(chord, float(np.median(np.diff(time[far : first + 1]))) / 2)
-    # so long what is left within the near band may take at more than the slow rate
+    # longest time that the rest within the near band can take at more than the slow rate
     latest = min(time[first] + near / (SLOW_SHARE * rate) + chord, time[last])
     stop = int(np.searchsorted(time[: last + 1], latest + chord, side="right")) + 1
     known = away + 1 + np.flatnonzero(np.isfinite(values[away + 1 : min(stop, last) + 1]))
@@ -202,10 +202,10 @@ def find_approach(
 def _at_corner(
     time: Floats, values: Floats, end: int, start: int, last: int, chord: float, rate: float
 ) -> int:
-    """First sample after the lines of a chord before and after the end of an approach meet.
+    """First sample after the point where the lines of a chord before and after the end meet.
 
-    Noise makes the end early, by so much of a chord as the rate that counts as slow is of the
-    last rate, or twice that; beyond it is left as it is.
+    Noise makes the end early, by the share of a chord that the slow rate is of the last rate,
+    or twice that; an end farther off is left as it is.
     """
     low, high = np.searchsorted(time[: last + 1], [time[end] - 0.8 * chord, time[end] + 2 * chord])
     low, high = max(int(low), start), min(int(high), last + 1)
@@ -228,10 +228,10 @@ def _at_corner(
 
 
 def _after_cut_step(left: Floats, end: int, noise_range: float) -> int:
-    """One sample later, where the channel goes on by more than noise and then stands at once.
+    """One sample later, where the channel moves on by more than noise and then stops at once.
 
-    Of a ramp that stops between two samples, so small a part of a step may be left that it passes
-    for slow.  What settles goes on for longer than one step, or after a step that was cut.
+    Where a ramp stops between two samples, the part of a step left may be so small that it passes
+    for slow.  Settling continues for longer than one step, or after a step that was cut.
     """
     steps = -np.diff(left[max(end - 2, 0) : end + 1])
     if steps.size == 2 and steps[1] < _WHOLE * steps[0] - noise_range:
@@ -245,7 +245,7 @@ def _after_cut_step(left: Floats, end: int, noise_range: float) -> int:
     return end + 1 if ahead > unknown and stands else end
 
 
-_WHOLE = 0.8  # share of the step before it: a shorter one was cut by the end of the ramp
+_WHOLE = 0.8  # share of the previous step: a shorter one was cut off by the end of the ramp
 
 _FROM_NOISE = 0.25  # of its range: three of its deviations
 
@@ -253,7 +253,7 @@ _FEWEST_ON_LINE = 4
 
 
 def _early_level(held: Floats) -> float:
-    """Median of the first tenth of a standstill: it may begin with the end of its approach."""
+    """Median of the first tenth of a standstill, which may begin with the end of its approach."""
     n_early = max(held.size // 10, min(held.size, _LEVEL_SAMPLES))
     early = held[: n_early : max(n_early // _LEVEL_SAMPLES_MOST, 1)]
     early = early[np.isfinite(early)]

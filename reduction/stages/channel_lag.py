@@ -1,23 +1,24 @@
-r"""How much later than position tension was logged, from the turns of a triangular wave.
+r"""Delay of the tension log relative to position, from the turns of a triangular wave.
 
-One frequency cannot tell a lag from damping: it shows the phase :math:`\delta - \omega \ell` alone.
-A turn can.  Of any material with memory,
+A single frequency cannot distinguish a lag from damping: it shows only the phase
+:math:`\delta - \omega \ell`.  A turn can.  In any material with memory,
 
 .. math::
 
     T(t) = G(0) \, p(t) + \int_0^\infty G'(s) \, p(t - s) \, ds
 
 the integral is smoother than position: where the speed of the crosshead jumps, its slope does not.
-So the slope of tension jumps with that of position, at that instant, whatever the loss; only what
-delays a channel moves one corner against the other.  Both sides of a turn are fitted by parabolas,
-apart, in either channel, and the lag is the time between the crossings.
+So the slope of tension jumps with that of position, at that instant, whatever the loss; only
+a delay of a channel shifts one corner relative to the other.  Both sides of a turn are fitted by
+parabolas, separately in each channel, and the lag is the time between the crossings.
 
-What is left of damping makes tension turn *early*, never late.  Creep that goes as a power of
+The residual effect of damping makes tension turn *early*, never late.  Creep as a power of
 time, :math:`t^{-n}` with :math:`n = 2\delta / \pi`, bends the ramp next to its corner, and
 parabolas over a window W cross :math:`n W / 8` early; smaller windows show it.  A dashpot in
-parallel, friction, or a relaxation that is over within a few samples shifts the whole ramp, by the
-time eta / K, and no record at this rate tells that from a lead of the channel.  So a tension that
-turns late was logged late, by at least that; one that turns early may be damping, and is refused.
+parallel, friction, or a relaxation that ends within a few samples shifts the whole ramp by the
+time eta / K, and no record at this rate distinguishes that from a lead of the channel.  So a
+tension that turns late was logged late, by at least that; one that turns early may be due to
+damping, and is refused.
 
 References
 ----------
@@ -45,13 +46,13 @@ from reduction.stages.standstills import estimate_noise, median_step
 
 _SHARE = 0.45  # of a ramp, on either side of a turn
 
-_FEWEST_SAMPLES = 10  # in that share, for a parabola through half of them
+_FEWEST_SAMPLES = 10  # in that part, for a parabola through half of them
 
 _FEWEST_TURNS = 6
 
 _MOST_TURNS = 400
 
-_SHARP = 0.7  # jump of the slope over twice the mean slope: 1 of ramps, 0.2 of a sine
+_SHARP = 0.7  # jump of the slope over twice the mean slope: 1 for ramps, 0.2 for a sine
 
 _MOST_LOST = 0.2
 
@@ -76,13 +77,13 @@ class LagEstimate:
     Parameters
     ----------
     lag : ndarray
-        By which tension is logged late against position, at the least; NaN where refused. [s]
+        Lower bound of the delay of tension relative to position; NaN where refused. [s]
     standard_uncertainty : ndarray
-        Scatter over the turns, peaks against valleys, and what smaller windows change. [s]
+        Scatter over the turns, peaks against valleys, and change by smaller windows. [s]
     n_turns : ndarray of int
-        Used. [1]
+        Number of turns used. [1]
     refusal : ndarray of int
-        Of `LAG_REFUSALS`. [1]
+        Code of `LAG_REFUSALS`. [1]
     """
 
     lag: Floats
@@ -94,7 +95,7 @@ class LagEstimate:
 def delay_of_extensometer(
     time: Floats, position: Floats, strain: Floats, tension: Floats, inside: NDArray[Any]
 ) -> float:
-    r"""By how much later than the crosshead an extensometer was logged; 0 where damping may do it.
+    r"""Delay of an extensometer relative to the crosshead; 0 where damping may cause it.
 
     .. math:: \varepsilon(t) = f(x) - \tau f'(x) \dot x, \qquad T(t) = g(\varepsilon)
               + t_\delta \, g'(\varepsilon) \dot\varepsilon
@@ -102,9 +103,9 @@ def delay_of_extensometer(
     Parameters
     ----------
     time, position, strain, tension : ndarray, shape (n_samples,)
-        Of one specimen. [s], [m], [1], [N]
+        Channels of one specimen. [s], [m], [1], [N]
     inside : ndarray of int, shape (n_samples,)
-        Above zero within cycles. [1]
+        Positive within cycles. [1]
 
     Returns
     -------
@@ -118,9 +119,9 @@ def delay_of_extensometer(
 
     Notes
     -----
-    Both are lengths, of which one drives the other: they move together, but for what else is
-    stretched between the pins.  That follows tension, which leads strain by :math:`t_\delta`, and
-    puts strain behind the crosshead by its share of it.  A delay is one that is more than half.
+    Both channels are lengths, one driven by the other: they move together, except for other parts
+    stretched between the pins.  Those follow tension, which leads strain by :math:`t_\delta`, and
+    put strain behind the crosshead by their share of it.  More than half of that is a delay.
 
     Examples
     --------
@@ -136,7 +137,7 @@ def delay_of_extensometer(
     gone = take_samples(time, rows + 1) - take_samples(time, rows - 1)
 
     def late(driver: Floats, answer: Floats, some: Integers) -> float:
-        """Delay of the answer in seconds, by its curve over the driver and its rate."""
+        """Delay of the response in seconds, by its curve over the driver and its rate."""
         x, y = take_samples(driver, rows[some]), take_samples(answer, rows[some])
         rate = (take_samples(driver, rows + 1) - take_samples(driver, rows - 1))[some] / gone[some]
         known = np.isfinite(x) & np.isfinite(y) & np.isfinite(rate) & (gone[some] > 0)
@@ -145,7 +146,7 @@ def delay_of_extensometer(
             return np.nan
         curve = np.polynomial.Polynomial.fit(x, y, _DEGREE)
         far = np.abs(y - curve(x))
-        near = far < _OUTLYING * np.median(far)  # what drops out is no delay
+        near = far < _OUTLYING * np.median(far)  # a drop-out is not a delay
         x, y, rate = x[near], y[near], rate[near]
         curve = np.polynomial.Polynomial.fit(x, y, _DEGREE)
         terms = np.column_stack([((x - x.mean()) / np.ptp(x))[:, None] ** np.arange(_DEGREE + 1),
@@ -162,7 +163,7 @@ def delay_of_extensometer(
 
 _MOST_ROWS, _FEWEST_ROWS = 50_000, 200
 
-_PARTS = 5  # of the log, whose scatter says how well a delay is known
+_PARTS = 5  # of the log: their scatter gives the uncertainty of a delay
 
 _DEGREE = 5
 
@@ -176,7 +177,7 @@ _OF_LEAD, _OF_STEP = 0.4, 0.5
 def lag_by_turns(
     time: ArrayLike, position: ArrayLike, tension: ArrayLike, turn: ArrayLike
 ) -> LagEstimate:
-    r"""Estimate by how much each tension channel is logged later than position.
+    r"""Estimate the delay of each tension channel relative to position.
 
     .. math:: \ell = t_T - t_p, \qquad u^2 = u_{scatter}^2 + 4 \max_w (\ell_W - \ell_w)^2
             + \frac{1}{12} (\ell_{peaks} - \ell_{valleys})^2
@@ -193,7 +194,7 @@ def lag_by_turns(
     Returns
     -------
     estimate : LagEstimate
-        With a refusal where turns do not tell.
+        With a refusal where the turns do not show it.
 
     Raises
     ------
@@ -202,12 +203,12 @@ def lag_by_turns(
 
     Notes
     -----
-    Turns weigh by the square of the jump of the slope of tension: the noise of a crossing is that
-    of a reading over it.  The bias of a power-law creep is twice the change from W to W/2; it is
-    not corrected, since that would take the law for granted, but kept in full in the uncertainty
-    ([2]_).  Half of what peaks and valleys differ by counts as a half width.  A wave that rounds
-    its corners (a sine) is refused: there phase is all there is, and phase is damping and lag
-    together ([1]_).
+    Turns are weighted by the square of the jump of the slope of tension, since the noise of a
+    crossing is that of a reading over it.  The bias of a power-law creep is twice the change from W
+    to W/2; it is not corrected, since that would assume the law, but included in full in the
+    uncertainty ([2]_).  Half of the difference between peaks and valleys counts as a half width.
+    A wave that rounds its corners (a sine) is refused: it has only a phase, which is damping and
+    lag together ([1]_).
 
     Examples
     --------
@@ -254,7 +255,7 @@ def _refused(n_specimens: int, reason: str) -> LagEstimate:
 def lag_at_stops(
     time: ArrayLike, position: ArrayLike, tension: ArrayLike, stop: ArrayLike, turn: ArrayLike
 ) -> LagEstimate:
-    """Estimate the lag by how much later than position tension stops where the crosshead does.
+    """Estimate the lag by the delay with which tension stops after the crosshead.
 
     Parameters
     ----------
@@ -280,9 +281,9 @@ def lag_at_stops(
     Notes
     -----
     A sine has no corner, but its approach, and often its end, has one: there the argument of
-    `lag_by_turns` holds, and its refusals.  Where a crosshead sets off, play in a grip and a slack
-    specimen make tension late; where it stops nothing does.  Stops are few, so that noise, carried
-    through the ends of both parabolas, stands beside their scatter.
+    `lag_by_turns` and its refusals apply.  Where a crosshead starts, play in a grip and a slack
+    specimen delay tension; where it stops, nothing does.  Stops are few, so the noise, propagated
+    through the ends of both parabolas, is added to their scatter.
 
     Examples
     --------
@@ -330,7 +331,7 @@ _MOST_STOPS = 20
 
 
 def delay_by_noise(position: Floats, tension: Floats, *, samples_per_cycle: float) -> float:
-    r"""By how many samples a filter delays tension, from the noise that it leaves; 0 where none is.
+    r"""Delay of tension by a filter, in samples, from the remaining noise; 0 without a filter.
 
     .. math:: r_j = e^{-j/\tau}, \qquad r_j = (1 + j/\tau)\,e^{-j/\tau}
 
@@ -339,12 +340,12 @@ def delay_by_noise(position: Floats, tension: Floats, *, samples_per_cycle: floa
     position, tension : ndarray, shape (n_samples,)
         [m], [N]
     samples_per_cycle : float
-        Of the wave, which differences of every eighth sample are to leave out. [1]
+        Samples per cycle of the wave, which differences of every eighth sample must exclude. [1]
 
     Returns
     -------
     delay : float
-        In samples: the time constant of one pole, or both of two equal ones. [1]
+        In samples: the time constant of one pole, or the sum of two equal ones. [1]
 
     Raises
     ------
@@ -353,11 +354,11 @@ def delay_by_noise(position: Floats, tension: Floats, *, samples_per_cycle: floa
 
     Notes
     -----
-    Noise whose readings are independent is as great in every eighth sample as in all of them.
-    Behind a filter it is less in all, since neighbours are alike: by their autocorrelation
+    Independent noise is as large in every eighth sample as in all of them.
+    After a filter it is smaller in all, since neighbours are alike: by their autocorrelation
     :math:`r_j` after one pole and after two, in differences of sixth order.  Vibration would show
-    in position; where its noise is not white nothing is said, nor where a step of the
-    converter hides noise.  A filter without a delay, run over a record afterwards, leaves the same.
+    in position; where the noise of position is not white no result is given, nor where a step of
+    the converter hides noise.  A zero-phase filter applied to a record afterwards gives the same.
 
     Examples
     --------
@@ -400,7 +401,7 @@ _LEAST_SAMPLES = 40 * _STRIDES[-1]  # a sixth difference leaves 1e-5 of a sine o
 
 _LEAST_READINGS = 2000
 
-_COLOURED, _WHITE, _MISFIT = 0.47, 0.25, 0.15  # logarithms, of which chance makes 0.1
+_COLOURED, _WHITE, _MISFIT = 0.47, 0.25, 0.15  # logarithms; chance makes 0.1
 
 _TINY = 1e-9
 
@@ -438,7 +439,7 @@ def _unless_early(
 def _lags(
     time: Floats, position: Floats, tension: Floats, turns: Integers, reach: int
 ) -> tuple[Floats, Floats, Floats]:
-    """Lag by window and turn; of the widest, sharpness, and jumps of slope of both channels."""
+    """Lag by window and turn; for the widest, sharpness and jumps of slope of both channels."""
     step, most = median_step(time[turns[0] - reach : turns[-1] + reach]), reach // 2
 
     def samples(seconds: Floats) -> Integers:
@@ -452,7 +453,7 @@ def _lags(
         width = int(share * reach)
         of_position, sharp_position, jump_position = _corners(time, position, turns, width)
         if share == 1:
-            # one shift for all turns: a corner that the machine rounds is then cut alike
+            # one shift for all turns: a corner that the machine rounds is then cut equally
             for _ in range(_PASSES):
                 of_tension = _corners(time, tension, turns + later, width)[0]
                 later = int(np.median(samples(of_tension - of_position)))
@@ -484,7 +485,7 @@ def _corners(
 ) -> tuple[Floats, Floats, Floats]:
     """Times of the corners of a series, their sharpness, and the jumps of its slope.
 
-    The sample of the turn itself is in no parabola: it lies on either side.
+    The sample of the turn itself is in neither parabola, since it may be on either side.
     """
     at_turn = take_samples(time, turns)
     scale = np.zeros(turns.size)
@@ -499,7 +500,7 @@ def _corners(
             basis = np.stack([np.ones_like(at), at, at**2], axis=-1)
             gram[some] += np.einsum("tsi,tsj->tij", basis, basis)
             sums[some] += np.einsum("tsi,ts->ti", basis, take_samples(series, window))
-        # beside a gap all samples of a side may be one instant, which no parabola goes through
+        # near a gap all samples of a side may be one instant, which no parabola fits
         is_flat = np.linalg.det(gram) <= _FLAT * gram[:, 0, 0] ** 3
         gram[is_flat], sums[is_flat] = np.eye(3), np.nan
         sides.append(np.asarray(np.linalg.solve(gram, sums[..., None])[..., 0], np.float64))
@@ -515,7 +516,7 @@ def _windows(turns: Integers, first: int, stop: int) -> Iterator[tuple[slice, In
 
 
 def _crossing(before: Floats, after: Floats) -> tuple[Floats, Floats, Floats]:
-    """Time at which parabolas of both sides cross, sharpness of the turn, jump of the slope."""
+    """Time at which the parabolas of both sides cross, sharpness of the turn, jump of the slope."""
     height, slope, bend = (after - before).T
     # mean slope of each side, over the whole of it
     mean = np.abs(before[:, 1] - before[:, 2]) + np.abs(after[:, 1] + after[:, 2])

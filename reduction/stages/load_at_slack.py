@@ -1,9 +1,9 @@
-"""What a load cell reads while nothing pulls at it, and whether its zero is right.
+"""Reading of a load cell without load, and test of its zero.
 
-The zero of a load cell is what it reads without load; a log that rests at slack holds it.  A wrong
-zero is in every tension, and where a specimen is soft it turns tension into compression.  A zero
-that drifts is told from a specimen that relaxes or creeps by the rests: what was slack at a length
-pulls at none that is less, whatever it went through, as long as it does not become shorter.
+The zero of a load cell is its reading without load, which a log with a slack rest contains.  A
+wrong zero is in every tension, and in a soft specimen it turns tension into compression.  The rests
+distinguish a drift of the zero from relaxation or creep of the specimen: a specimen that was slack
+at a length does not pull at a smaller one, whatever its history, unless it becomes shorter.
 """
 
 from __future__ import annotations
@@ -21,30 +21,30 @@ from reduction.stages.standstills import Standstills, estimate_noise
 
 _BEYOND = 4.0  # standard errors of a mean
 
-# of the greatest tension: by so much every stress there is wrong at the least
+# of the greatest tension: least error of every stress that counts as serious
 _SERIOUS = 0.01
 
 _COVERED = 2.0  # stated standard uncertainties
 
 _NO_PUSH = 0.1  # of the first reading at slack, below zero
 
-_PUSHES = 10.0  # noise of a reading, by which load lies below a rest
+_PUSHES = 10.0  # times the noise of a reading: least distance of a push below a rest
 
-PULLS_BACK = 0.5  # of the load that pushed it, by friction and creep
+PULLS_BACK = 0.5  # of the load that pushed it: pull afterwards, by friction and creep
 
-_STIFFER = 3.0  # near slack than over the whole stretch: a rubber, whose stiffness falls at first
+_STIFFER = 3.0  # near slack, compared with the whole stretch: rubber, whose stiffness falls first
 
-_MOST = 4096  # samples that say whether load rises with stretch
+_MOST = 4096  # samples used to test whether load rises with stretch
 
 
 @dataclass(frozen=True)
 class LoadAtSlack:
     """Mean load of one specimen over its slack rests.
 
-    ``load`` [N] and ``standard_uncertainty`` [N] by noise and resolution; ``n_rests`` how many
-    there are, ``earlier`` and ``later`` [N] the two means over the last quarter of one that differ
-    most, in order of time: a load that was logged late or filtered has come to rest by then.
-    ``drift`` [N] is what of their difference nothing but a moving zero explains.
+    ``load`` [N] and ``standard_uncertainty`` [N] by noise and resolution; ``n_rests`` their
+    number; ``earlier`` and ``later`` [N] the two most different means over the last quarter
+    of a rest, in order of time: by then a load that was logged late or filtered has settled.
+    ``drift`` [N] is the part of their difference that only a moving zero explains.
     """
 
     load: float
@@ -56,14 +56,14 @@ class LoadAtSlack:
 
     @property
     def is_beyond_noise(self) -> bool:
-        """Whether it is no zero."""
+        """Whether it differs significantly from zero."""
         return abs(self.load) > _BEYOND * self.standard_uncertainty
 
     def drift_uncertainty(self, offset_uncertainty: float) -> float:
-        """What a drift adds to the uncertainty of the zero; nothing where that holds it. [N].
+        """Uncertainty of the zero due to a drift; none if the stated one covers it. [N].
 
-        While it was loaded the zero was anywhere between its two readings: an error of none to all
-        of the drift, all equally likely, has the mean square of a third of its square.
+        While the specimen was loaded the zero was anywhere between its two readings: an error
+        uniformly distributed from zero to the drift has a mean square of a third of its square.
 
         Examples
         --------
@@ -75,11 +75,11 @@ class LoadAtSlack:
 
 
 def stands_at_slack_length(standstills: Standstills, is_slack: Bools) -> Bools:
-    """Standstills in which a specimen is slack or no longer than in such a one before.
+    """Mask standstills in which a specimen is slack, or no longer than in an earlier slack one.
 
     Examples
     --------
-    A rest, a hold under tension, and the length of the rest again, at 30 N.
+    A rest, a hold under tension, and the length of the rest again, at 30 N:
 
     >>> stands = Standstills(
     ...     first=np.array([0, 20, 40]), last=np.array([9, 29, 49]), start_time=np.zeros(3),
@@ -97,15 +97,15 @@ def stands_at_slack_length(standstills: Standstills, is_slack: Bools) -> Bools:
 def pulls_as_at_reference(
     standstills: Standstills, load: Floats, *, reference_tension: float, half: float
 ) -> Bools:
-    """Standstills in which a specimen pulls, since strain is stated zero at a tension that it had.
+    """Mask standstills in which a specimen pulls, if its strain is zero at a stated tension.
 
     ``load`` [N] is its mean load in each of them.  In a standstill that reads the reference tension
-    within ``half`` [N] it is not slack, and neither, as far as the log tells, in one that is no
+    within ``half`` [N] it is not slack; nor, as far as the log shows, in one that is no
     shorter and reads above zero.
 
     Examples
     --------
-    A hose is mounted at 20 N, stretched, and comes back to its length with 12 N; then it is slack.
+    A hose is mounted at 20 N, stretched, and returns to its length with 12 N; then it is slack:
 
     >>> load = np.array([20.0, 300.0, 12.0, 0.1])
     >>> stands = Standstills(
@@ -132,15 +132,15 @@ def load_at_slack(
 
     .. math:: u^2 = \frac{\sigma^2}{n} + \frac{q^2}{12}
 
-    None where it is slack in none of them, or nothing can be read there.  ``stroke`` [m] is that of
-    the log; without it a load that rises where the crosshead is further out is no drift.
+    None if it is slack in none of them, or there are no readings.  ``stroke`` [m] is that of
+    the log; without it a load that rises where the crosshead is further out is not a drift.
 
     Notes
     -----
-    Noise averages out over the samples of a rest, the step q of a converter does not where the
-    noise is less than one.  Where the crosshead stands further out than in another rest, and the
+    Noise averages out over the samples of a rest, but the step q of a converter does not if the
+    noise is less than one step.  If the crosshead is further out than in another rest, and the
     load is greater by no more than that stretch explains, the specimen pulls: such a standstill
-    tells nothing of the zero.  Nor does one after a push, by half of which it may pull back.
+    gives no information on the zero.  Nor does one after a push, by half of which it may pull back.
 
     Examples
     --------
@@ -165,7 +165,7 @@ def load_at_slack(
     ends = [one for one in rests if one is not None]
     if not ends or np.count_nonzero(np.isfinite(tension[: 2 * _MOST])) < 8:
         return None
-    # noise of a step or more blurs the steps, and the mean is finer than one of them
+    # noise of a step or more blurs the steps, so that the mean is finer than one step
     step = quantum / 12**0.5 if noise < quantum else 0.0
     stiffness = _STIFFER * finite_extremes(tension)[1] / stroke if stroke > 0 else np.inf
     if np.isfinite(stiffness):
@@ -187,7 +187,7 @@ def load_at_slack(
 
 
 class _End(NamedTuple):
-    """A slack rest: its place [m], the mean load over its end and all of it [N], its samples."""
+    """A slack rest: place [m], mean load over its end and over all of it [N], and its samples."""
 
     place: float
     load: float
@@ -197,10 +197,10 @@ class _End(NamedTuple):
 
     @classmethod
     def of(cls, tension: Floats, samples: slice, place: float, spread: float) -> _End | None:
-        """Of the loads of a standstill, None where none is known.
+        """Make it from the loads of a standstill; None if none is known.
 
-        Where a crosshead that is read in coarse steps begins to pull, its place shows it late: a
-        last part that rises out of the spread is of the pull.
+        A crosshead that is read in coarse steps shows the beginning of a pull late: a
+        last part that rises out of the spread belongs to the pull.
         """
         loads = tension[samples]
         loads = loads[np.isfinite(loads)]
@@ -214,7 +214,7 @@ class _End(NamedTuple):
 
     @property
     def n_read(self) -> int:
-        """Samples of which ``load`` is the mean."""
+        """Number of samples of which ``load`` is the mean."""
         return _quarter(self.n_samples)
 
 
@@ -231,18 +231,18 @@ def _pulls(rest: _End, other: _End, stiffness: float, noise: float, push: float)
 
 
 def _push(tension: Floats, earlier: _End, later: _End, noise: float) -> float:
-    """By how much load was below an earlier rest since: it pushed the specimen shorter. [N]."""
+    """Fall of load below an earlier rest, which pushed the specimen shorter. [N]."""
     least, _ = finite_extremes(tension[earlier.samples.stop : later.samples.start])
     push = earlier.load - least
     return push if push > _PUSHES * noise else 0.0
 
 
 def _moved(earlier: _End, later: _End, stiffness: float, noise: float, step: float) -> float:
-    """By how much the zero has moved between two slack rests, where nothing else explains it. [N].
+    """Shift of the zero between two slack rests, as far as nothing else explains it. [N].
 
-    A specimen that has been stretched since pulls at no more than before, and none pushes: a load
-    that rises, or falls below zero, is of the load cell.  A rest further out may pull by that much
-    stretch.  A load that falls towards zero may be of a specimen that became longer.
+    A specimen that has been stretched since pulls no more than before, and never pushes: a load
+    that rises, or falls below zero, is due to the load cell.  A rest further out may pull by its
+    stretch.  A load that falls towards zero may be due to a specimen that became longer.
     """
     if later.load > earlier.load:
         further = later.place - earlier.place
@@ -280,13 +280,13 @@ def notes_on_zero(
     zeros: Sequence[str],
     offset_uncertainty: float = 0.0,
 ) -> tuple[Note, ...]:
-    """Say which load cells have a wrong zero, with the value to set where the log has it.
+    """Note load cells with a wrong zero, with the value to set if the log shows it.
 
-    ``zeros`` holds the ``zero`` of each channel that would make its load at slack nothing, as it
-    stands in a layout.  A load that is negative has a wrong sign where it falls with stretch and a
-    wrong zero where it rises.  A zero is serious where it is off by more than a hundredth of the
-    greatest load and by more than what is stated of it, which is in every interval; one that
-    drifts by so much between the rests has no right value.
+    ``zeros`` holds the ``zero`` of each channel that would make its load at slack zero, as written
+    in a layout.  A negative load has a wrong sign where it falls with stretch and a
+    wrong zero where it rises.  A zero is serious if its error exceeds a hundredth of the
+    greatest load and the stated uncertainty, which is in every interval; a zero that
+    drifts by that much between the rests has no correct value.
 
     Examples
     --------
@@ -306,14 +306,14 @@ def notes_on_zero(
         if -low > max(high, 0.0) and not rises_with_stretch(position, loads):
             notes.append(note("load-falls-with-stretch", name, load=middle))
         elif rest is None:
-            # which zero is right the log does not say
+            # the log does not show which zero is right
             if middle < -_SERIOUS * (high - low):
                 notes.append(note("load-negative", name, load=middle, least=low))
         else:
             reach = max(high - rest.load, rest.load - low)
             said = {"load": rest.load, "n_rests": rest.n_rests, "zero": zero}
             serious = max(_SERIOUS * reach, _COVERED * offset_uncertainty)
-            # a rise that the stretch of the later rest explains is none
+            # a rise that the stretch of the later rest explains does not count
             change = rest.drift or min(rest.later - rest.earlier, 0.0)
             if abs(change) > serious:
                 notes.append(note("load-zero-drifts", name, earlier=rest.earlier, later=rest.later,

@@ -1,11 +1,11 @@
-r"""Load train: what mass and give between the specimen and the sensors do to a log.
+r"""Load train: effect of mass and compliance between the specimen and the sensors on a log.
 
-The load cell feels the specimen and whatever it accelerates; the crosshead's scale sees the
-specimen and whatever gives:
+The load cell measures the specimen and the inertia of all accelerated parts; the crosshead's scale
+measures the specimen and all compliant parts:
 
 .. math:: F = T + m\, \ddot x, \qquad x = X - c\, T
 
-with F and X as logged, T the tension and x the length of the specimen, and m the mass that counts
+with F and X as logged, T the tension and x the length of the specimen, and m the effective mass
 at its moving end.
 
 References
@@ -38,15 +38,15 @@ _NOISE_OF_FIT = 52.0  # deviation of the second derivative, times half width^2 a
 
 _FEWEST, _TO_A_SIDE = 9, 3  # points of a fit, and of those on either side of its centre
 
-_POINTS = 81  # of a fit: more are averaged first
+_POINTS = 81  # of a fit: if there are more they are averaged first
 
 _OF_PERIOD = 0.25  # half width, at most: a sine comes out 0.02 % too small
 
-_OF_CELL_NOISE = 1 / 3  # what the correction may add to the noise of a load cell
+_OF_CELL_NOISE = 1 / 3  # of the noise of a load cell: allowed noise of the correction
 
 _FEWEST_A_CYCLE = 16
 
-_REACHES = 32  # of a difference, in the longest of them
+_REACHES = 32  # steps of a difference, in the longest of them
 
 _SURE = 3  # standard errors that a mean acceleration has to exceed
 
@@ -64,9 +64,9 @@ def end_mass(
     Parameters
     ----------
     train : LoadTrain
-        Of which load cell.
+        Load train, with the place of its load cell.
     linear_density : float or None
-        Mass a length of the slack specimen. [kg m-1]
+        Mass per length of the slack specimen. [kg m-1]
     slack_length : float or None
         [m]
 
@@ -75,7 +75,7 @@ def end_mass(
     mass : float
         Zero where nothing is stated. [kg]
     length : float
-        That the linear density counts with. [m]
+        Factor of the linear density in this mass. [m]
 
     Raises
     ------
@@ -85,9 +85,9 @@ def end_mass(
     Notes
     -----
     A specimen of mass M whose displacement is linear from one end to the other has
-    T(s) = T(0) + M (s/l)^2 a / 2.  Its tension is the mean of that along it, which is what does
+    T(s) = T(0) + M (s/l)^2 a / 2.  Its tension is the mean along it, which does the
     work on its strain: M a / 6 more than at the fixed end, M a / 3 less than at the moving one,
-    the third of [1]_.  It holds far below the first resonance of the specimen.
+    the third of [1]_.  This holds far below the first resonance of the specimen.
 
     Examples
     --------
@@ -108,14 +108,14 @@ def end_mass(
 
 
 def acceleration(time: ArrayLike, position: ArrayLike, *, half_width: float) -> Floats:
-    """Second derivative of a position, by polynomials of sixth degree in a moving window.
+    """Second derivative of position, by polynomials of sixth degree in a moving window.
 
     Parameters
     ----------
     time, position : array_like, shape (n_samples,)
         NaN where not known. [s], [m]
     half_width : float
-        Of the window. [s]
+        Half width of the window. [s]
 
     Returns
     -------
@@ -130,8 +130,8 @@ def acceleration(time: ArrayLike, position: ArrayLike, *, half_width: float) -> 
 
     Notes
     -----
-    Least squares, [2]_, on the times as logged, which need not be even: a window reaches half a
-    step beyond its ends, so that times rounded to a millisecond cost it no sample.  In a window
+    Least squares, [2]_, on the times as logged, which need not be even: a window extends half a
+    step beyond its ends, so that times rounded to a millisecond lose no sample.  In a window
     of half a period a sine comes out 0.02 % too small and its third harmonic 7 %; white noise of
     standard deviation s in n samples gives 52 s / (h^2 sqrt n), h the half width.  Where a window
     has more than 81 samples they are averaged in groups first.
@@ -183,11 +183,11 @@ def turn_acceleration(
     time, position : ndarray, shape (n_samples,)
         NaN where not known. [s], [m]
     cycles : Cycles
-        Whose turns.
+        Cycles with the turns.
     found : ndarray, shape (n_samples,), or None
-        What is known of the acceleration already, and is taken off. [m s-2]
+        Known part of the acceleration, which is subtracted. [m s-2]
     finest : int
-        Steps of the shortest differences. [-]
+        Number of steps of the shortest differences. [-]
 
     Returns
     -------
@@ -201,10 +201,10 @@ def turn_acceleration(
 
     Notes
     -----
-    At the corner between two ramps a machine turns in a time that nobody states: a difference
-    over few steps shows the most of it and the most noise.  Of differences over 1, 2, 4, ... steps,
-    at most a sixteenth of a cycle, and as far to either side of the turns, that counts whose mean
-    over the turns is the greatest, three standard errors taken off.
+    At the corner between two ramps a machine turns in an unknown time: a difference
+    over few steps shows most of it, but has most noise.  Differences over 1, 2, 4, ... steps,
+    at most a sixteenth of a cycle, are taken as far to either side of the turns.  The one with the
+    greatest mean over the turns, less three standard errors, is used.
 
     Examples
     --------
@@ -224,7 +224,7 @@ def turn_acceleration(
     for turns in (cycles.first, cycles.branch_first[:, 1]):
         size, reach = 0.0, finest * max(longest // _REACHES, 1)
         while reach <= longest:
-            # beside a sharp turn, a smooth acceleration is too large
+            # near a sharp turn, a smooth acceleration is too large
             for away in range(-longest, longest + 1, reach):
                 here = turns + away
                 here = here[(here >= reach) & (here < position.size - reach)]
@@ -260,7 +260,7 @@ def _bend(away: Floats, moved: Floats, reach: float) -> Floats:
 def _half_width(
     record: Record, position: Floats, tension: Floats, mass: Floats, period: float
 ) -> float:
-    """Least that adds little to the noise of the load cells, and at most a quarter of a period."""
+    """Least width that adds little to the noise of the load cells; at most a quarter period."""
     noise, quantum = estimate_noise(position)
     of_position = float(np.hypot(noise, quantum / np.sqrt(12)))
     step = median_step(record.time)
@@ -287,9 +287,9 @@ def _half_width(
 def _continued(
     time: Floats, position: Floats, cycles: Cycles, half_width: float
 ) -> tuple[Floats, Floats, slice]:
-    """A log that begins or ends within its cycles, with a part of the next cycle before and after.
+    """A log that begins or ends within its cycles, extended by part of the adjoining cycle.
 
-    A polynomial has no second derivative to give at the end of what it was fitted to.
+    A polynomial gives no second derivative at the end of its data.
     """
     times, places, before = [time], [position], 0
     for is_end, first, last in (
@@ -325,25 +325,25 @@ def without_load_train(
     cycles: Cycles | None,
     specimens: tuple[Specimen, ...],
 ) -> tuple[Record, Floats, Floats]:
-    """Give a record whose position and tension are those of its specimens.
+    """Correct position and tension of a record to those of its specimens.
 
     Parameters
     ----------
     record : Record
-        As logged, with what is stated of its load train.
+        As logged, with the stated properties of its load train.
     position, tension : ndarray, shapes (n_samples,) and (n_specimens, n_samples)
         NaN where not usable. [m], [N]
     standstills : Standstills
-        For the length at slack.
+        Used for the length at slack.
     cycles : Cycles or None
-        Without them nothing is taken to accelerate.
+        Without them no acceleration is assumed.
     specimens : tuple of Specimen
-        For their mass; in the order of the record.
+        Used for their mass; in the order of the record.
 
     Returns
     -------
     record : Record
-        Its own channels corrected too, with a note on what was done; as given where nothing is
+        With its own channels corrected too, and a note on the correction; unchanged if nothing is
         stated.
     position, tension : ndarray
         Corrected. [m], [N]
@@ -355,9 +355,9 @@ def without_load_train(
 
     Notes
     -----
-    The crosshead pulls all specimens: what gives, gives by the sum of their tensions.  The
-    length of the specimen is that less what gives at its own tension, and so has the tension in
-    it: the inertia is found of the crosshead, then of the specimen.
+    The crosshead pulls all specimens: compliant parts give by the sum of their tensions.  The
+    length of the specimen excludes the compliance at its own tension, which includes inertia:
+    the inertia is computed first for the crosshead, then for the specimen.
 
     Examples
     --------
@@ -396,7 +396,7 @@ def without_load_train(
         given = compliance * tension.sum(axis=0)
     if moves and cycles is not None:
         periods = take_samples(record.time, cycles.last) - take_samples(record.time, cycles.first)
-        # of steps of several frequencies the fastest
+        # for steps of several frequencies, the fastest one
         period = float(np.percentile(periods, 5))
         width = _half_width(record, position, tension, mass, period)
         cycling = np.asarray(cycles.cycle_number > 0)
@@ -432,7 +432,7 @@ def without_load_train(
 
 
 def _less(values: Floats, part: Floats) -> Floats:
-    """Difference, where the values themselves are kept."""
+    """Difference, stored in the same way as the values."""
     kept = empty_like(values)
     np.subtract(values, part, out=kept)
     return kept

@@ -1,7 +1,7 @@
-"""Bands in which numbers of mooring elements lie, and readings of an input that lead into them.
+"""Bands in which numbers of mooring elements lie, and input errors that would put them there.
 
-A band is wide: what lies outside is a slip of a unit, a factor or a diameter, or a specimen of
-another kind than stated.  docs/plausibility.md says what each rests on.
+A band is wide: a value outside comes from an error in a unit, a factor or a diameter, or from a
+specimen of another kind than stated.  docs/plausibility.md gives the basis of each.
 
 References
 ----------
@@ -76,7 +76,7 @@ _KINDS: Mapping[str, Bands] = {
 
 
 def bands_of(kind: str, material: str) -> Bands | None:
-    """Bands of a kind of specimen, of its material where a rope states one that is known.
+    """Bands of a kind of specimen, and of its material where a rope states a known one.
 
     Examples
     --------
@@ -139,20 +139,20 @@ def readings_that_fit(
     of_strength: bool = False,
     strength: float = nan,
 ) -> str:
-    """Readings of the inputs by which a stress, modulus or strength would lie in its band.
+    """Readings of the inputs that would put a stress, modulus or strength in its band.
 
     Parameters
     ----------
     value : float
-        As found. [Pa]
+        Value found. [Pa]
     band : tuple of 2 float
         Where it should lie. [Pa]
     load_unit : str, optional
-        As declared: another one is named beside it.
+        As declared; another one is named with it.
     of_strength : bool, optional
-        Of a stated strength, of which no log and no strain is a part.
+        True for a stated strength, to which no log and no strain contribute.
     strength : float, optional
-        Rated, of the specimen: the load may be a share of it. [N]
+        Rated strength of the specimen: the load may be a share of it. [N]
 
     Returns
     -------
@@ -162,15 +162,15 @@ def readings_that_fit(
     Raises
     ------
     ValueError
-        If the band is not of two numbers.
+        If the band does not have two numbers.
 
     Notes
     -----
-    The bands rest on [1]_ and [2]_ and on what fibres and steels have.
+    The bands rest on [1]_ and [2]_ and on the properties of fibres and steels.
 
     Examples
     --------
-    Twice the diameter, of a tether of 1 MPa:
+    Twice the diameter, for a tether of 1 MPa:
 
     >>> readings_that_fit(0.25e6, (0.3e6, 3.2e6), load_unit="lbf")[:80]
     'load in daN, not lbf; load in kgf, not lbf; half that diameter (was it doubled?)'
@@ -213,7 +213,7 @@ _NEAR = 0.08
 
 
 def words_of_ratio(ratio: float) -> str:
-    """What a ratio of found over stated is like, in words; empty where it is like nothing.
+    """What a ratio of found over stated resembles, in words; empty where it resembles nothing.
 
     Examples
     --------

@@ -1,6 +1,6 @@
-"""A reduced test: all that one log gave, ready for the archive.
+"""A reduced test: everything that one log gave, ready for the archive.
 
-`reduction.pipeline` makes it, `reduction.archive` stores it; neither knows the other.
+`reduction.pipeline` makes it and `reduction.archive` stores it; neither knows the other.
 """
 
 from __future__ import annotations
@@ -35,12 +35,12 @@ from reduction.stages.three_parameter_line.rope_programme import RopeStep
 
 @dataclass(frozen=True)
 class TestDescription:
-    """What the laboratory kept about a test; text as given, empty where not given.
+    """What the laboratory recorded about a test; text as given, empty where not given.
 
     ``attributes`` holds campaign-level attributes (title, institution, source,
     references, license, and ``synthetic = "yes"`` where the data are synthetic) and
     test-level ones (machine, load_cell, calibration_due, medium, temperature, ...).
-    ``failed`` is whether the specimens broke, in its word; None where it says nothing.
+    ``failed`` is whether the specimens broke, in the laboratory's word; None where not stated.
     """
 
     __test__ = False  # a test of a tether, not of this software
@@ -57,16 +57,16 @@ class TestDescription:
 
 @dataclass(frozen=True)
 class History:
-    """What each specimen had seen before this test, shape (n_specimens,) each.
+    """What each specimen had undergone before this test, shape (n_specimens,) each.
 
-    ``permanent_set`` is how much longer it is when it first becomes taut than it was at the
-    start of its first test, over the free length: what is left of the earlier tests after
+    ``permanent_set`` is how much longer it is when it first becomes taut than at the
+    start of its first test, over the free length: what remains of the earlier tests after
     rest. NaN where one of the two records does not begin slack. [1]
-    ``permanent_set_by_tension`` is by how much it changes with the tension that counts as
+    ``permanent_set_by_tension`` is its change with the tension that counts as
     slack. [N-1]
-    ``splices_let_out`` is by how much the splices slipped since the marks were read that its
-    strain rests on, at least. [m]
-    ``earlier_flex_cycles`` is None where nothing is known of flexing.
+    ``splices_let_out`` is the least length by which the splices slipped since the marks that its
+    strain rests on were read. [m]
+    ``earlier_flex_cycles`` is None where nothing is known about flexing.
     """
 
     earlier_tests: tuple[tuple[str, ...], ...]
@@ -85,22 +85,22 @@ class ReducedTest:
     """One reduced test with all its specimens.
 
     ``record`` is None for a stepwise test, which has readings (`stepwise`) and no log.
-    ``strain`` [1] has shape (n_specimens, n_samples), its standard uncertainty and that of
-    nominal stress [Pa] one value a specimen; it is NaN where a sample is not usable,
+    ``strain`` [1] has shape (n_specimens, n_samples); its standard uncertainty and that of
+    nominal stress [Pa] have one value per specimen.  It is NaN where a sample is not usable,
     while ``record`` keeps what was logged.  Nominal stress is tension over an area, and is
-    made where it is stored.  Parts that the kind of test does not give are
+    computed where it is stored.  Parts that this kind of test does not give are
     None (or empty); `notes` are the quality notes a reader must see,
-    `stage_lines` the lines of the history, `settings_json` every setting that was in force.
-    ``line`` has one entry a cycle and ``line_of_test`` one a specimen, from the means over the
+    `stage_lines` the lines of the history, `settings_json` every setting in force.
+    ``line`` has one entry per cycle and ``line_of_test`` one per specimen, from the means over the
     cycles, with ``quasi_static_standard_uncertainty`` [N] of the K_0 that both used and, in
-    ``line_spread``, what random and shared errors together make of it; ``pulls``
-    is what a slow pull gave, None for a specimen of which it gave nothing; ``rope_step`` is
-    what the test gave as a step of a rope laboratory's programme.  Uncertainties of loops, curves,
+    ``line_spread``, their uncertainty from random and shared errors together; ``pulls``
+    is the result of a slow pull, None for a specimen without one; ``rope_step`` is
+    the test as a step of a rope laboratory's programme.  Uncertainties of loops, curves,
     segments, holds and trends are random (type A); those of strain, of stress and in
-    ``line_spread`` hold the shared part too.  ``contributions`` holds what errors that samples
-    share add to curves, segments and means of the test, by name of the archive, and
-    ``shared_uncertainty_of_cycles`` [unit of each] the same of each cycle, all sources together;
-    ``channel_lag`` is what the turns of the wave say of one of them, and corrects nothing.
+    ``line_spread`` include the shared part.  ``contributions`` holds what errors that samples
+    share add to curves, segments and means of the test, by archive name, and
+    ``shared_uncertainty_of_cycles`` [unit of each] the same for each cycle, all sources together;
+    ``channel_lag`` is what the turns of the wave say about one of them; nothing is corrected by it.
     """
 
     description: TestDescription
@@ -150,8 +150,8 @@ class ReducedTest:
     def all_notes(self) -> tuple[Note, ...]:
         """Every note with its stage, most serious first, none twice.
 
-        Notes that are alike in that stand in the order of the stages.
-        A note of the test that a stage gave too stands under the stage alone.
+        Notes equal in that are in the order of the stages.
+        A note of the test that a stage also gave is listed under the stage alone.
         """
         given = [
             replace(one, stage=stage) for stage, notes, _ in self._of_stages() for one in notes
@@ -161,13 +161,13 @@ class ReducedTest:
         return by_severity({(one.stage, str(one)): one for one in given}.values())
 
     def all_steps(self) -> tuple[Step, ...]:
-        """Every line of the history: one a stage, then how single numbers were made."""
+        """Every line of the history: one per stage, then how individual numbers were made."""
         made = ((stage, line) for stage, _, lines in self._of_stages() for line in lines)
         return (*self.stage_lines, *(Step(stage, line) for stage, line in made))
 
     def _of_stages(self) -> Iterator[tuple[str, Sequence[Note], Sequence[str]]]:
-        """Each stage by its name, with its notes and how its numbers were made."""
-        yield "loops", self.loop_notes, ()  # first: a channel that is reversed voids the others
+        """Each stage by name, with its notes and how its numbers were made."""
+        yield "loops", self.loop_notes, ()  # first: a reversed channel makes the others void
         if self.record is not None:
             yield "ingest", self.record.notes, ()
         for specimen in self.specimens:

@@ -1,4 +1,4 @@
-"""Where a test stands still: holds, rests, constant tension.
+"""Intervals in which a test stands still: holds, rests, constant tension.
 
 References
 ----------
@@ -34,13 +34,13 @@ _STRETCHES, _STRETCH_SAMPLES = 64, 1024
 
 _ORDERS = (2, 4, 6)
 
-_TINY = 1e-12  # a channel that is zero throughout has a range to stay within, too
+_TINY = 1e-12  # least range, for a channel that is zero throughout
 
 _NORMAL_MEDIAN = 0.67449  # median of |z| of a normal variable
 
-_NOISE_WIDTHS = 12.0  # range that 10**7 normal samples hardly leave, in standard deviations
+_NOISE_WIDTHS = 12.0  # range that 10**7 normal samples rarely exceed, in standard deviations
 
-_MOST_NOISE = 0.05  # of the range of a channel, that noise may span unquestioned
+_MOST_NOISE = 0.05  # of the range of a channel: more noise than this is checked again
 
 _STRAIGHT_SHARE, _NORMAL_FIFTH = 0.2, 0.25335  # of second differences; |z| below which a fifth is
 
@@ -48,7 +48,7 @@ _QUANTA = 3.0  # range of a level between two steps, with noise below one step
 
 _FLICKER_SHARE = 0.2  # steps undone by the next step; 0.1 at 10 samples a triangle's branch
 
-_ONE_CODE = 1.5  # least steps: the next are of two codes
+_ONE_CODE = 1.5  # times the least step: larger steps are of two codes
 
 
 def _stretches(values: Floats) -> Floats:
@@ -94,7 +94,7 @@ def estimate_noise(values: ArrayLike) -> tuple[float, float]:
     noise : float
         Standard deviation. [unit of the channel]
     quantum : float
-        Size of one step of the converter, 0 where the channel is not seen to be
+        Size of one step of the converter, 0 where the channel does not appear
         quantised. [unit of the channel]
 
     Raises
@@ -104,20 +104,20 @@ def estimate_noise(values: ArrayLike) -> tuple[float, float]:
 
     Notes
     -----
-    Differences of order k = 2, 4 and 6 take the movement away: order 2 leaves nothing
-    of a triangular wave but its corners, order 6 next to nothing of a sine with 19
-    samples a cycle.  All see white noise alike, so the least is taken.  At most 65,536
+    Differences of order k = 2, 4 and 6 remove the movement: order 2 leaves only the
+    corners of a triangular wave, order 6 next to nothing of a sine with 19
+    samples a cycle.  All respond equally to white noise, so the least is taken.  At most 65,536
     samples are read, in 64 stretches spread over the record.
 
     A channel counts as quantised where more than a fifth of its steps are undone by the
     next step: the flicker of a level between two codes.  The quantum is the median such
-    step.  A record that mostly moves has few of them: its least steps are asked alone, too.
+    step.  A record that mostly moves has few of them, so its least steps are also tested alone.
     With noise far below the quantum the differences are mostly zero, and ``noise`` may be 0
     while ``quantum`` is not.
 
     Examples
     --------
-    A ramp with noise of 0.5.
+    A ramp with noise of 0.5:
 
     >>> generator = np.random.default_rng(0)
     >>> noise, quantum = estimate_noise(np.arange(5000) + generator.normal(0, 0.5, 5000))
@@ -160,7 +160,7 @@ def noise_range(values: ArrayLike) -> float:
     -------
     noise_range : float
         The greater of twelve standard deviations of the noise and three quanta; at least
-        1e-9 of the greatest magnitude, so that rounding alone is no movement, and 1e-12.
+        1e-9 of the greatest magnitude, so that rounding alone is not a movement, and 1e-12.
         [unit of the channel]
 
     Raises
@@ -173,9 +173,9 @@ def noise_range(values: ArrayLike) -> float:
     Ten million normal samples span eleven deviations; a level between two codes with noise
     below one of them flickers over two or three, cf. the 12-bit position of [1]_.
 
-    Of a wave of ramps and rests with a dozen readings a cycle most differences have a corner, and
-    `estimate_noise` takes the wave for noise.  Where that is large, and a fifth of the second
-    differences say less than half of it, they are those of straight parts.
+    In a wave of ramps and rests with a dozen readings a cycle most differences have a corner, and
+    `estimate_noise` takes the wave for noise.  Where that noise is large, and a fifth of the second
+    differences give less than half of it, these are taken as the straight parts.
 
     Examples
     --------
@@ -202,8 +202,8 @@ def _block_extremes(position: Floats, length: int) -> tuple[Floats, Floats]:
 
     Notes
     -----
-    Blocks are counted from the first sample of the record, so that a record read in
-    pieces of whole blocks gives the same.
+    Blocks are counted from the first sample of the record, so that reading a record in
+    pieces of whole blocks gives the same result.
 
     Examples
     --------
@@ -221,7 +221,7 @@ def _block_extremes(position: Floats, length: int) -> tuple[Floats, Floats]:
         low, high = least[start : start + whole + 1], greatest[start : start + whole + 1]
         np.min(rows, axis=1, out=low[:whole])
         np.max(rows, axis=1, out=high[:whole])
-        if samples.size > whole * length:  # the last block has what is left
+        if samples.size > whole * length:  # the last block has the remaining samples
             low[whole], high[whole] = (
                 samples[whole * length :].min(),
                 samples[whole * length :].max(),
@@ -278,7 +278,7 @@ def _outlasts_its_approach(
 ) -> Bools:
     """Whether the crosshead comes or goes faster than it stays."""
     if first.size == 0 or _range(least, greatest) <= 2 * _AWAY * tolerance:
-        return np.ones(first.size, dtype=bool)  # there is nowhere to go
+        return np.ones(first.size, dtype=bool)  # the whole record is within reach
     length = last - first + 1
     low, high = _extremes_between(least, greatest, first, last)
     middle = (low + high) / 2
@@ -298,19 +298,19 @@ def _still_blocks(
 
     Notes
     -----
-    A run of windows within the tolerance is a standstill where it keeps within twice the
-    tolerance as a whole: at each end a window may hold the begin of a move.  A run that
-    goes further is a slow movement, with or without holds in it, and is looked through
+    A run of windows within the tolerance is a standstill where it stays within twice the
+    tolerance as a whole: at each end a window may hold the beginning of a move.  A run that
+    goes further is a slow movement, with or without holds in it, and is searched
     again with windows of twice the width, and so on.
 
-    The turn of a slow cycle keeps within the tolerance for a while, too, but takes as
-    long again to get away from there: a standstill is kept where the position is four
-    tolerances away within as many blocks as it lasted, before it or after it, or where
+    The turn of a slow cycle also stays within the tolerance for a while, but takes as
+    long again to get away from there.  A standstill is kept where the position is four
+    tolerances away within as many blocks as it lasted, before or after it, or where
     the record never goes that far.
 
     Examples
     --------
-    Rising, standing for four blocks, rising.
+    Rising, standing for four blocks, rising:
 
     >>> least = np.array([0.0, 1, 2, 2, 2, 2, 3, 4, 5])
     >>> _still_blocks(least, least + 0.1, window=3, tolerance=0.5)
@@ -327,9 +327,9 @@ def _still_blocks(
             continue
         firsts, lasts = begin + firsts, begin + lasts
         low, high = _extremes_between(least, greatest, firsts, lasts)
-        # a window at each end may hold the begin of a move, one up and one down
+        # a window at each end may hold the beginning of a move, one up and one down
         within = high - low <= 2 * tolerance
-        # blocks without a sample keep within anything, and say nothing
+        # blocks without a sample are within any tolerance, and show nothing
         found.append(np.column_stack([firsts, lasts])[within & (low <= high)])
         work += [
             (int(first), int(last) + 1, 2 * width)
@@ -390,7 +390,7 @@ def _reach(values: Floats, edge: Integers, centre: Floats, half: float, step: in
     index = edge[:, None] + offsets
     inside = (index >= 0) & (index < values.size)
     value = take_samples(values, np.clip(index, 0, values.size - 1))
-    near = inside & ~(np.abs(value - centre[:, None]) > half)  # a missing sample is no movement
+    near = inside & ~(np.abs(value - centre[:, None]) > half)  # a missing sample is not a movement
     return np.where(near.all(axis=1), abs(step), np.argmin(near, axis=1))
 
 
@@ -426,9 +426,9 @@ def _still_intervals(
 
     Notes
     -----
-    The record is read in blocks of a quarter of the shortest interval (`_still_blocks`);
-    edges, found to the sample, are where the channel comes and goes nearer to the mean than
-    half the tolerance.  Missing samples do not end an interval and are no edge of one.
+    The record is read in blocks of a quarter of the shortest interval (`_still_blocks`).
+    Edges are found to the sample: there the channel comes and goes nearer to the mean than
+    half the tolerance.  Missing samples do not end an interval and are not edges of one.
 
     Examples
     --------
@@ -448,7 +448,7 @@ def _still_intervals(
     first = first_block * length
     last = np.minimum((last_block + 1) * length, values.size) - 1
     centre = _interval_means(values, first, last)
-    for block, step in ((first_block, 1), (last_block, -1)):  # a block that moves is no edge
+    for block, step in ((first_block, 1), (last_block, -1)):  # a block that moves is not an edge
         outside = np.ones(centre.size, dtype=bool)
         while outside.any():
             outside = (greatest[block] - centre > tolerance / 2) | (
@@ -462,7 +462,7 @@ def _still_intervals(
     last += _reach(values, last, centre, tolerance / 2, length)
     last[:-1] = np.minimum(last[:-1], first[1:] - 1)
 
-    for edge, step in ((first, 1), (last, -1)):  # an edge is a sample that is there
+    for edge, step in ((first, 1), (last, -1)):  # an edge is a sample that is not missing
         for i in np.flatnonzero(np.isnan(take_samples(values, edge))):
             edge[i] += step * np.argmax(np.isfinite(values[first[i] : last[i] + 1][::step]))
 
@@ -474,21 +474,21 @@ def _still_intervals(
 def _from_approaches(
     time: Floats, values: Floats, first: Integers, last: Integers, *, noise: float
 ) -> tuple[Integers, Integers]:
-    """Standstills from the end of the approach to each until the channel leaves.
+    """Standstills, each from the end of its approach until the channel leaves.
 
-    The first sample of the next ramp may lie within the tolerance.  Backward in time the way out is
-    an approach.
+    The first sample of the next ramp may lie within the tolerance.  Backward in time the departure
+    is an approach.
 
     Examples
     --------
-    A pull of 10 s to 1 m, of which half a centimetre is left to settle.
+    A pull of 10 s to 1 m, with half a centimetre left to settle:
 
     >>> time = np.arange(0.0, 60.0)
     >>> values = np.where(time < 10, 0.0995 * time, 1 - 0.005 * np.exp(-(time - 10) / 3))
     >>> print(_from_approaches(time, values, np.array([24]), np.array([59]), noise=1e-5))
     (array([10]), array([59]))
 
-    A hold that a ramp of 0.2 m a second leaves, whose first sample is 5 mm away.
+    A hold left by a ramp of 0.2 m a second, whose first sample is 5 mm away:
 
     >>> values = np.clip(0.1 * time, 0, 1) - np.clip(0.2 * (time - 39.975), 0, None)
     >>> print(_from_approaches(time, values, np.array([10]), np.array([40]), noise=1e-5))
@@ -511,10 +511,10 @@ def _from_approaches(
 
 
 def _without_first_step(values: Floats, first: int, last: int, noise: float) -> int:
-    """Last sample of a standstill, without one that the way out begins before.
+    """Last sample of a standstill, without a sample in which the departure has begun.
 
-    A part of a step of the log passes for slow: it lies off those before by more than noise, on the
-    side of the next one.
+    A fraction of a log step appears slow: the sample differs from those before by more than noise,
+    towards the next one.
     """
     before = values[max(first, last - _SAMPLES_BEFORE) : last]
     if last + 1 >= values.size or not np.isfinite(before).any():
@@ -526,25 +526,25 @@ def _without_first_step(values: Floats, first: int, last: int, noise: float) -> 
 
 _SAMPLES_BEFORE = 8
 
-_FROM_NOISE = 0.25  # of its range: three of its deviations
+_FROM_NOISE = 0.25  # of the range of the noise: three of its deviations
 
 
 def _held_intervals(
     time: Floats, values: Floats, *, tolerance: float, noise: float, minimum_duration: float
 ) -> tuple[Integers, Integers]:
-    """First and last sample of every hold of a record that is made of ramps and holds.
+    """First and last sample of every hold of a record that consists of ramps and holds.
 
     Notes
     -----
     A channel that is held may settle, creep and drift by more than its noise.  Intervals are
-    looked for with a tolerance of 2 % of the range of the record, and one is a hold where it
-    keeps within 2 % of the stroke of its own approach and, once it is slow, stays slow
-    (`_stays_slow`); what is none is looked through with a quarter of the tolerance, down to that
+    searched with a tolerance of 2 % of the range of the record.  One is a hold where it
+    stays within 2 % of the stroke of its own approach and, once it is slow, stays slow
+    (`_stays_slow`).  The others are searched again with a quarter of the tolerance, down to that
     of the noise.
 
     Examples
     --------
-    A pull to 1 m, which then drifts by 6 mm.
+    A pull to 1 m, followed by a drift of 6 mm:
 
     >>> time = np.arange(0.0, 200.0)
     >>> values = np.interp(time, [0, 20, 30, 200], [0, 0, 1, 1.006])
@@ -566,7 +566,7 @@ def _held_intervals(
             tolerance=width, minimum_duration=minimum_duration,
         )  # fmt: skip
         for first, last in zip((begin + firsts).tolist(), (begin + lasts).tolist(), strict=True):
-            # the approach to a hold begins at the one before, also out of what is looked through
+            # the approach to a hold begins at the one before, even outside the part searched
             if width <= tolerance or any(
                 _stays_slow(clock, series, since, first, last, noise=noise)
                 for since in {begin, origin}
@@ -575,7 +575,7 @@ def _held_intervals(
             else:
                 work.append((first, last + 1, max(tolerance, width / 4), origin))
             origin = last
-        if width > tolerance:  # between them are holds that are one at this width, or none
+        if width > tolerance:  # between them are parts that are one hold at this width, or none
             starts, stops = [begin, *(begin + lasts + 1).tolist()], [*(begin + firsts), stop]
             work += [
                 (start, int(end), max(tolerance, width / 4), start)
@@ -588,10 +588,10 @@ def _held_intervals(
 def _evenly(
     time: Floats, values: Floats, minimum_duration: float
 ) -> tuple[Floats, Floats, Integers]:
-    """A series at even steps, with the sample of each; as it is where its steps are nearly even.
+    """A series at even steps, with the sample of each; unchanged if its steps are nearly even.
 
-    A log that is dense in its ramp and sparse in its hold has few samples in the time that the
-    steps of its ramp would fill.
+    A log that is dense in its ramp and sparse in its hold has few samples in the duration of a
+    hold when this is counted in steps of the ramp.
     """
     step = median_step(time)
     duration = float(time[-1] - time[0])
@@ -617,9 +617,9 @@ _STEPS_OF_SHORTEST = 8
 def _stays_slow(
     time: Floats, values: Floats, begin: int, first: int, last: int, *, noise: float
 ) -> bool:
-    """Whether an interval keeps near the end of its approach and never moves fast once slow.
+    """Whether an interval stays near the end of its approach and never moves fast once slow.
 
-    The turn of a sine is slow and near, too, for less than a fifth of the time of its approach.
+    The turn of a sine is also slow and near, but for less than a fifth of the time of its approach.
     """
     approach = find_approach(time, values, begin=begin, first=first, last=last, noise_range=noise)
     if approach is None:
@@ -640,14 +640,14 @@ def _stays_slow(
     return bool(is_slow[int(np.argmax(is_slow)) :].all()) and bool(is_slow.any())
 
 
-_WINDOW, _WIDER = 64, 3.0  # samples, of whose range normal noise spans no more in a record
+_WINDOW, _WIDER = 64, 3.0  # samples; range of normal noise in a record over that in a window
 
 
 def _dither_range(values: Floats) -> float:
-    """What the noise of a channel that a controller drives may span, by what it does span.
+    """Range that the noise of a channel driven by a controller may span, from its actual range.
 
-    A servo valve that dithers faster than the log is read has the differences of great noise and a
-    narrow range.  Of normal noise this is more than its range, and of what moves far more.
+    A servo valve that dithers faster than the log is sampled has the differences of large noise and
+    a narrow range.  For normal noise, and for larger movements, this exceeds the range of noise.
 
     Examples
     --------
@@ -664,10 +664,10 @@ def _dither_range(values: Floats) -> float:
 
 
 def _code_of_advance(values: Floats) -> float:
-    """Step of a channel that stands between its codes more often than not; 0 of another.
+    """Step of a channel that stands between its codes more often than not; 0 for others.
 
-    An encoder without noise has differences that are mostly zero: a hold in which its controller
-    moves by a code would end there.  Codes are small beside the range; steps of weights are not.
+    An encoder without noise has differences that are mostly zero: a hold would end where its
+    controller moves by one code.  Codes are small beside the range; steps of weights are not.
 
     Examples
     --------
@@ -689,18 +689,18 @@ _FINE_CODE = 1e-3  # of the range
 
 
 def _tolerances(values: Floats, stated: float | None) -> tuple[float, float]:
-    """Range that is allowed inside a standstill, and what noise alone spans."""
+    """Range allowed inside a standstill, and range of noise alone."""
     noise = max(noise_range(values), _QUANTA * _code_of_advance(values))
     return (noise, noise) if stated is None else (stated, min(noise, stated))
 
 
-_BESIDE = 0.25  # of an interval, read on either side of it
+_BESIDE = 0.25  # of an interval, read on both sides of it
 
-_HINGES = (1.0, 0.75, 0.5)  # of an interval: how much of it is flat if the channel stands there
+_HINGES = (1.0, 0.75, 0.5)  # of an interval: possible flat fractions if the channel stands there
 
 
 def _misfits(time: Floats, values: Floats, half: float) -> tuple[float, float]:
-    """Sums of squares about a parabola, and about the best level that is left on both sides.
+    """Sums of squares about a parabola, and about the best level with ramps on both sides.
 
     ``time`` is counted from the middle of an interval of twice ``half``.
     """
@@ -721,13 +721,13 @@ def _misfits(time: Floats, values: Floats, half: float) -> tuple[float, float]:
 def _are_turns(
     time: Floats, values: Floats, first: Integers, last: Integers, *, tolerance: float
 ) -> Bools:
-    """Which intervals are the rounded turn of a slow cycle, not a stand of the channel.
+    """Mark intervals that are the rounded turn of a slow cycle, not a standstill of the channel.
 
     Notes
     -----
-    With noise in the channel its tolerance holds the turn of a slow sine for a time that a
-    stand could take.  About a turn, and a quarter of the interval to either side, the channel is
-    a parabola; about a stand it is a level that is left by ramps or by rounded ones.  Where the
+    With noise in the channel, the turn of a slow sine stays within the tolerance as long as a
+    standstill might.  At a turn, and a quarter of the interval to either side, the channel is
+    a parabola; at a standstill it is a level left by straight or rounded ramps.  Where the
     sums of squares differ by less than a factor of two, the median of the intervals at the same
     level decides.
 
@@ -759,7 +759,7 @@ def _are_turns(
     is_turn: Bools = ratio < 0
     unclear = np.flatnonzero(np.abs(ratio) < 1)
     level = _interval_means(values, first, last)
-    for index in unclear.tolist():  # what the others at its level are
+    for index in unclear.tolist():  # as the others at its level
         alike = ratio[np.abs(level - level[index]) <= tolerance]
         is_turn[index] = np.nanmedian(alike) < 0
     return is_turn
@@ -779,10 +779,10 @@ def _stands(
     settings: PhaseSettings,
     is_held: bool,
 ) -> tuple[Integers, Integers]:
-    """First and last sample of every standstill; of a held record from the end of its approach.
+    """First and last sample of every standstill; in a held record, from the end of its approach.
 
-    Between cycles a standstill keeps the edges that its noise gives it: what is slow and near
-    before it is part of the cycle.
+    Between cycles a standstill keeps the edges that follow from its noise: slow motion near it
+    is part of the cycle.
     """
     duration = settings.minimum_duration
     if not is_held:
@@ -805,12 +805,12 @@ def _slowly_logged(
 ) -> Integers:
     """First and last samples of standstills in parts of a log that have fewer rows a second.
 
-    Shape (2, n_standstills).  No step in them is longer than the shortest standstill: the crosshead
-    may have moved in it.
+    Shape (2, n_standstills).  No step in them is longer than the shortest standstill, since the
+    crosshead may have moved within a longer one.
 
     Examples
     --------
-    A rest with a row a second before a ramp with twenty.
+    A rest with one row a second before a ramp with twenty:
 
     >>> time = np.concatenate([np.arange(10.0), np.arange(10, 40, 0.05)])
     >>> place = np.maximum(time - 10, 0)
@@ -861,12 +861,12 @@ class Standstills:
     is_rest : ndarray of bool, shape (n_standstills,)
         True where every specimen is slack.
     position_tolerance : float
-        Range of position that was allowed inside a standstill of the crosshead. [m]
+        Range of position allowed inside a standstill of the crosshead. [m]
     slack_tension : float
         Tension at or below which a standstill is a rest. [N]
     tension_tolerance : float or None
-        Range of tension that was allowed inside a hold, where holds are intervals of
-        constant tension; None where the crosshead stands still in them. [N]
+        Range of tension allowed inside a hold, where holds are intervals of
+        constant tension; None where they are standstills of the crosshead. [N]
     """
 
     first: Integers
@@ -886,7 +886,7 @@ class Standstills:
         return int(self.first.shape[0])
 
     def covers(self, part: slice) -> Bools:
-        """Which samples of a part of the record lie inside a standstill."""
+        """Mark the samples of a part of the record that lie inside a standstill."""
         is_still = np.zeros(part.stop - part.start, dtype=bool)
         here = slice(np.searchsorted(self.last, part.start), np.searchsorted(self.first, part.stop))
         for first, last in zip(self.first[here], self.last[here], strict=True):
@@ -916,7 +916,7 @@ def _describe_standstills(
     slack_tension: float,
     tension_tolerance: float | None = None,
 ) -> Standstills:
-    """Means over given intervals, and which of them are rests.
+    """Means over given intervals, with a mark for rests.
 
     Examples
     --------
@@ -950,33 +950,33 @@ def find_standstills(
     settings: PhaseSettings,
     is_held: bool = False,
 ) -> Standstills:
-    """Find every interval in which the crosshead stands still, and say which are rests.
+    """Find every interval in which the crosshead stands still, and mark the rests.
 
     Notes
     -----
-    *Tolerance.* None: `noise_range` of position.  The crosshead stands where the range
+    *Tolerance.* If None, `noise_range` of position.  The crosshead stands where the range
     of position stays within it over every stretch of the shortest duration, and within
-    twice that over the whole interval; the edges are where it comes and goes nearer to
+    twice that over the whole interval.  At the edges it comes and goes nearer to
     the mean than half the tolerance.
 
     *Duration.* At least ``minimum_duration`` and at least four samples, so that the two
-    samples beside a peak of a slow log are no hold.  A movement too slow to leave the
-    tolerance within that time is told from a hold by wider windows, and the turn of a
+    samples beside a peak of a slow log are not a hold.  A movement too slow to leave the
+    tolerance within that time is distinguished from a hold by wider windows, and the turn of a
     slow cycle by its neighbourhood: from a standstill the crosshead gets four tolerances
-    away within as long as it stood, before it or after it, and it is a level there, no
-    parabola.
+    away within as long as it stood, before or after it, and its position there is a level, not
+    a parabola.
 
     *Rests.* A standstill whose mean tension is at or below the slack tension for every
-    specimen.  None: the greater of 2 % of the greatest tension of the record and half
-    the `noise_range` of tension, by the specimen where it is larger; a record that
-    never goes slack has no rests.
+    specimen.  If None, the slack tension is the greater of 2 % of the greatest tension of the
+    record and half the `noise_range` of tension, for the specimen where it is larger; a record
+    that never goes slack has no rests.
 
     Missing samples inside a standstill do not end it.  The record is read in blocks of
     a quarter of the shortest standstill; edges are found to the sample.
 
     Examples
     --------
-    One minute slack, a pull of 10 s, one minute at 1 m.
+    One minute slack, a pull of 10 s, one minute at 1 m:
 
     >>> time = np.arange(0, 130.0)
     >>> position = np.interp(time, [0, 60, 70, 130], [0, 0, 1, 1])
@@ -1024,15 +1024,15 @@ def find_tension_stands(
 
     Notes
     -----
-    *Holds* are intervals above the slack tension in which the tension stands still
-    (`_still_intervals`), that of the machine: the mean over the specimens, which pull at one
-    crosshead.  Tolerance, where not stated: `noise_range` of it, or `_dither_range` if less.
-    *Rests* are those of `find_standstills`, since a slack specimen has the same tension wherever
-    the crosshead goes.  Where both meet the rest is shortened.
+    *Holds* are intervals above the slack tension in which the tension of the machine stands still
+    (`_still_intervals`): the mean over the specimens, which pull at one
+    crosshead.  Tolerance, where not stated: its `noise_range`, or `_dither_range` if less.
+    *Rests* are those of `find_standstills`, since a slack specimen has the same tension at any
+    position of the crosshead.  Where the two overlap, the rest is shortened.
 
     Examples
     --------
-    A minute slack, a pull of 10 s, a minute at 100 N in which the crosshead creeps.
+    A minute slack, a pull of 10 s, a minute at 100 N with creep of the crosshead:
 
     >>> time = np.arange(0, 130.0)
     >>> load = np.interp(time, [0, 60, 70, 130], [0, 0, 100, 100])

@@ -1,4 +1,4 @@
-"""What a log shows of its test: levels, speeds and shapes, to hold against what is stated of it.
+"""Levels, speeds and shapes that a log shows, for comparison with the stated ones.
 
 References
 ----------
@@ -20,9 +20,9 @@ from reduction.stages.cycles.loop_sense import waveform_of_log
 from reduction.stages.load_at_slack import stands_at_slack_length
 from reduction.stages.standstills import Standstills
 
-_MOST_CYCLES = 40  # that are looked at, spread over the test
+_MOST_CYCLES = 40  # that are examined, spread over the test
 
-_NEXT = 2.0  # of a cycle, within which the next one begins where all are logged
+_NEXT = 2.0  # of a cycle: the next one begins within this if all are logged
 
 _MOST_POINTS = 4000  # of a record without cycles
 
@@ -30,48 +30,48 @@ _MOST_POINTS = 4000  # of a record without cycles
 @dataclass(frozen=True)
 @read_only_arrays
 class TestLevels:
-    """Levels of one test; arrays are of its specimens, NaN where the log does not show them.
+    """Levels of one test; arrays by specimen, NaN where the log does not show them.
 
     Parameters
     ----------
     frequency : float
-        Cycles over their time. [Hz]
+        Number of cycles over their time. [Hz]
     speed : float
-        Of the crosshead on the way. [m s-1]
+        Speed of the crosshead on the way out. [m s-1]
     slack_position : float
-        Of the crosshead at its first slack rest. [m]
+        Position of the crosshead at its first slack rest. [m]
     waveform : str
-        What the driven channel is like: ``triangular``, ``sinusoidal``, ``other`` where it is far
+        Shape of the driven channel: ``triangular``, ``sinusoidal``, ``other`` where it is far
         from both, empty where it may be one of them.
     mean_tension, tension_amplitude : ndarray, shape (n_specimens,)
         Medians over the cycles. [N]
     lead : ndarray, shape (n_specimens,)
-        Time by which tension leads position, at equal strain: of any elastic curve none. [s]
+        Time by which tension leads position, at equal strain: zero for any elastic curve. [s]
     strain_per_length : ndarray, shape (n_specimens,)
-        Range of the strain that was measured over that of position; negative where one falls
+        Range of the measured strain over that of position; negative where one falls
         while the other rises. [m-1]
     slack_strain : ndarray, shape (n_specimens,)
-        Strain that was measured at the first slack rest. [1]
+        Measured strain at the first slack rest. [1]
     final_share : ndarray, shape (n_specimens,)
-        Tension at the end of the record, at its stretch, over the greatest. [1]
+        Tension at the end of the record, still stretched, over the greatest. [1]
     n_strokes : int
-        Rises and falls of position by more than a quarter of its range, one after another, but as
-        many as there are holds: a line that is pulled from hold to hold does not cycle.
+        Number of consecutive rises and falls of position by more than a quarter of its range,
+        except where there are as many holds: a line pulled from hold to hold does not cycle.
     ends_in_pull : bool
-        Whether the last rise of position leads to a quarter more tension than any before it: what
-        was cycled until then was bedded in.
+        Whether the last rise of position leads to a quarter more tension than any before it: the
+        cycles before it were bedding-in.
     is_copy : ndarray of bool, shape (n_specimens,)
-        Specimens whose tension is that of one before them, reading by reading.
+        Mask of specimens whose tension equals that of an earlier one in every reading.
     load_step : ndarray, shape (n_specimens,)
-        Step in which tension was logged, where its range has few of them. [N]
+        Step in which tension was logged, if there are few of them in its range. [N]
     like_means : ndarray, shape (n_specimens, 3)
         Mean tension of the first, middle and last of the cycles between equal positions; NaN where
         they are few, or where a slack rest after them shows the zero of the load. [N]
     mean_ramps : ndarray, shape (n_specimens, 3)
-        Mean tension of the first and the last cycle by the straight line through all, where the
-        machine lets it go: the means follow the line, and the machine drives the load, or the
-        middle of its stroke goes the same way. With it, by how much half the range of tension
-        grows over the same cycles. NaN elsewhere. [N]
+        Mean tension of the first and the last cycle by the straight line through all, if the
+        means follow the line and the machine allows it: it drives the load, or the
+        middle of its stroke moves in the same way. Also the growth of half the range of tension
+        over the same cycles. NaN elsewhere. [N]
     """
 
     __test__ = False  # a test of a tether, not of this software
@@ -104,7 +104,7 @@ def levels_of_test(
     *,
     control: str,
 ) -> TestLevels:
-    """Levels of a test by its record and its cycles.
+    """Levels of a test from its record and its cycles.
 
     Parameters
     ----------
@@ -115,20 +115,20 @@ def levels_of_test(
     measured_strain : ndarray, shape (n_specimens, n_samples), or None
         [1]
     standstills : Standstills
-        Of the record.
+        Standstills of the record.
     cycles : Cycles or None
-        Of the record, where it has some.
+        Cycles of the record, if there are any.
     control : str
-        ``position`` or ``load``, which the machine drives.
+        ``position`` or ``load``, the channel that the machine drives.
 
     Returns
     -------
     levels : TestLevels
-        Found; nothing is compared here.
+        Levels as found; nothing is compared here.
 
     Notes
     -----
-    Levels are those of [1]_, medians over some forty cycles, so that a long log costs no more.
+    Levels are those of [1]_, medians over some forty cycles, so that a long log takes no longer.
 
     Raises
     ------
@@ -137,7 +137,7 @@ def levels_of_test(
 
     Examples
     --------
-    A stroke of 2 m in 20 s, and the pull of 100 N/m that goes with it:
+    A stroke of 2 m in 20 s, with a tension of 100 N/m:
 
     >>> from reduction.record.settings import PhaseSettings
     >>> from reduction.stages.standstills import find_standstills
@@ -162,7 +162,7 @@ def levels_of_test(
         frequency = 1 / _period(take_samples(time, cycles.first), take_samples(time, cycles.last))
         peak, valley = cycles.branch_last[some, 0], cycles.branch_first[some, 0]
         rise = take_samples(position, peak) - take_samples(position, valley)
-        # a cycle that a machine counted without a stroke takes no time to its peak
+        # a cycle that a machine counted without a stroke reaches its peak in zero time
         with np.errstate(divide="ignore", invalid="ignore"):
             rates = np.abs(rise) / (take_samples(time, peak) - take_samples(time, valley))
         rates = rates[np.isfinite(rates)]
@@ -213,7 +213,7 @@ def levels_of_test(
 
 
 def _is_copy(one: Floats, other: Floats) -> bool:
-    """Whether two series have the same samples; most differ in the first block."""
+    """Whether two series have equal samples; most differ in the first block."""
     return all(
         np.array_equal(one[part], other[part], equal_nan=True)
         for part in sample_blocks(one.size, one, other)
@@ -222,19 +222,19 @@ def _is_copy(one: Floats, other: Floats) -> bool:
 
 _LIKE_POSITION = 0.02  # of the stroke
 
-_FEWEST_LIKE = 8  # cycles, of which the first does not count
+_FEWEST_LIKE = 8  # cycles, not counting the first
 
 
 def _rests_after(standstills: Standstills, last: int) -> bool:
-    """Whether the record is slack, or no longer than slack, after its cycles."""
+    """Whether the record is slack, or no longer than at slack, after its cycles."""
     slack = stands_at_slack_length(standstills, standstills.is_rest)
     return bool((slack & (standstills.first >= last)).any())
 
 
 def _period(begin: Floats, end: Floats) -> float:
-    """Median time of a cycle, with the dwell at the valley that lies between two of them.
+    """Median time of a cycle, including the dwell at the valley between two cycles.
 
-    Where single cycles are logged of many, or each is the only one, that of the cycle itself.
+    Where only some cycles are logged, or only one, that of the cycle itself.
 
     Examples
     --------
@@ -248,14 +248,14 @@ def _period(begin: Floats, end: Floats) -> float:
 
 
 def _alike(middle: Floats, stroke: Floats) -> Bools:
-    """Cycles between the positions of most."""
+    """Mask of cycles between the most common positions."""
     usual = np.nanmedian(stroke)
     near = np.maximum(np.abs(middle - np.nanmedian(middle)), np.abs(stroke - usual))
     return np.asarray(near <= _LIKE_POSITION * abs(usual))
 
 
 def _three_means(load: Floats, cycles: Cycles, some: Integers) -> Floats:
-    """Mean tension of the first, middle and last quarter of some cycles but the first."""
+    """Mean tension of the first, middle and last quarter of some cycles without the first one."""
     some = some[1:]
     if some.size < _FEWEST_LIKE - 1:
         return np.full(3, np.nan)
@@ -267,15 +267,15 @@ def _three_means(load: Floats, cycles: Cycles, some: Integers) -> Floats:
     ])  # fmt: skip
 
 
-_ON_LINE = 0.98  # of the variance of the means: steps between levels leave more beside a line
+_ON_LINE = 0.98  # of the variance of the means: steps between levels are farther from a line
 
 
 def _mean_ramp(
     load: Floats, cycles: Cycles, some: Integers, middles: Floats | None
 ) -> tuple[float, float, float]:
-    """Mean tension of the first and last cycle, where it ramps as no specimen makes it.
+    """Mean tension of the first and last cycle, if it ramps in a way that no specimen causes.
 
-    With it, how much half the range of the cycles grows between them.
+    Also the growth of half the range of the cycles between them.
     """
     loads = [load[cycles.first[one] : cycles.last[one] + 1] for one in some]
     means = np.array([_middle(one) for one in loads])
@@ -292,7 +292,7 @@ def _mean_ramp(
 
 
 def _middle(values: Floats) -> float:
-    """Median of what is known; NaN of nothing."""
+    """Median of the known values; NaN if there are none."""
     known = values[np.isfinite(values)]
     return float(np.median(known)) if known.size else np.nan
 
@@ -300,16 +300,16 @@ def _middle(values: Floats) -> float:
 def _of_cycle(
     time: Floats, position: Floats, load: Floats, first: int, last: int
 ) -> tuple[float, float, float]:
-    """Mean and amplitude of tension, and lead of it over position."""
+    """Mean and amplitude of tension, and its lead over position."""
     at = slice(first, last + 1)
     t, x, force = time[at], position[at], load[at]
     known = np.isfinite(x) & np.isfinite(force)
-    if known.sum() < 4 or not t[known][-1] > t[known][0]:  # rows may be repeated in a log
+    if known.sum() < 4 or not t[known][-1] > t[known][0]:  # rows of a log may be repeated
         return (np.nan,) * 3
     t, x, force = t[known], x[known], force[known]
     low, high = float(force.min()), float(force.max())
-    # the loop of a delay, in any wave and of any elastic curve: its area is the delay times the
-    # integral of both rates. The fundamental over time has a phase where a bent curve is pulled
+    # the loop due to a delay, in any wave and for any elastic curve, has an area of the delay times
+    # the integral of both rates. The fundamental over time has a phase if a curve is pulled
     # and released at two speeds
     period = float(t[-1] - t[0])
     x, force = (one - np.interp(t, t[[0, -1]], one[[0, -1]]) for one in (x, force))
@@ -321,7 +321,7 @@ def _of_cycle(
 
 
 def _waveform(time: Floats, driven: Floats, cycles: Cycles) -> str:
-    """Waveform of the channels that are driven, where all are alike."""
+    """Waveform of the driven channels, if all are alike."""
     found = {waveform_of_log(time, one, cycles) for one in driven}
     return found.pop() if len(found) == 1 else ""
 
@@ -335,9 +335,9 @@ _FEWEST_POINTS = 4  # on the way out; a log that begins at its greatest length h
 
 
 def _speed(time: Floats, position: Floats) -> float:
-    """Median speed of the crosshead where it is on the way out. [m s-1].
+    """Median speed of the crosshead on the way out. [m s-1].
 
-    The way back is no part of a pull, and may be at any rate.
+    The way back is not part of a pull, and may be at any rate.
     """
     some = _some(time.size)
     t, x = time[some], position[some]
@@ -355,11 +355,11 @@ def _speed(time: Floats, position: Floats) -> float:
 
 _FEWEST_STEPS, _MOST_STEPS = 5, 50  # over the range of tension
 
-_WHOLE = 0.05  # of a step, by which a level may lie beside a multiple of it
+_WHOLE = 0.05  # of a step: distance of a level from a multiple of it that is allowed
 
 
 def _load_step(load: Floats) -> float:
-    """Step of a tension that has few levels, all of them multiples of it; else NaN. [N]."""
+    """Step of a tension that has few levels, all multiples of it; else NaN. [N]."""
     levels = np.unique(load[_some(load.size)])
     levels = levels[np.isfinite(levels)]
     if not _FEWEST_STEPS <= levels.size <= _MOST_STEPS + 1 or load.size < 4 * levels.size:
@@ -389,7 +389,7 @@ def _strain_per_length(position: Floats, strain: Floats | None, n_specimens: int
 
 
 def _turns(position: Floats, *, least: float) -> Integers:
-    """Samples where rises and falls of a quarter of the range end, of some spread over it."""
+    """Samples at which rises and falls of a quarter of the range end, of some spread over it."""
     some = np.arange(*_some(position.size).indices(position.size))
     known = some[np.isfinite(position[some])]
     if not known.size:
@@ -418,16 +418,16 @@ def _position_at(position: Floats, load: Floats, level: float) -> float:
     return np.nan if place is None else float(position[place])
 
 
-_RISE = np.array([0.1, 0.5])  # of the greatest load, between which a pull has not yielded
+_RISE = np.array([0.1, 0.5])  # of the greatest load: a pull has not yielded between these
 
 _UNLOADED = 0.5  # of the stretch to the greatest load
 
 
 def _final_share(position: Floats, tension: Floats) -> Floats:
-    """Tension of the last twentieth over the greatest, while the crosshead stays out; else NaN.
+    """Tension of the last twentieth over the greatest, if the crosshead stays out; else NaN.
 
-    It does not where it comes back by half of the elastic stretch to that load: what yields stays
-    long when it is unloaded.
+    It does not if it returns by half of the elastic stretch to that load: a specimen that yields
+    stays long when it is unloaded.
     """
     n_last = max(position.size // 20, 1)
     low, high = finite_extremes(position)

@@ -1,1 +1,1 @@
-"""What errors that samples share do to each number."""
+"""The effect on each number of errors that samples share."""

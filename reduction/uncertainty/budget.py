@@ -2,7 +2,7 @@
 
 References
 ----------
-.. [2] JCGM 106:2012, "Evaluation of measurement data - The role of measurement uncertainty in
+.. [1] JCGM 106:2012, "Evaluation of measurement data - The role of measurement uncertainty in
    conformity assessment," 8.2 (simple acceptance), 8.3 (decision rules based on guard bands).
 """
 
@@ -33,7 +33,7 @@ class BudgetRow:
     """One source of the uncertainty of a number.
 
     ``contribution`` is signed where the source is one error, [unit of the number]; ``share`` is
-    that of the variance.
+    its share of the variance.
     """
 
     source: str
@@ -51,17 +51,17 @@ class Budget:
     quantity, unit : str
         What it is.
     place : dict of str to str
-        Which one of its kind: specimen, branch, strain ...
+        Which number of its kind: specimen, branch, strain ...
     value, standard_uncertainty, expanded_uncertainty : float
         [unit]
     coverage_factor : float
         k of the expanded uncertainty, for 95 %. [1]
     degrees_of_freedom, effective_degrees_of_freedom : float
-        Of the random part, and of all parts together, from which k follows. [1]
+        Of the random part and of all parts together; k follows from the latter. [1]
     rows : tuple of BudgetRow
-        Largest first; their shares add up to 1.
+        Largest first; the shares add up to 1.
     words : dict of str to str
-        What a place is, where its label alone does not say it.
+        What a place is, where its label alone does not say.
     """
 
     quantity: str
@@ -92,9 +92,9 @@ def budget_of(
 
     Notes
     -----
-    Contributions of one source to one owner are of independent errors (the coefficients of a fit)
-    and add by their squares; a single one keeps its sign.  What is below a billionth of the largest
-    is the rounding of an error that cancels, and no source.
+    Contributions from one source to one owner come from independent errors (the coefficients of
+    a fit) and add as squares; a single one keeps its sign.  Anything below a billionth of the
+    largest is the rounding of an error that cancels, not a source.
 
     Examples
     --------
@@ -156,11 +156,11 @@ def conformity(
     upper: float | None,
     rule: DecisionRule,
 ) -> Verdict:
-    """Return what a rule makes of a number and its limits.
+    """Return the verdict of a rule on a number and its limits.
 
     Notes
     -----
-    Simple acceptance: [2]_, 8.2; a value on a limit is then wrongly judged with a probability up
+    Simple acceptance: [1]_, 8.2; a value on a limit is then misjudged with a probability of up
     to 50 %.  A guard band as wide as the expanded uncertainty on either side of a limit: [2]_,
     8.3.2 and 8.3.3; at most 2.5 % on each side.
 

@@ -1,7 +1,7 @@
-r"""How far what is not known of a test would move its answers, against their intervals.
+r"""Effect of unknown properties of a test on its answers, compared with their intervals.
 
-A doubt whose effect lies within the 95 % interval of the answer is told as a note: the interval
-holds it already.
+If the effect of a doubt is within the 95 % interval of the answer, it is given as a note, since the
+interval covers it.
 
 References
 ----------
@@ -27,7 +27,7 @@ from reduction.stages.strain.strain_model import position_by_model
 
 _USUAL_MASS = 1.2  # kg, [1]: no testing laboratory clamps a mooring line with less
 
-_USUAL_COMPLIANCE = 3.8e-9  # m/N, the softest frame of [2]; grips and load cell come on top
+_USUAL_COMPLIANCE = 3.8e-9  # m/N, the softest frame of [2]; grips and load cell add to it
 
 _NAME = "apparent_spring_constant"
 
@@ -35,7 +35,7 @@ _SMALL = 1e-3  # step of strain for a slope
 
 
 def load_train_notes(test: ReducedTest, instruments: Sequence[InstrumentErrors]) -> Iterator[Note]:
-    """Say at what size each term that is not stated moves K_ap by its standard uncertainty."""
+    """Note for each unstated term the size at which it moves K_ap by its standard uncertainty."""
     summary, record = test.amplitude, test.record
     if summary is None or record is None:
         return
@@ -79,7 +79,7 @@ def load_train_notes(test: ReducedTest, instruments: Sequence[InstrumentErrors])
         # the uncertainty of a compliance of zero is in the interval
         is_stated = index < len(instruments) and instruments[index].machine_compliance > 0
         if train.machine_compliance is None and is_crosshead and not is_stated:
-            # the machine gives by the tensions of all specimens, taken to be alike
+            # the machine yields to the tensions of all specimens, assumed equal
             effect = constant * len(test.specimens) / length
             yield note(
                 "compliance-matters"
@@ -95,9 +95,9 @@ def load_train_notes(test: ReducedTest, instruments: Sequence[InstrumentErrors])
 def _inertia_left(
     test: ReducedTest, summary: AmplitudeSummary, index: int, turn: float
 ) -> Iterator[Note]:
-    """Say where the correction for stated masses leaves more in K_ap than its interval holds.
+    """Note where the error of K_ap after the correction for stated masses exceeds its interval.
 
-    The turns of ramps are taken for parts of a sine whose ratio of acceleration to rate they have.
+    The turns of ramps are treated as parts of a sine with their ratio of acceleration to rate.
     """
     record, specimen = test.record, test.specimens[index]
     constant = float(summary.apparent_spring_constant[index])
@@ -121,17 +121,17 @@ def _inertia_left(
         yield note("specimen-near-resonance", specimen.name, effect=abs(error), share=angle / np.pi)
 
 
-_RESOLVED = 1.5  # times what differences over twice the steps show; a corner shows twice that
+_RESOLVED = 1.5  # times the result of differences over twice the steps; at a corner it is 2
 
 _NEAR_RESONANCE = 2.5  # of pi: beyond it damping decides
 
 
 def _wave_left(angle: float, *, is_moving: bool) -> float:
-    r"""Share of K_ap that the mass of the specimen still moves after its inertia is taken off.
+    r"""Relative error of K_ap by the mass of the specimen after its inertia is subtracted.
 
-    An elastic line held at one end, its other end moving by a sine, has the tensions
+    An elastic line held at one end, with its other end in sinusoidal motion, has the tensions
     :math:`k x_a\, \beta \cot\beta` at the moving end and :math:`k x_a\, \beta / \sin\beta` at the
-    fixed one; the mean along it is :math:`k x_a`.  The square of beta is what is taken off.
+    fixed one; the mean along it is :math:`k x_a`.  The term in beta squared is subtracted.
     """
     if angle < 1e-3:
         return 0.0
@@ -142,16 +142,16 @@ def _wave_left(angle: float, *, is_moving: bool) -> float:
 
 _POSSIBLE_FRICTION = 0.10  # of the extension of splices: a judgement, no measurement is known
 
-# of it that is in a loop: splices stand still after each reversal
+# fraction of it in a loop: splices stand still after each reversal
 _IN_LOOP = 0.8
 
 
 def splice_friction_notes(
     test: ReducedTest, instruments: Sequence[InstrumentErrors]
 ) -> Iterator[Note]:
-    """Say what friction in the splices would do to H, where neither mark nor campaign says it.
+    """Note the effect of possible friction in the splices on H, if no mark or campaign shows it.
 
-    A warning where that is beyond the interval of an H that is known at all.
+    A warning if it exceeds the interval of H, where H is known.
     """
     summary, found = test.amplitude, test.contributions
     if summary is None or found is None:
@@ -186,10 +186,10 @@ def splice_friction_notes(
 
 
 def splice_slip_notes(test: ReducedTest) -> Iterator[Note]:
-    """Say by how much strain is too large after slips: a warning where that is beyond its interval.
+    """Note the excess of strain after slips: a warning if it exceeds the interval of strain.
 
-    Slips of this test, and those of earlier tests since the marks were read.  An extensometer lies
-    on the free length, where no splice enters.
+    Includes slips of this test, and of earlier tests since the marks were read.  An extensometer is
+    on the free length, where splices have no effect.
     """
     slips = test.slips
     for index, specimen in enumerate(test.specimens):
@@ -209,9 +209,9 @@ def splice_slip_notes(test: ReducedTest) -> Iterator[Note]:
 
 
 def _of_slip(test: ReducedTest, index: int, code: str, let_out: float, **numbers: Any) -> Note:
-    """What a length that the splices let out does to the strain of a test.
+    """Effect of a length let out by the splices on the strain of a test.
 
-    It is held against what else the interval of the strain has.
+    It is compared with the interval of strain from all other sources.
     """
     specimen, model, summary = test.specimens[index], test.strain_models[index], test.amplitude
     if summary is not None:
@@ -241,18 +241,18 @@ def _of_slip(test: ReducedTest, index: int, code: str, let_out: float, **numbers
     return replace(found, severity="note") if is_held else found
 
 
-# what the drift of the cycles adds is taken off as if it were even over each: of creep in settled
-# cycles that is right to a tenth of it, and where it takes place is in the interval
+# the work of drift is subtracted as if the drift were even over each cycle: for creep in settled
+# cycles this is right to a tenth of it; the interval covers the unknown place of the drift
 _OF_ANSWER = {"identity-open": (_NAME, 0.0), "drift-in-energy": ("hysteresis_energy", 0.1)}
 
 _EXPANDED = 2.0  # k of 95 %
 
 
 def with_weighed_notes(test: ReducedTest) -> ReducedTest:
-    """Tell as notes those warnings whose effect lies within the interval of what they move.
+    """Convert warnings whose effect is within the interval of the affected answer to notes.
 
-    What drift adds to H, as large as the interval that it makes, is a warning from a tenth of H on;
-    of a step that is there for the rope to bed in it is none, whatever its size.
+    The effect of drift on H, which also determines its interval, is a warning from a tenth of H on;
+    in a step intended for bedding-in it is never a warning.
     """
     summary = test.amplitude
     if summary is None:
@@ -278,7 +278,7 @@ def with_weighed_notes(test: ReducedTest) -> ReducedTest:
 def _standard_uncertainty(
     test: ReducedTest, summary: AmplitudeSummary, name: str, index: int, *, left_out: str = ""
 ) -> float:
-    """Both parts of that of an answer of the test, but for one source. [its unit]."""
+    """Both parts of that of an answer of the test, without one source. [its unit]."""
     random = float(summary.uncertainty[name][index])
     found = test.contributions
     if found is None or f"test_{name}" not in found.values:
@@ -291,7 +291,7 @@ def _length_of_strain(test: ReducedTest, summary: AmplitudeSummary, index: int) 
     """Stroke of the crosshead over range of strain: that of the gauge with its splices. [m]."""
     model = test.strain_models[index]
     if model.method == "extensometer":
-        # between its feet the stroke is not seen; the crosshead's is that of the whole specimen
+        # it does not measure the stroke between its feet; the crosshead has that of all
         return float("nan")
     way = np.array([1.0, -1.0])
     strain = summary.mean_strain[index] + way * summary.strain_amplitude[index]

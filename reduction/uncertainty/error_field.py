@@ -1,23 +1,23 @@
 r"""Errors of tension and strain at a point of the loop, by source.
 
-**What the zero and the gain of load cells do at points of the plane: in tension, and by splices.**
-A splice law gives strain by the tension that is logged, and was itself fitted to tensions that a
-load cell read at the marks.  The same cell or another: each cell moves the tension of the samples
-that it logged and the law by the marks that it read.
+**Effect of the zero and the gain of load cells at points of the plane: in tension, and by
+splices.** A splice law gives strain from the logged tension, and was itself fitted to tensions that
+a load cell read at the marks.  That may be the same cell or another: each cell affects the tension
+of the samples that it logged and the law through the marks that it read.
 
-**What strain by position alone misses of splices that stretch by the tension they carry.** A line
-through the marks gives one strain to one position.  On a loop the same position is passed at two
-tensions, and the splices are longer at the greater one.  How much that is the same marks say, by a
+**Error of strain by position alone, for splices that stretch by the tension they carry.** A line
+through the marks gives one strain for each position.  On a loop the same position is passed at two
+tensions, and the splices are longer at the greater one.  The same marks show by how much, through a
 law of tension fitted to them:
 
 .. math:: D(\varepsilon, T) = \varepsilon
           - \left(\frac{p(\varepsilon) - \ell_s (1 + c T^n)}{\ell_0} - 1\right)
 
-**Errors of tension and strain at a point of the loop, and how they change from point to point.**
-Whatever is wrong with a test moves each point of its tension-strain plane by a small vector
-:math:`(\delta\varepsilon, \delta T)` that depends on where the point is.  From that field and its
-slopes follow the errors of everything that is read off the plane: of a modulus, a spring constant,
-an area.
+**Errors of tension and strain at a point of the loop, and their slopes from point to point.** Any
+error of a test moves each point of its tension-strain plane by a small vector
+:math:`(\delta\varepsilon, \delta T)` that depends on the position of the point.  That field and its
+slopes give the errors of everything that is read off the plane: of a modulus, a spring constant, an
+area.
 
 References
 ----------
@@ -71,7 +71,7 @@ def _field_rows(
     strain_slope_over_tension: Floats | float = 0.0,
     tension_slope_over_strain: Floats | float = 0.0,
 ) -> Floats:
-    """The arrays of one error, shape (6, ...) in the order of `ROWS`; ``like`` has the shape."""
+    """The arrays of one error, shape (6, ...) in the order of `ROWS`; ``like`` gives the shape."""
     given = (
         tension, strain, tension_slope, strain_slope, strain_slope_over_tension,
         tension_slope_over_strain,
@@ -83,7 +83,7 @@ def _field_rows(
 
 
 def _steps_of(load: Floats) -> Floats:
-    """Steps of tension for a slope over it. [N]."""
+    """Steps of tension for a numerical derivative by it. [N]."""
     return np.asarray(_STEP * np.maximum(np.abs(load), 1.0))
 
 
@@ -95,10 +95,10 @@ def _load_parts(errors: InstrumentErrors, model: StrainModel, load: Floats) -> l
 
     Notes
     -----
-    First order ([1]_, 5.1.3).  A wrong gain of the one cell that read samples and marks leaves
-    strain as it is, and a wrong zero nearly so: a splice strains at its marks what the tape says,
+    First order ([1]_, 5.1.3).  A wrong gain of a single cell that read samples and marks does not
+    change strain, and a wrong zero hardly does: at its marks a splice strains as the tape shows,
     whatever the cell reads.  Under another cell 1 % of gain is 0.14 % of strain on the tethers of
-    [2]_, and the error of the marks' cell is as much, the other way.
+    [2]_, and the error of the marks' cell is equal and opposite.
 
     Examples
     --------
@@ -157,7 +157,7 @@ def _strain_by_tension(model: StrainModel, at: Floats, load: Floats) -> Floats:
 
 
 def _used(model: StrainModel) -> Bools:
-    """Marks that a law of tension is fitted to: stretched, with a tension."""
+    """Mark the marks to which a law of tension is fitted: stretched, with a tension."""
     stretched = np.array([hold != "slack" for hold in model.mark_hold], dtype=bool)
     is_known = np.nan_to_num(model.mark_tension) > 0
     return is_known & stretched if stretched.size else is_known
@@ -166,16 +166,16 @@ def _used(model: StrainModel) -> Bools:
 def _splice_error(
     model: StrainModel, load: Floats, gain: float, offset: float, law: Floats
 ) -> Floats:
-    """Error of the strain by that of the tension and by those of the law (`_splice_terms`)."""
+    """Error of strain due to errors of the tension and of the law (`_splice_terms`)."""
     if model.method not in _BY_TENSION:
         return np.zeros(load.shape)
     known = model.coefficients
     share = known["relaxed_splice_length"] / known["relaxed_free_length"]
-    # where the splices follow the free length too, that takes up a part of it
+    # where the splices also follow the free length, part of the error is absorbed by that
     share /= 1 + share * known.get("splice_strain_ratio", 0.0)
     force = np.maximum(load, 0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
-        # below the wrong zero itself, splices are off by no more than what they strain
+        # below the wrong zero itself, the error of the splices is at most their strain
         relative = np.where(force > 0, gain + offset / np.maximum(force, abs(offset)), 0.0)
     steepness, terms = _splice_terms(known, force)
     change = steepness * relative + np.tensordot(law, terms[: law.size], axes=1)
@@ -183,7 +183,7 @@ def _splice_error(
 
 
 def _splice_terms(known: dict[str, float], force: Floats) -> tuple[Floats, Floats]:
-    """Change of the splice strain with ln F, and with ln c and n; ln a and ln b if it saturates."""
+    """Derivatives of splice strain by ln F, ln c and n; also by ln a and ln b if it saturates."""
     with np.errstate(divide="ignore"):
         logarithm = np.where(force > 0, np.log(force), 0.0)
     exponent, limit = known["splice_exponent"], known.get("splice_limit", 0.0)
@@ -197,15 +197,15 @@ def _splice_terms(known: dict[str, float], force: Floats) -> tuple[Floats, Float
 
 
 def _refitted(model: StrainModel, gain: float, offset: float, is_read: Bools) -> Floats:
-    """Change of the law of the splices by the marks that a wrong cell read (`_splice_terms`)."""
+    """Change of the splice law due to marks that a wrong cell read (`_splice_terms`)."""
     used = _used(model)
     if model.method not in _BY_TENSION or not is_read.any():
         return np.zeros(2)
     force = model.mark_tension[used]
-    # marks weigh by the strain of the splices there, as in their fit
+    # marks are weighted by the strain of the splices there, as in their fit
     steepness, terms = _splice_terms(model.coefficients, force)
     wanted = -steepness * (gain + offset / force) * is_read[used]
-    # an average over laws follows what a change of the exponent does, and more
+    # an average over laws includes the effect of a change of the exponent, and more
     if model.coefficients["splice_exponent"] == HELD_EXPONENT and model.method != "mixed":
         terms = terms[:1]
     return np.asarray(np.linalg.lstsq(terms.T, wanted, rcond=None)[0])
@@ -214,22 +214,23 @@ def _refitted(model: StrainModel, gain: float, offset: float, is_read: Bools) ->
 def _splice_method_error(
     model: StrainModel, *, strain: ArrayLike, tension: ArrayLike
 ) -> tuple[Floats, Floats, Floats] | None:
-    r"""Error of strain by position alone, and its slopes: what counts as one standard uncertainty.
+    r"""Error of strain by position alone, and its slopes, taken as one standard uncertainty.
 
     Notes
     -----
-    The law was asked for; the marks say another one, the average over the laws that they do not
+    The law was asked for; the marks support another one, the average over the laws that they do not
     reject.  The error lies between 0 and D, the difference of both, and has one sign.  It is not
     corrected: its standard uncertainty is the root of its mean square about zero ([1]_, 4.3.7 and
-    F.2.4.5, F.2.4.5). Were all of the range equally likely, that would be :math:`D / \sqrt 3`.  It
-    is not: where marks can tell ([2]_), the error is D.  On synthetic tethers whose splices follow
-    tension, with marks over 360-600 N, 95 % intervals held the truth of the loop energy in 70 % of
-    cases by :math:`D / \sqrt 3`, and those of a segment in 87 %; by D in 100 and 94 %.  D it is.
+    F.2.4.5). If the whole range were equally likely, that would be :math:`D / \sqrt 3`.
+    It is not: where marks show it ([2]_), the error is D.  On synthetic tethers whose splices
+    follow tension, with marks over 360-600 N, 95 % intervals held the truth of the loop energy in
+    70 % of cases by :math:`D / \sqrt 3`, and those of a segment in 87 %; by D in 100 and 94 %.
+    Therefore D is used.
 
     Examples
     --------
-    Splices that strain 22 % at 450 N, a line through the marks: by how much the strain of a
-    branch 60 N above the marks is wrong, and the energy of a loop, relative.
+    Splices that strain 22 % at 450 N, and a line through the marks: error of the strain of a
+    branch 60 N above the marks, and relative error of the energy of a loop.
 
     >>> law = StrainModel("new", "tension-driven", {"relaxed_free_length": 2.55,
     ...     "relaxed_splice_length": 1.19, "splice_compliance": 0.22 / 450, "splice_exponent": 1.0})
@@ -264,11 +265,11 @@ def _position_parts(
 ) -> list[FieldPart]:
     """Gain and zero of the crosshead's scale, and slip of the splices; none for an extensometer.
 
-    A wrong scale is one of what it reads: of a displacement, not of the length at its zero.
-    Where zero strain is a position of the log itself, a wrong zero is in both and leaves strain as
-    it is, and a wrong scale is one of what lies between.  What splices let out is taken for strain
-    of the free length.  Tests share what steps of the tension say of it: the same length, too
-    small by the same ratio.
+    An error of scale applies to the reading: of a displacement, not of the length at its zero.
+    Where zero strain is a position of the log itself, a wrong zero is in both and does not change
+    strain, and a wrong scale applies to the difference.  Length let out by splices is taken for
+    strain of the free length.  Tests share the error of that length found by steps of tension: the
+    same length, too small by the same ratio.
     """
     gain, offset = errors.position_gain, errors.position_offset
     begin = errors.position_of_scale_zero
@@ -282,7 +283,7 @@ def _position_parts(
     if model.method == "extensometer" or not (gain or any(lengths.values())):
         return []
     step = _steps_of(load)
-    # all points at once: what a model costs is its call
+    # all points at once, since each call of a model is costly
     position, further, longer, shorter = position_by_model(
         model,
         strain=np.stack([at, at + _REACH, at, at]),
@@ -305,11 +306,11 @@ def _position_parts(
 
 
 def coefficient_errors(model: StrainModel, covariance: Floats | None = None) -> Floats:
-    """Independent errors whose sum is the covariance of the coefficients, or another of them.
+    """Independent errors that add up to the covariance of the coefficients, or another covariance.
 
     Notes
     -----
-    Whatever rests on one of the coefficients moves with them together ([1]_, 5.1.3, 5.2): the
+    Results that depend on the same coefficient change together ([1]_, 5.1.3, 5.2): the
     relaxed length is in the strain at slack, in a permanent set, and in every strain of the test.
 
     Examples
@@ -323,7 +324,7 @@ def coefficient_errors(model: StrainModel, covariance: Floats | None = None) -> 
     of_all = model.covariance if covariance is None else covariance
     if of_all.shape != (size, size) or not of_all.any():
         return np.empty((size, 0))
-    # of correlations: the coefficients have units many powers of ten apart
+    # of correlations, since the units of the coefficients differ by many powers of ten
     deviation = np.sqrt(np.diag(of_all))
     scale = np.where(deviation > 0, deviation, 1.0)
     variance, direction = np.linalg.eigh(of_all / np.outer(scale, scale))
@@ -335,9 +336,9 @@ def coefficient_errors(model: StrainModel, covariance: Floats | None = None) -> 
 def _coefficient_parts(
     errors: InstrumentErrors, model: StrainModel, at: Floats, load: Floats
 ) -> list[FieldPart]:
-    """Coefficients of the strain model, their covariance taken apart into independent errors.
+    """Coefficients of the strain model, their covariance split into independent errors.
 
-    What the tape leaves open, and which law of the splices it is.
+    These are the uncertainty left by the tape, and the choice of splice law.
     """
     roots = {
         "strain_calibration": coefficient_errors(model),
@@ -356,7 +357,7 @@ def _coefficient_parts(
     place = np.stack([position, position + reach, position - reach, position, position])
     force = np.stack([load, load, load, load + push, load - push])
     _, slope = strain_sensitivity_of(model, position=place, tension=force)
-    # a product of matrices this small and long only waits for processors to share it
+    # a matrix product this small and long would only wait for processors to share it
     centre, farther, nearer, above, below = np.einsum("ce,cp...->pe...", root, slope)
     strain = strain_by_model(model, position=place, tension=force)
     by_position = (farther - nearer) / (2 * reach)
@@ -383,7 +384,7 @@ def _coefficient_parts(
 def _compliance_part(
     errors: InstrumentErrors, model: StrainModel, at: Floats, load: Floats
 ) -> list[FieldPart]:
-    """Give of the machine: a length that is less by it times the tension; no extensometer's."""
+    """Machine compliance: length reduced by it times tension; none for an extensometer."""
     if model.method == "extensometer" or not errors.machine_compliance:
         return []
     step = _steps_of(load)
@@ -407,7 +408,7 @@ def splice_friction_error(
 
     Notes
     -----
-    Friction in a splice holds it back: at one tension it is longer on the way down.  The law is
+    Friction holds a splice back: at a given tension it is longer on the way down.  The law is
     that of the marks, which are read on the way up.
 
     Examples
@@ -436,18 +437,18 @@ def splice_friction_error(
 @dataclass(frozen=True)
 @read_only_arrays
 class Inertia:
-    r"""Mass that has been taken off the tension of cycles, and how the cycles move it.
+    r"""Mass whose inertia was subtracted from the tension of cycles, and its motion in them.
 
     .. math:: \ddot x = -(2 \pi f)^2 (x - x_m)
 
     Parameters
     ----------
     mass : float
-        At the moving end. [kg]
+        Mass at the moving end. [kg]
     error : tuple of (Component, float)
         Its independent standard uncertainties. [kg]
     frequency, mean_strain, mean_tension : ndarray, shape (...)
-        Of the cycles; they have or broadcast to the shape of the points. [Hz], [1], [N]
+        Values of the cycles; they have or broadcast to the shape of the points. [Hz], [1], [N]
     """
 
     mass: float
@@ -459,7 +460,7 @@ class Inertia:
     def acceleration(
         self, model: StrainModel, *, strain: Floats, tension: Floats
     ) -> tuple[Floats, Floats, Floats]:
-        """Of points of the cycles, with its slopes over strain and over tension.
+        """Acceleration at points of the cycles, with its slopes over strain and tension.
 
         Examples
         --------
@@ -497,12 +498,12 @@ def _with_inertia(
     load: Floats,
     inertia: Inertia,
 ) -> list[FieldPart]:
-    """Errors of the inertia that was taken off: of its mass, its acceleration and the cell."""
+    """Errors of the subtracted inertia: of its mass, its acceleration and the cell."""
     found, over_strain, over_tension = inertia.acceleration(model, strain=at, tension=load)
     of_mass = _field_rows(
         load, tension=found, tension_slope=over_tension, tension_slope_over_strain=over_strain
     )
-    # a load cell that reads high reads the inertia high too, a scale that does the acceleration
+    # a load cell that reads high also reads the inertia high; a scale scales the acceleration
     felt = {
         Component("tension_gain", errors.tension_instrument): errors.tension_gain,
         Component("position_gain", errors.position_instrument): -errors.position_gain,
@@ -525,19 +526,19 @@ class ErrorField:
     Parameters
     ----------
     component : tuple of Component, length n_components
-        Lag is not among them: it depends on rates.
+        Lag is not included, since it depends on rates.
     tension, strain : ndarray
         Logged less true. [N], [1]
     tension_slope : ndarray
-        Of the tension's error, over tension. [1]
+        Derivative of the tension's error by tension. [1]
     strain_slope : ndarray
-        Of the strain's error, over strain at one tension. [1]
+        Derivative of the strain's error by strain at one tension. [1]
     strain_slope_over_tension : ndarray
-        Of the strain's error, over tension at one strain. [N-1]
+        Derivative of the strain's error by tension at one strain. [N-1]
     tension_slope_over_strain : ndarray
-        Of the tension's error, over strain at one tension. [N]
+        Derivative of the tension's error by strain at one tension. [N]
     strain_by_tension : ndarray, shape (...)
-        Change of strain with the tension that is logged at one position: negative where the
+        Change of strain with the tension logged at one position: negative where the
         splices are taken to stretch by it, else zero. [N-1]
     """
 
@@ -552,7 +553,7 @@ class ErrorField:
 
     @property
     def divergence(self) -> Floats:
-        """Relative growth of a small area of the plane: of the energy of a loop about it. [1]."""
+        """Relative growth of a small area of the plane, or of the energy of a loop there. [1]."""
         return self.tension_slope + self.strain_slope
 
 
@@ -565,7 +566,7 @@ def error_field(
     held: Literal["position", "tension"] = "position",
     inertia: Inertia | None = None,
 ) -> ErrorField:
-    r"""What each shared error does to tension and strain at points of the plane.
+    r"""Effect of each shared error on tension and strain at points of the plane.
 
     .. math::
 
@@ -580,19 +581,19 @@ def error_field(
     errors : InstrumentErrors
         Standard uncertainties.
     model : StrainModel
-        How position became strain, with the covariance of its coefficients.
+        Conversion of position to strain, with the covariance of its coefficients.
     strain, tension : array_like, shape (...)
-        Points, NaN where there is none. [1], [N]
+        Points, NaN where missing. [1], [N]
     held : {"position", "tension"}, optional
-        Which of both the temperature of the specimen leaves alone: what the machine (or a weight)
-        keeps to its set value, or at which a number is read.
+        The one that the temperature of the specimen does not change: controlled by the machine
+        (or a weight), or the value at which a number is read.
     inertia : Inertia, optional
-        What has been taken off the tension of cycles; nothing where points stand still.
+        Inertia subtracted from the tension of cycles; none where points stand still.
 
     Returns
     -------
     field : ErrorField
-        One component an error that is not zero.
+        One component for each error that is not zero.
 
     Raises
     ------
@@ -601,11 +602,11 @@ def error_field(
 
     Notes
     -----
-    First order ([1]_, 5.1.3, 5.1.3).  Where the marks were read under tensions from the same load
+    First order ([1]_, 5.1.3).  Where the marks were read under tensions from the same load
     cell, the splice law is fitted to them: an error of that cell is in the law too, and strain
-    stays what the tape says; a law made under another cell has the errors of that one
-    (`reduction.uncertainty.error_field._load_parts`, [2]_).  An extensometer knows neither; what
-    position alone misses is `_splice_method_error`.
+    remains as the tape shows; a law made under another cell has the errors of that one
+    (`reduction.uncertainty.error_field._load_parts`, [2]_).  An extensometer has neither error; the
+    error of position alone is `_splice_method_error`.
 
     Examples
     --------
@@ -629,7 +630,7 @@ def error_field(
         )
         return Inertia(inertia.mass, inertia.error, frequency, strain, tension)
 
-    # point by point, in pieces that stay in the cache of a processor
+    # point by point, in pieces that stay in the processor cache
     parts = [slice(begin, begin + _PIECE) for begin in range(0, max(load.size, 1), _PIECE)]
     pieces = [
         _table_at(errors, model, at.ravel()[part], load.ravel()[part], held, part_of(part))
@@ -652,7 +653,7 @@ def _table_at(
     held: Literal["position", "tension"],
     inertia: Inertia | None,
 ) -> tuple[tuple[Component, ...], Floats, Floats]:
-    """Errors at points in a row, what each does there, and the strain by tension."""
+    """Errors at points in a row, the effect of each there, and the strain by tension."""
     parts = [
         *_load_parts(errors, model, load),
         *_position_parts(errors, model, at, load),
@@ -667,12 +668,12 @@ def _table_at(
                      strain_slope_over_tension=missed[2])  # fmt: skip
         parts.append((Component("splice_method", errors.specimen), rows))
     if model.by_marks is not None and model.by_marks.law_covariance.size:
-        # what the marks leave open of the law that the one asked for is judged by
+        # uncertainty of the law by which the requested one is judged
         left_open = replace(model.by_marks, covariance=np.empty((0, 0)))
         parts += _coefficient_parts(errors, left_open, at, load)
     if errors.stiffness:
-        # the rubber is warmer or colder than the test says: the cell reads what there is, or the
-        # specimen stretches less under what is hung on it
+        # the rubber is warmer or colder than stated: the cell reads the actual tension, or the
+        # specimen stretches less under the weight hung on it
         rows = (
             _field_rows(load, strain=-errors.stiffness * at, strain_slope=-errors.stiffness)
             if held == "tension"

@@ -2,9 +2,9 @@ r"""Monte Carlo of the three-parameter line.
 
 .. math:: A = E' - K_0, \qquad K_1 = A + E''^2 / A, \qquad \tau = A / (2 \pi f E'')
 
-K_1 has its least value 2 E'' at A = E'' and no bound as A goes to zero; normal errors of any size
-reach A = 0, so that K_1 has no variance in the strict sense.  Draws with A below zero are no line
-at all.  Both are counted here and not hidden: the share of the draws without a solution stands
+K_1 has its least value 2 E'' at A = E'' and is unbounded as A goes to zero; normal errors of any
+size reach A = 0, so that K_1 has no variance in the strict sense.  Draws with negative A are not a
+line at all.  Both are counted here: the fraction of draws without a solution is given
 beside an interval of those that have one.
 
 References
@@ -59,7 +59,7 @@ PARAMETERS = ("dissipation_spring_constant", "relaxation_time", "dashpot_coeffic
 """K_1, tau and N = K_1 tau, in the order of the arrays of `_LineDraws`."""
 
 N_DRAWS = 20_000
-"""Draws: a standard deviation is then known to 0.5 %."""
+"""Number of draws, for which a standard deviation is known to 0.5 %."""
 
 _SEED = 20080
 
@@ -73,7 +73,7 @@ _ONE_SIGMA = (0.158655, 0.841345)
 @dataclass(frozen=True)
 @read_only_arrays
 class _LineDraws:
-    """What drawing gives of the line of each specimen; rows are `PARAMETERS`."""
+    """Results of the draws for the line of each specimen; rows are `PARAMETERS`."""
 
     linear_standard_uncertainty: Floats
     standard_uncertainty: Floats
@@ -100,19 +100,19 @@ def _draw_line(
     contribution: ArrayLike,
     n_draws: int = N_DRAWS,
 ) -> _LineDraws:
-    """Propagate the distributions of what a line is found from.
+    """Propagate the distributions of the inputs of a line.
 
     Notes
     -----
-    [1]_: shared errors are normal; random ones are normal for the standard uncertainty, so that
-    it compares with the linear one, and for the interval follow the t distribution of their
-    degrees of freedom (6.4.9, several quantities at once as in [2]_).  The line is identified
-    by the same functions as that of a test.  One seed: equal inputs give equal answers.  Valid as
-    far as the inputs themselves are linear in the errors, which amplitudes and areas of a loop are.
+    [1]_: shared errors are normal; random ones are normal for the standard uncertainty, for
+    comparison with the linear one, and for the interval follow the t distribution with their
+    degrees of freedom (6.4.9, for several quantities at once as in [2]_).  The line is identified
+    by the same functions as in a test.  The seed is fixed: equal inputs give equal results.  Valid
+    if the inputs themselves are linear in the errors, as amplitudes and areas of a loop are.
 
     Examples
     --------
-    E' = 3, E'' = 1 and K_0 = 2, which is known to 1 %, and to 20 %:
+    E' = 3, E'' = 1 and K_0 = 2, known to 1 % and to 20 %:
 
     >>> values = {"storage_spring_constant": [3.0, 3.0], "loss_spring_constant": [1.0, 1.0],
     ...     "frequency": [0.3, 0.3], "quasi_static_spring_constant": [2.0, 2.0]}
@@ -123,7 +123,7 @@ def _draw_line(
     >>> print(found.is_linear, found.without_solution_share.round(3))
     [False False] [0.    0.006]
 
-    K_1 stands at its least there, where first order has nothing to say:
+    K_1 is at its minimum there, where first order gives zero:
 
     >>> print(found.linear_standard_uncertainty[0].round(6), found.low[0].round(3))
     [0. 0.] [2. 2.]
@@ -221,13 +221,13 @@ def _parameters(inputs: Floats, reading: Literal["amplitude", "fundamental"]) ->
 
 
 def _identified(inputs: Floats, reading: Literal["amplitude", "fundamental"]) -> Floats:
-    """The parameters of each draw, shape (3, n_draws)."""
+    """Parameters of each draw, shape (3, n_draws)."""
     line = _parameters(inputs, reading)
     return np.stack([line[name] for name in PARAMETERS])
 
 
 def with_line_spread(test: ReducedTest, cycles: CycleSettings) -> ReducedTest:
-    """Put the uncertainty of its line, by the propagation that holds, to a test."""
+    """Add to a test the uncertainty of its line, by the propagation that is valid."""
     line, loops = test.line_of_test, test.loops
     if line is None or loops is None or not (line.reason == 0).any():
         return test
@@ -264,7 +264,7 @@ def with_line_spread(test: ReducedTest, cycles: CycleSettings) -> ReducedTest:
 def _drawn(
     test: ReducedTest, line: LineParameters, loops: Loops, break_in_cycles: int
 ) -> tuple[_LineDraws, Floats]:
-    """Draws of each specimen, and the degrees of freedom of what is random in it."""
+    """Draws of each specimen, and the degrees of freedom of its random part."""
     reading: Literal["amplitude", "fundamental"] = (
         "fundamental" if line.reading == "fundamental" else "amplitude"
     )
@@ -275,7 +275,7 @@ def _drawn(
     of_means = of_means + np.eye(len(alike)) * alike.T[..., None] ** 2
     rest = line.quasi_static_spring_constant
     values = dict(zip(names, (*means, rest), strict=True))
-    # K_0 is the pull's: nothing of it scatters from cycle to cycle
+    # K_0 is from the pull: it does not scatter from cycle to cycle
     covariance = np.pad(of_means, ((0, 0), (0, 1), (0, 1)))
     shared = [
         _shared(test, line, name) / value

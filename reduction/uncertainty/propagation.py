@@ -1,13 +1,13 @@
-r"""What shared errors do to curves, segments, holds, loops, lines, weights and ratios.
+r"""Effect of shared errors on curves, segments, holds, loops, lines, weights and ratios.
 
-**What shared errors do to a curve of tension against strain, and to its slope.** A point of the
-branch moves by :math:`(\delta\varepsilon, \delta T)`; what is read at one strain moves by
+**Effect of shared errors on a curve of tension against strain, and on its slope.** A point of the
+branch moves by :math:`(\delta\varepsilon, \delta T)`; the tension at a given strain changes by
 
 .. math:: \delta T|_\varepsilon = \delta T - T' \delta\varepsilon, \qquad
           \delta E = \frac{1}{A}\frac{d}{d\varepsilon}\left(\delta T|_\varepsilon\right)
                      - 2 E \frac{\delta d}{d}
 
-**What shared errors do to numbers that are read at one point of the plane, or between two**:
+**Effect of shared errors on numbers read at one point of the plane, or between two**:
 
 .. math::
 
@@ -17,39 +17,39 @@ branch moves by :math:`(\delta\varepsilon, \delta T)`; what is read at one strai
         - \frac{\delta\varepsilon_2 - \delta\varepsilon_1}{\varepsilon_2 - \varepsilon_1}
         - 2\frac{\delta d}{d}
 
-**What shared errors do to the parameters of a hyperelastic law fitted to a first loading**:
+**Effect of shared errors on the parameters of a hyperelastic law fitted to a first loading**:
 
 .. math:: \delta p = \left(J^T J - \sum_i r_i \frac{\partial^2 \sigma_i}{\partial p^2}\right)^{-1}
           J^T \left(\delta\sigma|_\varepsilon\right), \qquad
           J = \partial \sigma / \partial p
 
-with what the law leaves over of the stress, r, which counts where a law is not linear in its
+where r is the residual of the stress; it matters where a law is not linear in its
 parameters.
 
-A gain scales every modulus by itself, a diameter by twice itself, and neither touches an
-exponent.
+A gain scales every modulus by the same factor, a diameter by twice its relative error; neither
+affects an exponent.
 
-**What shared errors do to what is read in a hold: tensions, drop, rates, terms of a series**:
+**Effect of shared errors on the results of a hold: tensions, drop, rates, terms of a series**:
 
 .. math::
 
     d = 1 - T_f / T_i: \qquad \delta d = (1 - d) \delta T_i / T_i - \delta T_f / T_i
 
-A gain is in both tensions and cancels; a zero does not.  What a relaxing tension loses is a
-difference: it scales with the gain and knows no zero.
+A gain is in both tensions and cancels; a zero does not.  The loss of a relaxing tension is a
+difference: it scales with the gain and does not depend on the zero.
 
-**What shared errors do to a slow pull, and to the three parameters of a line**:
+**Effect of shared errors on a slow pull, and on the three parameters of a line**:
 
 .. math:: S = d\varepsilon / dT = 1 / K_0, \qquad
           \delta S = S \frac{\partial\,\delta\varepsilon}{\partial\varepsilon}
               + \frac{\partial\,\delta\varepsilon}{\partial T}
               - S \frac{\partial\,\delta T}{\partial T} - S' \delta T
 
-The load cell of the pull is that of the loops: its gain enters E' and K_0 alike, and their
-difference by no more than its own share.
+The load cell of the pull is that of the loops: its gain enters E' and K_0 alike, and changes their
+difference only by the same factor.
 
-**What shared errors do to the quantities of a loop.** Amplitudes and means follow from the two ends
-of the loop, its area from how fast a small area of the plane grows:
+**Effect of shared errors on the quantities of a loop.** Amplitudes and means follow from the two
+ends of the loop, its area from the growth rate of a small area of the plane:
 
 .. math::
 
@@ -60,19 +60,20 @@ of the loop, its area from how fast a small area of the plane grows:
 
 (the theorem of Gauss for the field of errors, at the centre of the loop).
 
-**What the fit of a slow pull leaves open of K_0, with how it goes together along the curve**:
+**Uncertainty of K_0 from the fit of a slow pull, with its correlation along the curve**:
 
 .. math:: S(T) = (b_1 + 2 b_2 u + 3 b_3 u^2) / h, \qquad
           \delta K_0 = -K_0^2 \, \sum_j \frac{\partial S}{\partial b_j} \delta b_j
 
-with u = (T - centre)/h.  The coefficients of a cubic go together: K_0 too high at one end of the
-pull may be too low at the other, and runs at two mean tensions share that.
+with u = (T - centre)/h.  The coefficients of a cubic are correlated: K_0 too high at one end of the
+pull may be too low at the other, and runs at two mean tensions share that error.
 
-**What the rated break strength adds to numbers that are divided by it**:
+**Contribution of the rated break strength to numbers that are divided by it**:
 
 .. math:: y = q / S^p: \qquad \delta y = -p \, y \, \delta S / S
 
-**What shared errors do to a stepwise test: weights, a gauge length, strain, warmth, a diameter**:
+**Effect of shared errors on a stepwise test: weights, gauge length, strain, temperature,
+diameter**:
 
 .. math::
 
@@ -82,11 +83,11 @@ pull may be too low at the other, and runs at two mean tensions share that.
     \frac{\delta E_{int}}{E_{int}} &= g_T + \frac{\delta g}{g} - g_\varepsilon + s
         - 2 \frac{\delta d}{d}
 
-**What shared errors do to the ratio of two moduli, and the interval that it then has**:
+**Effect of shared errors on the ratio of two moduli, and its interval**:
 
 .. math:: \delta r = r \left(c_1 / E_1 - c_2 / E_2\right)
 
-One load cell, or one crosshead, is in both moduli and cancels as far as it does the same to both.
+One load cell, or one crosshead, is in both moduli and cancels where its effect on both is equal.
 
 References
 ----------
@@ -185,11 +186,11 @@ def strain_rate_of_wave(
 
 
 def diameter_error(errors: InstrumentErrors) -> Component:
-    """Name the error of a diameter, with the degrees of freedom that it has.
+    """Name the error of a diameter, with its degrees of freedom.
 
     Notes
     -----
-    Readings less one, for their mean; what is stated counts as known.
+    Number of readings less one, for the mean; a stated value counts as known.
 
     Examples
     --------
@@ -233,10 +234,10 @@ def curve_contributions(
 
     Notes
     -----
-    First order ([1]_, 5.1.3).  Tension that is logged late stands lower on a rising branch and
-    higher on a falling one; where the modulus is constant and the rate too, no modulus changes (the
-    slope of the splices' share is left out: a hundredth of that).  What is late is what the load
-    cell felt, the inertia that was taken off (its slope over strain, in N) with it.
+    First order ([1]_, 5.1.3).  Tension that is logged late is lower on a rising branch and
+    higher on a falling one; where modulus and rate are constant, the modulus does not change (the
+    slope of the splices' share is left out: a hundredth of that).  The delayed signal is the force
+    on the load cell, which includes the inertia that was subtracted (its slope over strain, in N).
 
     Examples
     --------
@@ -267,7 +268,7 @@ def curve_contributions(
     if errors.lag:
         rate, faster = np.asarray(strain_rate), np.asarray(strain_rate_slope)
         component.append(Component("lag", errors.tension_instrument))
-        # splices that are taken to stretch by the late tension are late too
+        # the extension of splices computed from the late tension is late too
         late = errors.lag * (1 - field.strain_by_tension * rise)
         felt = rise + np.asarray(inertia_slope)
         tension.append(-late * felt * rate)
@@ -294,25 +295,25 @@ def _stacked(rows: Sequence[Floats], like: Floats) -> Floats:
 def with_diameter(
     found: Contributions, errors: InstrumentErrors, values: dict[str, Floats], *, area: float
 ) -> Contributions:
-    r"""Contributions with that of the diameter to what is divided by the area.
+    r"""Contributions, with that of the diameter added to quantities divided by the area.
 
     .. math:: \delta y = -2 y \, \delta d / d
 
     Parameters
     ----------
     found : Contributions
-        Of tension and strain, over the area already. [as quantity]
+        Of tension and strain, already divided by the area. [as quantity]
     errors : InstrumentErrors
         For the diameter.
     values : dict of str to ndarray
-        Moduli and stresses themselves, by name; others do not know the diameter. [Pa]
+        Moduli and stresses themselves, by name; others do not depend on the diameter. [Pa]
     area : float
-        Nominal. [m2]
+        Nominal area. [m2]
 
     Returns
     -------
     contributions : Contributions
-        As given where no error of the diameter is stated. [as quantity]
+        Unchanged where no error of the diameter is stated. [as quantity]
 
     Raises
     ------
@@ -449,11 +450,11 @@ def secant_contributions(
 def chord_contributions(
     begin: ErrorField, end: ErrorField, *, stroke: ArrayLike, chord: ArrayLike
 ) -> Contributions:
-    """Contributions to a difference of tension over the difference of strain beside it.
+    """Contributions to a difference of tension over the corresponding difference of strain.
 
     Notes
     -----
-    First order ([1]_, 5.1.3).  A zero of the load cell is in no difference of tension.
+    First order ([1]_, 5.1.3).  A zero of the load cell cancels in a difference of tension.
 
     Examples
     --------
@@ -481,12 +482,12 @@ def segment_contributions(
     segment_modulus: ArrayLike,
     area: float,
 ) -> Contributions:
-    """Contributions to the segments of one branch, their breakpoints as found.
+    """Contributions to the segments of one branch, for the breakpoints that were found.
 
     Notes
     -----
     The segments of [2]_, Tables 5 and 6 are chords of the curve: the errors of their ends are those
-    of the curve there.  The diameter enters a modulus by the area.
+    of the curve there.  The diameter enters a modulus through the area.
 
     Examples
     --------
@@ -534,10 +535,10 @@ def elastomer_contributions(
 
     Notes
     -----
-    First order ([1]_, 5.1.3), through the least squares that made the fit: on means over even
-    intervals of strain, each of which counts alike.  Two Ogden terms may fit alike with very
-    different parameters ([3]_): the change is that of the set that was found, and no first order
-    tells of a jump to another.
+    First order ([1]_, 5.1.3), through the least squares of the fit: on means over even
+    intervals of strain, with equal weight.  Two Ogden terms may fit equally well with very
+    different parameters ([3]_): the change is that of the set that was found; a first-order
+    analysis cannot show a jump to another.
 
     Examples
     --------
@@ -565,7 +566,7 @@ def elastomer_contributions(
         given = dict(zip(names, place.tolist(), strict=True))
         return hyperelastic_stress(grid, law=law, parameters=given)
 
-    # over its own size, every parameter is a number of one kind
+    # divided by its size, every parameter is dimensionless and of order one
     near, far = np.diag(_STEP * size), np.diag(_WIDE_STEP * size)
     jacobian = np.stack(
         [(model(centre + one) - model(centre - one)) / (2 * _STEP) for one in near], axis=1
@@ -587,7 +588,7 @@ def elastomer_contributions(
             for one in far
         ]
     )
-    # by the triangle of the first slopes: their product would lose half of the digits
+    # by the triangular factor of the Jacobian: the normal matrix would lose half of the digits
     turn, triangle = np.linalg.qr(jacobian)
     inverse = np.linalg.pinv(triangle)
     inner = np.eye(len(names)) - inverse.T @ bend @ inverse
@@ -601,13 +602,13 @@ def hold_contributions(
 
     Notes
     -----
-    First order ([1]_, 5.1.3).  Relaxation is at one length of the machine; that splices take up a
-    little of it is in the tension itself.  Creep is at one tension, where strain errs by its own
-    slope. Times of a series know none of these errors.
+    First order ([1]_, 5.1.3).  Relaxation is at constant length of the machine; the small stretch
+    that splices take up is in the tension itself.  Creep is at constant tension, where strain errs
+    by its own slope.  Times of a series are not affected by these errors.
 
     Examples
     --------
-    A zero that is 4 N high, on a drop from 400 to 320 N: 0.2 % of 400 N are not lost.
+    A zero 4 N high, on a drop from 400 to 320 N: the loss reads 0.2 % of 400 N too low.
 
     >>> from reduction.stages.strain.strain_model import StrainModel
     >>> from reduction.uncertainty.error_field import error_field
@@ -666,7 +667,7 @@ def pull_contributions(
 
     Notes
     -----
-    First order ([1]_, 5.2).  A lag at the rate of a slow pull counts as nothing.
+    First order ([1]_, 5.2).  A lag is negligible at the rate of a slow pull.
 
     Examples
     --------
@@ -710,11 +711,11 @@ def line_contributions(
     of_loops : Contributions
         To the quantities of the loops, from `reduction.uncertainty.propagation.loop_contributions`.
     of_pull : Contributions
-        To the quasi-static spring constant, of the same shape.
+        To the quasi-static spring constant, with the same shape.
     values : mapping of str to ndarray, shape (...)
-        The numbers themselves, by name: inputs and results. [SI]
+        The values themselves, by name: inputs and results. [SI]
     reading : {"amplitude", "fundamental"}
-        From which quantities of the loop the line was found.
+        Quantities of the loop from which the line was found.
 
     Returns
     -------
@@ -771,7 +772,7 @@ def line_contributions(
 
 
 _LAG_SHAPE = {"sinusoidal": 2 * np.pi**2, "triangular": 16.0, "other": 16.0}
-"""Integral of tension rate over strain, by f T_a eps_a: of a sine, and of straight ramps."""
+"""Integral of tension rate over strain, over f T_a eps_a, for a sine and for straight ramps."""
 
 
 def loop_contributions(
@@ -800,18 +801,18 @@ def loop_contributions(
     -----
     First order ([1]_, 5.1.3).  The ends of the loop are where strain and tension have their
     extremes, taken to be the same place.  A specimen that is stiffer than at the stated temperature
-    pulls harder where the machine sets the position, and stretches less where it sets the load; by
-    as much, relatively, at the mean as at the amplitude.  Tension that is logged late turns the
+    pulls harder where the machine controls the position, and stretches less where it controls the
+    load, by the same relative amount in mean and amplitude.  Tension that is logged late turns the
     complex modulus back by 2 pi f lag and narrows the loop; it has no first-order effect on
-    extremes, but where a wave ``has_corners`` that its other channel is read at.  It is what the
-    load cell felt that is late: the inertia that was taken off with it. Inertia goes with the
-    position and does no work over a cycle, so that an error of its mass leaves the energy alone.
+    extremes, unless the wave ``has_corners`` at which its other channel is read.  The late signal
+    is the force on the load cell, including the inertia that was subtracted.  Inertia is in phase
+    with position and does no work over a cycle, so an error of its mass does not change the energy.
     Splices that are longer on the way down widen the loop by the difference of strain, over the
     range of tension.
 
     Examples
     --------
-    A line of K_ap 100 kN with a loss of 5 kN: 2 ms of lag at 0.5 Hz are 12.6 % of the loss.
+    A line of K_ap 100 kN with a loss of 5 kN; 2 ms of lag at 0.5 Hz change the loss by 12.6 %:
 
     >>> line = StrainModel("rope", "gauge-length",
     ...     {"reference_position": 0.0, "gauge_length": 1.0})
@@ -825,7 +826,7 @@ def loop_contributions(
     >>> print((found.values["loss_spring_constant"] / 5e3).round(3))
     [[-0.126]]
     """
-    # what the machine holds the temperature does not move, and the field knows no machine
+    # temperature does not change the controlled channel, which the error field does not know
     still = replace(errors, stiffness=0.0)
     field = error_field(
         still,
@@ -913,7 +914,7 @@ def loop_contributions(
             of_lag["loss_spring_constant"] = of_lag["hysteresis_energy"] / (
                 np.pi * strain_amplitude**2
             )
-        # readings beside a corner and the approach to it are late alike
+        # readings near a corner and the approach to it are late by the same time
         if waveform == "other" and has_corners:
             of_approach = 4 * frequency * errors.lag * ramps
             of_lag |= {
@@ -922,8 +923,8 @@ def loop_contributions(
                 "peak_tension": -of_approach * felt,
                 "valley_tension": of_approach * felt,
             }
-        # strain is led half the way to the corner of a driven load: from a reading before it, which
-        # is late as well, or from one behind it, which takes that back
+        # strain is extrapolated half the way to the corner of a driven load: from a reading before
+        # it, which is late as well, or from one after it, which cancels that
         if waveform == "triangular" and control == "load" and has_corners:
             of_approach = 2 * 2**0.5 * frequency * errors.lag * ramps
             of_lag |= {
@@ -931,7 +932,7 @@ def loop_contributions(
                 "strain_amplitude": of_approach * strain_amplitude,
             }
         if errors.smoothed_over:
-            # anything from nothing, of a clock that is late, to all that such a filter takes
+            # uniform between zero, for a late clock, and all that such a filter takes off
             share = _smoothed_away(waveform, ramps * frequency * errors.smoothed_over) / np.sqrt(3)
             lost = share * felt
             for name, way in (
@@ -944,7 +945,7 @@ def loop_contributions(
             component, values, Component("lag", errors.tension_instrument), of_lag
         )
     if errors.splice_friction:
-        # a valley ends a way down; a peak has no error
+        # a valley ends a way down; a peak has no error by friction
         below, middle = splice_friction_error(
             errors,
             model,
@@ -977,10 +978,10 @@ def loop_contributions(
 
 
 def _smoothed_away(waveform: Waveform, constant: Floats) -> Floats:
-    r"""Share of its amplitude that a wave loses in a filter of a time constant in its periods.
+    r"""Relative loss of amplitude of a wave in a filter, for a time constant given in periods.
 
-    Of a sine, :math:`1 - (1 + (2\pi f\tau)^2)^{-1/2}`.  Behind a corner between ramps of
-    :math:`\pm v` a filter gives :math:`v\tau(2 e^{-t/\tau} - 1)` for its delay, and turns
+    For a sine, :math:`1 - (1 + (2\pi f\tau)^2)^{-1/2}`.  After a corner between ramps of
+    :math:`\pm v` the output lags by :math:`v\tau(2 e^{-t/\tau} - 1)` and turns
     where that is zero, at :math:`v \tau \ln 2` below the corner; v is four amplitudes a period.
     """
     if waveform == "sinusoidal":
@@ -994,7 +995,7 @@ def _with(
     added: Component,
     moved: dict[str, Floats],
 ) -> tuple[tuple[Component, ...], dict[str, Floats]]:
-    """Add the row of one more error; it leaves alone what it does not name."""
+    """Add the row of one more error; quantities that it does not name are unchanged."""
     return (*component, added), {
         name: np.concatenate([rows, moved.get(name, np.zeros(rows.shape[1:]))[None]])
         for name, rows in values.items()
@@ -1010,8 +1011,8 @@ def fit_contributions(pull: SlowPull, tension: ArrayLike, *, of: str) -> Contrib
     Notes
     -----
     First order ([1]_, 5.2, F.1.2.3, of the slope of [4]_, sec. 4.4.2 and App. D).  The covariance
-    is taken apart into independent errors.  What the curve misses of its slope is one error more,
-    of one sign along the curve: a size is known of it, no course.
+    is decomposed into independent errors.  The misfit of the slope is one error more,
+    of one sign along the curve, since its size is known but not its course.
 
     Examples
     --------
@@ -1046,11 +1047,11 @@ def fit_contributions(pull: SlowPull, tension: ArrayLike, *, of: str) -> Contrib
 def over_strength(
     found: Contributions, errors: InstrumentErrors, powers: Mapping[str, tuple[Floats, float]]
 ) -> Contributions:
-    """Contributions with that of the rated break strength.
+    """Contributions, with that of the rated break strength added.
 
     Notes
     -----
-    First order ([1]_, 5.1.6, 5.1.6).
+    First order ([1]_, 5.1.6).
 
     Examples
     --------
@@ -1078,12 +1079,12 @@ def stepwise_contributions(
 
     Notes
     -----
-    First order ([1]_, 5.1.3).  One gauge length is in every strain: on Table 4 of [2]_ it is the
-    one that the recorded elongations give.
+    First order ([1]_, 5.1.3).  One gauge length is in every strain: for Table 4 of [2]_ it is the
+    one given by the recorded elongations.
 
     Examples
     --------
-    Weights that are 1 % heavier than they say:
+    Weights that are 1 % heavier than stated:
 
     >>> from reduction.stages.moduli.stepwise_test import reduce_stepwise
     >>> from reduction.record.measurement import StepReadings
@@ -1112,7 +1113,7 @@ def stepwise_contributions(
                 of_secant = change / (area * strain)
             rows.append((change, nothing, of_secant, gain * interval))
     for of_strain, own in (
-        # dead weights are what they are in the warmth: a stiffer rubber stretches less under them
+        # dead weights do not change with temperature: a stiffer rubber stretches less under them
         (-errors.stiffness, Component("temperature", errors.test)),
         (errors.strain_gain, Component("strain_gain", errors.strain_model or errors.specimen)),
     ):
@@ -1170,7 +1171,7 @@ def ratio_contributions(
 
     Examples
     --------
-    The gain of one cell leaves the ratio as it is; two diameters do not cancel.
+    The gain of a common cell leaves the ratio unchanged; two diameters do not cancel:
 
     >>> print(ratio_contributions(2.0, numerator=4.0, of_numerator=[0.04, 0.08, 0.0],
     ...     denominator=2.0, of_denominator=[0.02, 0.0, 0.04]))
@@ -1186,16 +1187,16 @@ def ratio_contributions(
 def with_shared_interval(
     ratio: Ratio, contribution: ArrayLike, *, of_contribution: ArrayLike = np.inf
 ) -> Ratio:
-    """Ratio with the interval of both parts; its standard uncertainty stays the random one.
+    """Ratio with the interval of both parts; its standard uncertainty remains the random one.
 
     Notes
     -----
-    Source: [2]_, sec. 4.6 compares new and used tethers; factor by effective degrees of freedom
-    ([1]_, 5.2.2 and G.4.1).
+    Source: [2]_, sec. 4.6 compares new and used tethers; coverage factor by effective degrees of
+    freedom ([1]_, 5.2.2 and G.4.1).
 
     Examples
     --------
-    10 % more by cycles that are known to 1 %; diameters known to 10 % leave nothing of it.
+    An excess of 10 %, by cycles known to 1 %, is not significant if diameters are known to 10 %:
 
     >>> one = np.ones((2, 1))
     >>> found = Ratio("used", "new", np.array([1.0]), 1.1 * one, 0.01 * one, 1.08 * one,

@@ -1,11 +1,11 @@
 """Errors that a test shares with others, carried to all of its results.
 
-**What shared errors add to what is made from the table of cycles: trends, slips, rope steps.** A
+**Effect of shared errors on results from the table of cycles: trends, slips, rope steps.** A
 mean over cycles, or a slope against their number, is linear in the cycles: the errors of the cycles
 go through the same mean or slope.
 
-**Errors that a test shares with others, carried to what it gave.** Names of the contributions are
-those of the variables of the archive; the axis of the specimens stands behind that of the
+**Effect of shared errors on the other results of a test.** Names of the contributions are
+those of the variables of the archive; the axis of the specimens follows that of the
 components.
 """
 
@@ -104,7 +104,7 @@ from reduction.uncertainty.propagation import (
     with_shared_interval,
 )
 
-# every component has a row of each quantity of each cycle
+# every component has a row for each quantity of each cycle
 _BLOCK = 1 << 14
 
 Product = TypeVar("Product")
@@ -210,7 +210,7 @@ def _speed_ratio(
 def _inertia_of(
     train: LoadTrain, loops: Loops | AmplitudeSummary, index: int, errors: InstrumentErrors
 ) -> Inertia | None:
-    """What has been taken off the tension of a specimen, of each cycle or of the means."""
+    """Inertia subtracted from the tension of a specimen, for each cycle or for the means."""
     if not train.end_mass:
         return None
     error = []
@@ -233,16 +233,16 @@ def _train_of(record: Record | None) -> LoadTrain:
     return LoadTrain() if record is None else record.load_train
 
 
-# a cycle is steeper than what a relaxed specimen gives way by, of rubber by up to the double: what
-# the splices let out lies between the length found by the slope of a cycle and its double.  Root
-# mean square: sqrt(7/3).  Slip that makes no step is found by nothing
+# a cycle is steeper than the compliance of a relaxed specimen, for rubber by up to a factor of two:
+# the length let out lies between that found by the slope of a cycle and its double.  Root mean
+# square: sqrt(7/3).  Slip that makes no step is not detected
 _LET_OUT = (7 / 3) ** 0.5
 
 
 def with_splice_slips(
     test: ReducedTest, errors: Sequence[InstrumentErrors]
 ) -> tuple[InstrumentErrors, ...]:
-    """Errors with what the splices have let out by the end of a test, as steps of tension say.
+    """Errors with the length let out by the splices by the end of a test, from steps of tension.
 
     It has one sign and is not corrected: its standard uncertainty is the root of its mean square
     about zero (JCGM 100:2008, F.2.4.5).
@@ -254,7 +254,7 @@ def with_splice_slips(
 
 
 def _let_out(test: ReducedTest, index: int) -> Floats:
-    """What splices have let out at each cycle since their marks were read, at least. [m].
+    """Least length let out by splices at each cycle since their marks were read. [m].
 
     A step may be at any of the cycles that it is dated to.  One value where there are no cycles.
     """
@@ -275,7 +275,7 @@ def _let_out(test: ReducedTest, index: int) -> Floats:
 def _slipped(
     test: ReducedTest, index: int, errors: InstrumentErrors, cycles: slice | Integers
 ) -> InstrumentErrors:
-    """Errors of a mean over some of the cycles, of which some lie before a slip."""
+    """Errors of a mean over some of the cycles, where some precede a slip."""
     if not errors.splices_let_out:
         return errors
     let_out = _let_out(test, index)
@@ -286,7 +286,7 @@ def _slipped(
 def _slipped_by_cycle(
     found: Contributions, test: ReducedTest, index: int, block: slice
 ) -> Contributions:
-    """Contributions to each cycle, by what the splices had let out until then."""
+    """Contributions to each cycle, scaled by the length that the splices had let out by then."""
     by_steps = Component("splice_slip", test.specimens[index].name)
     if by_steps not in found.component:
         return found
@@ -311,8 +311,8 @@ def _of_loops(
 ) -> Contributions:
     """Each cycle of a specimen, or the means of its test; with E' and E'' of its line if given.
 
-    A line is found from the fundamental over time of a wave that is no sine, and a lag turns a
-    fundamental.
+    The line of a wave that is not a sine comes from its fundamental over time, and a lag turns the
+    phase of a fundamental.
     """
     values = {name: np.asarray(getattr(loops, name)[index]) for name in _LOOP}
     over_time = line is not None and line.reading == "fundamental"
@@ -375,7 +375,7 @@ def _of_line(
         if isinstance(getattr(line, item.name), np.ndarray)
     } | {name: np.asarray(getattr(loops, name)[index]) for name in _LOOP if name not in
          ("storage_spring_constant", "loss_spring_constant", "closed_loop_energy")}  # fmt: skip
-    # one K_0 a run: its error is that of every cycle
+    # a run has one K_0, so its error is common to every cycle
     rest = of_rest.values[_K_0]
     shape = (*rest.shape[:1], *np.shape(values[_K_0]))
     rest = np.broadcast_to(rest.reshape(rest.shape[:1] + (1,) * (len(shape) - 1)), shape)
@@ -414,8 +414,8 @@ def _strain_rates(
 def _rise_rates(test: ReducedTest, index: int) -> Floats:
     """Strain rate of the first rise on its grid, and its slope; zero on the descending branch.
 
-    From the times at which a strain is first reached: a stop on the way is one slow bin, which the
-    median of its neighbours leaves out.
+    Computed from the times at which each strain is first reached: a stop on the way is one slow
+    bin, which a running median removes.
     """
     if test.first_loading is None or test.record is None or test.strain is None:
         return np.zeros(
@@ -442,7 +442,7 @@ def _rise_rates(test: ReducedTest, index: int) -> Floats:
 
 
 def _smooth_slope(modulus: Floats, strain: Floats) -> Floats:
-    """Slope of the modulus over strain, of a running mean; zero where there are too few bins."""
+    """Slope of the modulus over strain, from lines over a few bins; zero if there are too few."""
     known = np.isfinite(modulus)
     if known.sum() <= _SMOOTHED:
         return np.zeros(modulus.shape)
@@ -468,7 +468,7 @@ def _of_curves(
 ) -> Contributions:
     """Both branches of one specimen, by name of the archive."""
     known = curves.tangent_modulus[index], curves.tangent_modulus_untrimmed[index]
-    # readers take an error of strain back out of the tension by the slope that an archive has there
+    # readers remove an error of strain from the tension by the slope stored in the archive
     slope = np.where(np.isfinite(known[1]), known[1], known[0])
     tension, slope = _completed(curves.strain_bin, curves.branch_tension[index], slope, area)
     strain = np.broadcast_to(curves.strain_bin, tension.shape)
@@ -493,7 +493,7 @@ def _of_curves(
         whole = np.where(np.isfinite(modulus), modulus, slope)
         values[f"{name}{suffix}"] = at_slope(whole).values["tangent_modulus"]
     component = of_tension.component
-    if errors.splice_friction and not suffix:  # a first rise is the way on which marks are read
+    if errors.splice_friction and not suffix:  # the marks are read on the way of a first rise
         away, steeper = _friction_on_branches(errors, model, curves.strain_bin, tension)
         rise = area * slope
         values["branch_tension"] = np.concatenate([values["branch_tension"], (-rise * away)[None]])
@@ -525,10 +525,10 @@ _TINY = 1e-12  # of the strain 1
 def _friction_on_branches(
     errors: InstrumentErrors, model: StrainModel, strain: Floats, tension: Floats
 ) -> tuple[Floats, Floats]:
-    """Error of strain by the friction of splices, and its slope over strain, of both branches.
+    """Error of strain by the friction of splices, and its slope over strain, for both branches.
 
-    A splice stands still after a reversal until its law has it longer or shorter by what friction
-    holds back.
+    After a reversal a splice stands still until the length by its law differs by more than friction
+    can hold.
     """
     at = np.broadcast_to(strain, tension.shape)
     longer = splice_friction_error(errors, model, strain=at, tension=tension)
@@ -550,10 +550,10 @@ _MOVED = 1e-3
 
 
 def _smeared(curves: ModulusCurves, index: int) -> Floats:
-    """What a window over the end of a branch may miss of the untrimmed modulus there. [Pa].
+    """Possible error of the untrimmed modulus near a reversal, due to the window. [Pa].
 
-    The modulus changes at a reversal within less than a window: where the samples that are
-    trimmed move it, it is known to lie between there and half a window further in.
+    The modulus changes at a reversal within less than a window: where the trimmed
+    samples change it, it is known to lie between there and half a window further in.
     """
     half = curves.window / 2
     smeared: Floats = np.zeros_like(curves.tangent_modulus[index])
@@ -567,7 +567,7 @@ def _smeared(curves: ModulusCurves, index: int) -> Floats:
         strain = curves.strain_bin[known]
         inwards = np.where(strain < (strain[0] + strain[-1]) / 2, half, -half)
         further = np.interp(strain + inwards, strain, whole[known])
-        # NaN, where nothing is left, is moved too
+        # a bin without samples left (NaN) counts as moved
         moved = ~np.isclose(trimmed[known], whole[known], rtol=_MOVED, atol=0.0)
         row[known] = np.where(moved, np.abs(whole[known] - further) / np.sqrt(3), 0.0)
     return smeared
@@ -576,10 +576,10 @@ def _smeared(curves: ModulusCurves, index: int) -> Floats:
 def _completed(
     strain: Floats, tension: Floats, modulus: Floats, area: float
 ) -> tuple[Floats, Floats]:
-    """Tension and modulus of each branch where either is known, the other from it.
+    """Tension and modulus of each branch where either is known, the other derived from it.
 
-    A bin may have enough samples for a mean and too few for a slope, or the reverse: an error at
-    its strain moves both.
+    A bin may have enough samples for a mean and too few for a slope, or the reverse: an error of
+    its strain changes both.
     """
     filled, slopes = tension.copy(), modulus.copy()
     for row, slope in zip(filled, slopes, strict=True):
@@ -675,13 +675,13 @@ def _of_slack(
 ) -> Iterator[Contributions]:
     """Differences of two positions at one small tension, over the relaxed length.
 
-    A zero of the crosshead is in both and cancels; where the zero of the load cell is high both are
-    found at less tension than is meant, and move by as much as the specimen stretches for it there.
-    A gain moves the slack tension with it, which is a share of the greatest tension; of one that is
-    stated it would be a gain's share of that small tension, and is left out.
+    A zero of the crosshead is in both and cancels.  A load cell with a high zero finds both at less
+    tension than intended; they move by the extension of the specimen for that tension there.
+    A gain scales the slack tension too where this is a fraction of the greatest tension.  A stated
+    slack tension would have only the gain error of that small tension, which is left out.
     """
     of_model = errors.strain_model or errors.specimen
-    # of each error: its share of the length, of the tension at the crossings, of their time
+    # for each error: its effect on the length, the tension at the crossings, and their time
     parts = [
         (Component("position_gain", errors.position_instrument), errors.position_gain, 0.0, 0.0),
         (Component("strain_gain", of_model), errors.strain_gain, 0.0, 0.0),
@@ -690,7 +690,7 @@ def _of_slack(
     ]
     name = next((one for one in _LENGTHS if one in model.coefficients), None)
     if name is not None:
-        # the errors of the tape that are in every strain of the test
+        # the errors of the tape that enter every strain of the test
         by_tape = coefficient_errors(model)[list(model.coefficients).index(name)]
         parts += [
             (Component("strain_calibration", of_model, number), -share, 0.0, 0.0)
@@ -710,7 +710,7 @@ def _of_slack(
             + by_time * slack.by_lag[index]
         )
     if history is not None:
-        # both crossings of a set are on first rises, which go at one rate: a lag leaves it alone
+        # both crossings of a set are on first rises at the same rate: a lag does not change it
         values["permanent_set"] = (
             by_length * history.permanent_set[index]
             + by_tension * history.permanent_set_by_tension[index]
@@ -774,8 +774,8 @@ def _of_fit(
 def _of_ratios(test: ReducedTest, found: Contributions) -> list[Contributions]:
     """Every ratio, along one axis; ``found`` holds the contributions to the moduli.
 
-    Two sets of cycles of one specimen share every error of its instruments, its section and its
-    splices in equal shares: they cancel.
+    Two sets of cycles of one specimen have the errors of instruments, section and
+    splices in equal proportion: they cancel.
     """
     rows = found.values.get("tangent_modulus")
     if not test.ratios or test.curves is None or rows is None:
@@ -822,7 +822,7 @@ _DYNAMIC = {
     "dynamic_tension_amplitude": "tension_amplitude",
 }
 
-"""Means over the last cycles of a step, and the quantity of a cycle that they are of."""
+"""Means over the last cycles of a step, and the cycle quantity that each is a mean of."""
 
 _OF_TREND = ("peak_tension", "apparent_spring_constant", "mean_strain")
 
@@ -885,8 +885,8 @@ def _of_ends(
 def _of_slips(test: ReducedTest, errors: Sequence[InstrumentErrors]) -> list[Contributions]:
     """Every step of a splice, along one axis; an empty list where there is none.
 
-    The length is a step of tension over a slope of it: gain and warmth are in both, a scale of
-    position in the slope alone.
+    The length is a step of tension over a slope of it: gain and temperature affect both, a scale of
+    position only the slope.
     """
     slips = test.slips
     if slips is None or not slips.specimen:
@@ -918,7 +918,7 @@ def _of_each(
     model: StrainModel,
     settings: CycleSettings,
 ) -> Contributions:
-    """Contributions to what trends and steps read of each cycle."""
+    """Contributions to the cycle quantities used by trends and steps."""
     names = _OF_TREND if test.rope_step is None else (*_OF_TREND, *_OF_STEP)
     component: tuple[Component, ...] = ()
     rows: dict[str, Floats] = {}
@@ -957,7 +957,7 @@ def _of_trend(
     break_in: int,
     area: float,
 ) -> Contributions:
-    """The slopes of `fit_peak_trend`, over the cycles that it takes."""
+    """The slopes of `fit_peak_trend`, over the cycles that it uses."""
     peak = _of_series(loops, index, of_each, "peak_tension")
     modulus = _of_series(loops, index, of_each, "apparent_spring_constant") / area
     strain = _of_series(loops, index, of_each, "mean_strain")
@@ -983,7 +983,7 @@ def _of_trend(
 
 
 def _of_change(peak: Floats, of_peak: Floats) -> Floats:
-    """What errors of the peaks, one row a component, make of the last ones over the first."""
+    """Effect of errors of the peaks, one row a component, on the ratio of the last to the first."""
     n_ends = cycles_at_an_end(peak.size)
     first, last = peak[:n_ends].mean(), peak[-n_ends:].mean()
     of_first, of_last = of_peak[:, :n_ends].mean(axis=1), of_peak[:, -n_ends:].mean(axis=1)
@@ -1029,7 +1029,7 @@ def _of_bedding(
     of_each: Contributions,
     errors: InstrumentErrors,
 ) -> Contributions:
-    """Secants of the first and the last cycle, their ratio, and what the foot moved by."""
+    """Secants of the first and the last cycle, their ratio, and the shift of the foot."""
     rows = {
         name: _of_series(loops, index, of_each, name)[:, [0, -1]]
         for name in ("apparent_spring_constant", "mean_strain", "strain_amplitude",
@@ -1065,7 +1065,7 @@ def _of_tensile(
     model: StrainModel,
     cycles: CycleSettings,
 ) -> Contributions:
-    """Greatest tension of a pull, and the strain there; of a break both have another name too."""
+    """Greatest tension of a pull, and its strain; those of a break also under a second name."""
     peak, strain = pull.peak_tension[index], pull.strain_at_peak[index]
     held: Literal["position", "tension"] = "tension" if cycles.control == "load" else "position"
     field = error_field(errors, model, strain=strain, tension=peak, held=held)
@@ -1126,7 +1126,7 @@ def _place(test: ReducedTest, specimen: str) -> int:
 
 
 def _constant_channel(hold: HoldResult) -> Literal["position", "tension"]:
-    """What the machine keeps to its set value while it holds."""
+    """Channel that the machine holds constant."""
     return "tension" if hold.kind == "creep" else "position"
 
 
@@ -1163,7 +1163,7 @@ _STRAINS_OF_HOLD = ("hold_strain", "strain_at_time")
 def _of_creep(
     of_hold: Contributions, creep: CreepOfHold, hold: HoldResult, errors: InstrumentErrors
 ) -> Contributions:
-    """Tension of a hold over the break strength, and its creep over that share."""
+    """Tension of a hold over the break strength, and its creep over that fraction."""
     ends = of_hold.values["hold_initial_tension"] + of_hold.values["hold_final_tension"]
     relative = ends / (hold.hold_initial_tension + hold.hold_final_tension)
     value = creep.creep_compliance_per_decade
@@ -1193,7 +1193,7 @@ def _of_pair(
         if found is None
         else (found.stiffness_at_reference, found.slope_per_decade, found.stiffness_over_strength)
     )
-    # of both at the upper hold the machine keeps one, and the secant says the other at that time
+    # the machine holds one of the two at the upper hold; the secant gives the other at that time
     is_creep = high.kind == "creep"
     rise = pair.high_tension - pair.low_tension
     stroke = rise / secant if is_creep else high.hold_strain - pair.low_strain
@@ -1209,8 +1209,8 @@ def _of_pair(
     of_rise = (field.tension[:, then] - low_tension) / rise_then
     of_stroke = (field.strain[:, then] - field.strain[:, begin]) / stroke
     chord = secant * (of_rise - of_stroke)
-    # the secant is rise over stroke, of which one goes on with time: what that gains scales by the
-    # slope of its error, and of a stroke that grows the secant changes by its square
+    # the secant is rise over stroke, one of which grows with time.  The error of that growth scales
+    # by the slope of its error; for a growing stroke the secant changes by its square
     of_slope = slope * (
         of_rise + field.strain_slope[:, then] - 2 * of_stroke
         if is_creep
@@ -1237,7 +1237,7 @@ _STEP = 1e-3  # of the range of a pull, for the slope of its compliance
 
 @dataclass(frozen=True)
 class PullOrigin:
-    """With what a slow pull was read: its instruments, and how its position became strain."""
+    """Origin of a slow pull: its instruments, and how its position became strain."""
 
     errors: InstrumentErrors
     model: StrainModel
@@ -1259,13 +1259,13 @@ def _quasi_static_contributions(
     line: LineParameters,
     index: int,
 ) -> Contributions:
-    """K_0 at the mean tension of a run, which has its own errors, on a pull that has others."""
+    """K_0 at the mean tension of a run, with the errors of the run and those of the pull."""
     field, constant = _at(pull, origin.errors, origin.model, tension)
     bend = _compliance_slope(pull, tension)
     at_tension = pull_contributions(
         field, quasi_static_spring_constant=constant, compliance_slope=bend
     )
-    # K_0 is read where the load cell of the run says that the mean tension is
+    # K_0 is read at the mean tension by the load cell of the run
     along = Contributions(
         of_mean_tension.component,
         {_K_0: -(constant**2) * bend * of_mean_tension.values["mean_tension"]},
@@ -1316,7 +1316,7 @@ def _of_pull(
     at_share = Contributions(
         field.component, {"strain_at_break_share": _at_tension(field, constant)}
     )
-    # more strength is more tension at the share, by the compliance there
+    # a higher strength means more tension at the fraction, through the compliance there
     yield over_strength(at_share, errors, {"strain_at_break_share": (load / constant, 1.0)})
 
 
@@ -1324,13 +1324,13 @@ def _at(
     pull: SlowPull, errors: InstrumentErrors, model: StrainModel, tension: Floats
 ) -> tuple[ErrorField, Floats]:
     strain = strain_at_tension(pull, tension)[0]
-    # a pull is read at a tension: one that is stiffer has stretched less there
+    # a pull is read at a given tension: a stiffer specimen has stretched less there
     field = error_field(errors, model, strain=strain, tension=tension, held="tension")
     return field, quasi_static_spring_constant(pull, tension)[0]
 
 
 def _of_cubic(pull: SlowPull, tension: Floats, of_strain: Floats) -> Floats:
-    """Contributions to A, B, C and D: a cubic through those to the strain, where there is one."""
+    """Contributions to A, B, C and D: a cubic through the errors of strain, where there is one."""
     known = np.isfinite(of_strain).all(axis=0)
     scaled = (tension[known] - pull.tension_centre) / pull.tension_half_range
     basis = np.stack([scaled**power for power in range(4)], axis=1)
@@ -1350,7 +1350,7 @@ _MODULI = ("interval_modulus", "secant_modulus")
 
 
 def with_shared_steps(test: ReducedTest, instruments: Sequence[InstrumentErrors]) -> ReducedTest:
-    """Readings with what they share, and the moduli between them with each contribution."""
+    """Readings with their shared errors, and the moduli between them with each contribution."""
     result, (specimen,) = test.stepwise, test.specimens
     if result is None or not instruments:
         return test
@@ -1361,7 +1361,7 @@ def with_shared_steps(test: ReducedTest, instruments: Sequence[InstrumentErrors]
     moduli = Contributions(found.component, {name: found.values[name] for name in _MODULI})
     section = section_contributions(errors, area=specimen.area)
     if np.isnan(result.tension_standard_uncertainty) and np.any(found.values["tension"]):
-        # of a reading of a weight nothing is stated: beside what is, that counts as zero
+        # nothing is stated for a reading of a weight: beside stated errors that counts as zero
         result = replace(result, tension_standard_uncertainty=0.0)
     whole = merged([moduli, stacked([section])] if section.component else [moduli])
     return replace(
@@ -1386,7 +1386,7 @@ def lag_of_test(
     standstills: Standstills | None = None,
     stated: Sequence[float] = (),
 ) -> tuple[LagEstimate, list[Note]]:
-    """Estimate the lag of each tension channel, and say where it is more than what is stated."""
+    """Estimate the lag of each tension channel, with a note where it exceeds the stated lag."""
     turns = np.concatenate([cycles.branch_first.ravel(), cycles.branch_last.ravel()])
     estimate = lag_by_turns(record.time, position, tension, turns)
     is_of_stops = np.isin(estimate.refusal, _WITHOUT_TURNS).all()
@@ -1430,7 +1430,7 @@ def contributions_of_test(
     pulls: Sequence[SlowPull | None] | None = None,
     pull_origins: Sequence[PullOrigin | None] = (),
 ) -> Contributions | None:
-    """What each shared error adds to the curves, segments and means of a test."""
+    """Contribution of each shared error to the curves, segments and means of a test."""
     own = []
     for index, one in enumerate(errors):
         pull = None if pulls is None else pulls[index]
@@ -1474,7 +1474,7 @@ def shared_uncertainty_of_cycles(
             for name in found.values if found.component else ():
                 spread = found.shared_standard_uncertainty(name)
                 if name not in shared:
-                    # a specimen without a slow pull has no line: nothing is known of it
+                    # a specimen without a slow pull has no line: its uncertainty is unknown
                     shared[name] = full_like(
                         test.loops.mean_tension, np.nan,
                         shape=(n_specimens, n_cycles, *spread.shape[1:]),
@@ -1509,7 +1509,7 @@ def _of_specimen(
         )  # fmt: skip
     if test.curves is not None:
         rate = _strain_rates(test, index, model, cycles)
-        # along the ramps of a triangle nothing accelerates
+        # there is no acceleration along the ramps of a triangle
         inertia = (
             None
             if summary is None or cycles.waveform == "triangular"
@@ -1521,7 +1521,7 @@ def _of_specimen(
             yield _of_segments(
                 test.curves, test.segments, index, at_curves, model, area, rate, inertia
             )
-    # without an area the curve is one of tension, of which the slope is not kept
+    # without an area the curve is one of tension, whose slope is not kept
     if test.first_loading is not None and np.isfinite(area):
         rate = _rise_rates(test, index) if errors.lag else np.zeros((2, 2, 1))
         yield _of_curves(test.first_loading, "_first_loading", index, at_first, model, area, rate)
@@ -1553,7 +1553,7 @@ def _contributions_to_cycles(
     pull: SlowPull | None,
     origin: PullOrigin | None,
 ) -> Contributions:
-    """Quantities of each cycle of a part of a test; of its line where it has one."""
+    """Quantities of each cycle in part of a test; those of its line where it has one."""
     if part.loops is None or part.cycles is None or test.cycles is None:
         return Contributions(())
     model = test.strain_models[index]

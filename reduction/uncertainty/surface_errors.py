@@ -1,21 +1,21 @@
-r"""Errors that runs share, in the coefficients and values of surfaces.
+r"""Errors shared by runs, in the coefficients and values of surfaces.
 
-**What shared errors of the runs do to a response surface**:
+**Effect of shared errors of the runs on a response surface**:
 
 .. math:: \delta b = (X^T X)^{-1} X^T
           \left(\delta y - \sum_j \frac{\partial \hat y}{\partial x_j} \delta x_j\right)
 
-An error of a load cell is in the response and in the levels at which it is said to hold.
+An error of a load cell is in the response and in the levels to which it is assigned.
 
-**Surfaces at points with what their runs share: uncertainty, and intervals by one rule**:
+**Surfaces at points with shared errors: uncertainty, and intervals by one rule**:
 
 .. math::
 
     u^2 = s^2 h + \delta^2 + \sum_k (x^T c_k)^2, \qquad \hat y \pm t_{\nu_{eff}} u, \qquad
     \hat y \pm \sqrt{p F_{p, \nu_{eff}}}\, u
 
-with what a quadratic may miss at the point, delta, the contribution c_k of each shared error to the
-coefficients, and the degrees of freedom of Welch and Satterthwaite.
+with the possible misfit of a quadratic at the point, delta, the contribution c_k of each shared
+error to the coefficients, and the degrees of freedom of Welch and Satterthwaite.
 
 References
 ----------
@@ -63,13 +63,13 @@ def _coefficient_contributions(
 
     Notes
     -----
-    First order ([1]_, 5.2).  The surface of [2]_ is linear in its responses, and so is what they
-    share. What is random from run to run is in the scatter about the surface already and is not
-    here.
+    First order ([1]_, 5.2).  The surface of [2]_ is linear in its responses, and so is the effect
+    of shared errors.  Errors that are random from run to run are already in the scatter about the
+    surface and are not included here.
 
     Examples
     --------
-    A gain of 1 % raises every coefficient of a spring constant by 1 %, where no level knows it:
+    A gain of 1 % raises every coefficient of a spring constant by 1 %, if it affects no level:
 
     >>> from reduction.experiments.designs import box_behnken
     >>> from reduction.experiments.designs import quadratic_exponents
@@ -94,7 +94,7 @@ def _coefficient_contributions(
     used = np.isfinite(at).all(axis=1) & np.isfinite(of_response).all(axis=0)
     used &= np.isfinite(of_level).all(axis=(0, 2))
     terms = model_matrix(at[used], exponents)
-    # a quadratic: the central difference is its slope
+    # for a quadratic, the central difference is its exact slope
     steps = np.eye(at.shape[1])
     slope = np.stack(
         [
@@ -139,25 +139,25 @@ def with_shared_at_points(
     contribution: ArrayLike,
     of_contribution: ArrayLike,
 ) -> _SharedAtPoints:
-    """Put what the runs share, and what a quadratic may miss, beside the scatter of the runs.
+    """Combine shared errors of the runs, and the misfit of a quadratic, with the scatter of runs.
 
     Parameters
     ----------
     surfaces : ResponseSurfaces
         As fitted.
     values : SurfaceValues
-        Of them, from `reduction.experiments.surface_points.evaluate_surfaces`.
+        Values of these, from `reduction.experiments.surface_points.evaluate_surfaces`.
     contribution : array_like, shape (n_components, n_responses, n_terms)
-        Of each shared error to the coded coefficients, signed; no rows where nothing is shared, NaN
-        where it is not known. [as the coefficients]
+        Of each shared error to the coded coefficients, signed; no rows if nothing is shared, NaN
+        if it is not known. [as the coefficients]
     of_contribution : array_like, shape (n_components,)
         Degrees of freedom of each. [1]
 
     Returns
     -------
     shared : SharedAtPoints
-        NaN for a response without a surface, or of whose runs it is not known what they share. The
-        random part is of the scatter and of the discrepancy, which stands beside it by itself;
+        NaN for a response without a surface, or with unknown shared errors of its runs. The
+        random part is that of the scatter and of the discrepancy, which is also given separately;
         degrees of freedom are those of the random part.
 
     Raises
@@ -169,17 +169,17 @@ def with_shared_at_points(
     -----
     [1]_, 5.2.2, G.4.1 with the degrees of freedom of scatter and discrepancy for their parts
     (`reduction.experiments.surface_discrepancy.discrepancy_of`).  The next run has the instruments
-    of the others, and a point where the surface misses what it misses here: both are in its
-    interval in full.  Everywhere at once, as [3]_, with the
-    same uncertainty and degrees of freedom: an error of the coefficients is one of them all.  Ends
-    of intervals are brought back from the scale of the fit; an uncertainty is half of what lies
-    between the two ends of one standard uncertainty.
+    of the others, and the surface has the same misfit at the point: both are in its
+    interval in full.  Simultaneous intervals are as in [3]_, with the
+    same uncertainty and degrees of freedom, since an error of the coefficients is common to all
+    points.  Ends of intervals are transformed back from the scale of the fit; an uncertainty is
+    half the distance between the two ends of one standard uncertainty.
 
     Examples
     --------
-    Six runs in pairs that differ by 1, at one of the pairs, where a parabola misses nothing: 0.5 of
-    scatter by three degrees of freedom, and a load cell that is known to 1, are together 1.118 by
-    75 of them.
+    Six runs in pairs that differ by 1, at one of the pairs, where a parabola has no misfit: 0.5 of
+    scatter with three degrees of freedom, and a load cell known to 1, give together 1.118 with
+    75 degrees of freedom:
 
     >>> from reduction.experiments.surface_points import evaluate_surfaces
     >>> from reduction.experiments.response_surfaces import fit_surfaces
@@ -252,8 +252,8 @@ class BetweenRuns:
     """Surfaces at every combination of a quarter, half and three quarters of each range.
 
     ``coded`` (n_points, n_factors); the others (n_responses, n_points), in the unit of each
-    response: value, standard uncertainty of the scatter of the runs and of what a quadratic may
-    miss, and the ends of the 95 % interval of both.
+    response: value, standard uncertainty due to the scatter of the runs and due to the misfit of a
+    quadratic, and the ends of the 95 % interval of both.
     """
 
     coded: Floats
@@ -265,7 +265,7 @@ class BetweenRuns:
 
 
 def surfaces_between_runs(surfaces: ResponseSurfaces) -> BetweenRuns:
-    """Values and intervals of surfaces of a table of runs, which says of nothing that runs share.
+    """Values and intervals of surfaces of a table of runs, which states no shared errors.
 
     Examples
     --------
@@ -289,7 +289,7 @@ def surfaces_between_runs(surfaces: ResponseSurfaces) -> BetweenRuns:
 
 
 def with_shared_surfaces(result: ExperimentResult) -> ExperimentResult:
-    """Carry what the runs share to the coefficients of every surface."""
+    """Propagate the shared errors of the runs to the coefficients of every surface."""
     surfaces, shared = result.surfaces, result.runs.shared
     if surfaces is None or shared is None or not shared.component:
         return result
@@ -306,7 +306,7 @@ def with_shared_surfaces(result: ExperimentResult) -> ExperimentResult:
         of = response_of_surface(name)
         own = shared.values[of] * _slope_of_scale(result, surfaces, index, of)
         if surfaces.transform[index] == "log-times-frequency" and "frequency" in shared.values:
-            # of the product both factors err
+            # both factors of the product have errors
             own = own + shared.values["frequency"] / surfaces.multiplier(surfaces.coded)[index]
         several = _of_several_runs(own, level)
         rows.append(
@@ -330,7 +330,7 @@ def with_shared_surfaces(result: ExperimentResult) -> ExperimentResult:
 
 
 def _of_several_runs(response: Floats, level: Floats) -> Bools:
-    """Errors of more than one run: that of one (its temperature) is in the scatter already."""
+    """Mask of errors of more than one run: that of one (its temperature) is in the scatter."""
     moves = (np.nan_to_num(response) != 0) | (np.nan_to_num(level) != 0).any(axis=2)
     return np.asarray(moves.sum(axis=1) > 1)
 

@@ -1,4 +1,4 @@
-"""Half cycles between reversals, and which of them make whole cycles.
+"""Half cycles between reversals, and their pairing to whole cycles.
 
 References
 ----------
@@ -36,18 +36,18 @@ Indices = NDArray[np.intp]
 def _dwells_of_cycles(
     time: Floats, values: Floats, reversals: Indices, standstills: Standstills, *, band: float
 ) -> tuple[Indices, Bools]:
-    """Tell dwells at the peaks or valleys of cycles from standstills that end cycling.
+    """Distinguish dwells at the peaks or valleys of cycles from standstills that end cycling.
 
     Notes
     -----
-    A standstill is at the nearest reversal whose level is within the band of its own.  It is
-    a dwell where three or more peaks in a row, or valleys, have one at the same level (within
-    30 % of the stroke), and their durations differ by at most a factor 2. So it is where it lasts
-    at most twice as long as the turns of its kind do that are too short for a standstill.
+    A standstill belongs to the nearest reversal whose level is within the band of its own.  It is
+    a dwell where three or more consecutive peaks, or valleys, have one at the same level (within
+    30 % of the stroke), with durations that differ by at most a factor 2.  It is also a dwell where
+    it lasts at most twice as long as those turns of its kind that are too short for a standstill.
 
     Examples
     --------
-    Three peaks held for 4 s, and a rest at slack.
+    Three peaks held for 4 s, and a rest at slack:
 
     >>> from reduction.stages.standstills import find_standstills
     >>> from reduction.record.settings import PhaseSettings
@@ -101,7 +101,7 @@ def _dwells_of_cycles(
 
 
 def _still(standstills: Standstills) -> float:
-    """Tolerance of the channel that stands still: tension where that is held, else position."""
+    """Tolerance of the channel that stands still: tension where this is held, else position."""
     held = standstills.tension_tolerance
     return standstills.position_tolerance if held is None else held
 
@@ -109,7 +109,7 @@ def _still(standstills: Standstills) -> float:
 def _usual_turn(
     time: Floats, values: Floats, reversals: Indices, places: Indices, *, within: float
 ) -> float:
-    """Median time for which a channel stays at the level of some of its reversals; 0 of a few."""
+    """Median duration at the level of some reversals of a channel; 0 if they are too few."""
     if places.size < _FEWEST_DWELLS:
         return 0.0
     some = places[np.linspace(0, places.size - 1, min(places.size, _TURNS_READ)).astype(int)]
@@ -127,7 +127,7 @@ def _usual_turn(
 
 
 def _longest_row(true: Bools) -> Indices:
-    """Length of the row of true values that each belongs to; 0 where false."""
+    """Length of the row of true values that each value belongs to; 0 where false."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], true, [False]]).astype(np.int8)))
     length = edges[1::2] - edges[::2]
     rows = np.zeros(true.size, dtype=np.intp)
@@ -136,18 +136,18 @@ def _longest_row(true: Bools) -> Indices:
 
 
 DIFFERENT = 0.3
-"""Share by which ranges of neighbouring half cycles may differ. [1]."""
+"""Relative difference allowed between ranges of neighbouring half cycles. [1]."""
 
-_STANDING = 0.04  # of a half cycle: movement in its first tenth of one that begins standing
+_STANDING = 0.04  # of a half cycle: movement in the first tenth of one that begins at a stand
 
 _EDGE_SHARE = 0.1  # of a half cycle
 
-Edge = Literal["reversal", "standstill", "record"]  # a gap is an end of the record
+Edge = Literal["reversal", "standstill", "record"]  # a gap counts as an end of the record
 
 
 @dataclass(frozen=True)
 class _Run:
-    """Extremes that follow each other, and whether the record or the movement ends at them."""
+    """Consecutive extremes, and whether the record or the movement ends at them."""
 
     nodes: Indices
     begins_at: Edge
@@ -155,7 +155,7 @@ class _Run:
 
 
 def _gaps_of_record(time: Floats, values: Floats, *, longest: float) -> tuple[Indices, Indices]:
-    """Samples before and after every step of time longer than allowed, missing samples left out.
+    """Samples before and after every time step longer than allowed, without missing samples.
 
     Examples
     --------
@@ -185,7 +185,7 @@ def _runs_that_cycle(
 
     Examples
     --------
-    Two cycles, a gap, and a movement alone.
+    Two cycles, a gap, and a single movement:
 
     >>> values = np.array([0.0, 2, 0, 2, 0, 1, 3])
     >>> gap = np.array([4]), np.array([5])
@@ -208,9 +208,9 @@ def _stretches(
     n_standstills: int,
     band: float,
 ) -> list[_Run]:
-    """Extremes of each stretch between breaks, of which the standstills are first.
+    """Extremes of each stretch between breaks; the standstills come first among the breaks.
 
-    The edge of a break is one where a movement begins there.
+    The edge of a break counts as an extreme where a movement begins there.
     """
     order = np.argsort(breaks[0], kind="stable")
     start, stop = _finite_ends(values)
@@ -221,7 +221,7 @@ def _stretches(
     found = []
     for place, (begin, end) in enumerate(zip(begins, ends, strict=True)):
         nodes = reversals[slice(*np.searchsorted(reversals, [begin + 1, end]))]
-        # the edge is an extreme of its own where the nearest one is a band away
+        # the edge is an extreme of its own where the nearest one is at least a band away
         inner = nodes if nodes.size else np.array([end])
         if abs(values[begin] - values[inner[0]]) >= band:
             nodes = np.concatenate([[begin], nodes])
@@ -244,7 +244,7 @@ def _stretches(
 
 
 def _finite_ends(values: Floats) -> tuple[int, int]:
-    """First and last sample that is there; the ends of the record where none is."""
+    """First and last sample that is not missing; the ends of the record if all are missing."""
     start, stop = 0, values.size - 1
     for part in sample_blocks(values.size, values):
         there = np.flatnonzero(np.isfinite(values[part]))
@@ -260,13 +260,13 @@ def _finite_ends(values: Floats) -> tuple[int, int]:
 
 
 def _is_standing(values: Floats, nodes: Indices, begin: int, n_steps: int) -> bool:
-    """Whether the movement begins at a stand, if for too short a time to be a standstill."""
+    """Whether the movement begins at a stand, even one too short for a standstill."""
     moved = values[min(begin + n_steps, values.size - 1)] - values[begin]
     return bool(abs(moved) < _STANDING * abs(values[nodes[1]] - values[nodes[0]]))
 
 
 def _parts(values: Floats, run: _Run) -> list[_Run]:
-    """A stretch, parted at moves from one level to another; the move ends both parts."""
+    """A stretch, split at moves from one level to another; the move ends both parts."""
     nodes = run.nodes
     ranges = np.abs(np.diff(take_samples(values, nodes)))
     moves = 1 + np.flatnonzero(ranges[1:-1] >= ranges[:-2] + ranges[2:])
@@ -288,15 +288,15 @@ def _is_cycling(ranges: Floats) -> bool:
     return bool((smaller >= (1 - DIFFERENT) * np.maximum(ranges[1:], ranges[:-1])).any())
 
 
-_SHORT = 0.05  # share of its neighbour by which one at an edge may end short of the level
+_SHORT = 0.05  # of its neighbour: a half cycle at an edge may end short of the level by this
 
-_FEWEST_ALIKE = 3  # half cycles beside one at an edge, by which it is judged
+_FEWEST_ALIKE = 3  # half cycles beside one at an edge, which serve to judge it
 
-_UNLIKE = 3.0  # ranges over which those are spread
+_UNLIKE = 3.0  # times the spread of those
 
-_PACE = 0.25  # share by which a half cycle at the end of a run may last longer or shorter
+_PACE = 0.25  # relative difference in duration allowed for a half cycle at the end of a run
 
-_TURNS_BESIDE = 8  # turns of the run that an end is held against
+_TURNS_BESIDE = 8  # turns of the run with which an end is compared
 
 _LINGERS = 1.5  # times as long as at the slowest of them
 
@@ -309,8 +309,8 @@ _STEPS_READ = 64  # looked at first, then twice as many
 class _FittedRun:
     """Extremes of a run with its ends fitted, and samples near which an end was changed.
 
-    ``cut`` ran on beyond its neighbour's level, ``short`` fell short of it, ``paced`` kept
-    another pace than the sine.
+    ``cut`` went beyond its neighbour's level, ``short`` fell short of it, ``paced`` had
+    a different duration from the sine.
     """
 
     nodes: Indices
@@ -319,26 +319,26 @@ class _FittedRun:
     paced: tuple[int, ...] = ()
 
 
-_CODES_APART = 1.5  # steps of a converter: it flickers between two codes, without noise
+_CODES_APART = 1.5  # steps of a converter, which flickers between two codes even without noise
 
 
 def _without_stands(
     values: Floats, nodes: Indices, *, first: int, last: int, tolerance: float
 ) -> Indices:
-    """Extremes of a run, its first and last where the movement begins and where it ends.
+    """Extremes of a run, with its first and last moved to where the movement begins and ends.
 
     Notes
     -----
     Where a machine waits before the first stroke, for too short a time to be a standstill,
     any sample of the wait may be the extreme.  An end at which the signal stays within the
-    tolerance for more than 1.5 times as long as at the turns of the run is such a wait; it is
-    moved to where it lies as far from the end of the stand as those turns do, by their median.
-    Between two extremes alone nothing is moved.  A hold that each cycle has, and the flat turn
-    of a sine, stay as they are.
+    tolerance for more than 1.5 times as long as at the turns of the run is such a wait.  It is
+    moved to the median distance of those turns from the end of the stand.
+    With only two extremes nothing is moved.  A hold in every cycle, and the flat turn
+    of a sine, are not changed.
 
     Examples
     --------
-    Three samples of waiting at the valley before two strokes.
+    Three samples of waiting at the valley before two strokes:
 
     >>> values = np.array([2.0, 2, 2, 2, 4, 2, 4, 2])
     >>> _without_stands(values, np.array([0, 4, 5, 6, 7]), first=0, last=7, tolerance=0.1)
@@ -352,7 +352,7 @@ def _without_stands(
             _steps_still(values, int(nodes[end]), int(far), tolerance)
             for far in (series[1], beyond)
         )
-        turns = range(2, nodes.size - 1, 2) or range(1, 2)  # valleys among valleys, if there are
+        turns = range(2, nodes.size - 1, 2) or range(1, 2)  # valleys among valleys, if any
         after, width = np.array(
             [
                 _both_sides(values, series[at - 1 : at + 2], tolerance)
@@ -375,9 +375,9 @@ def _both_sides(values: Floats, nodes: Indices, tolerance: float) -> tuple[int, 
 
 
 def _steps_still(values: Floats, turn: int, far: int, tolerance: float) -> int:
-    """Samples from a turn, towards another, up to the last before the signal goes away.
+    """Samples from a turn, towards another, to the last one before the signal moves away.
 
-    One sample beyond the tolerance that comes back at once is noise, not a movement.
+    A single sample beyond the tolerance, followed by one within it, is noise, not a movement.
 
     Examples
     --------
@@ -388,9 +388,9 @@ def _steps_still(values: Floats, turn: int, far: int, tolerance: float) -> int:
     begin, count, last = 0, _STEPS_READ, 0
     while begin <= reach:
         stop = min(begin + count, reach + 1)
-        # one more than is looked at, which says whether the last of them comes back
+        # one more than the samples searched, to see whether the last of them comes back
         level = values[turn + step * np.arange(begin, min(stop, reach) + 1)]
-        away = np.abs(level - values[turn]) > tolerance  # a missing sample is no movement
+        away = np.abs(level - values[turn]) > tolerance  # a missing sample is not a movement
         away[:-1] &= away[1:] | np.isnan(level[1:])
         away, level = away[: stop - begin], level[: stop - begin]
         seen = np.flatnonzero(np.isfinite(level[: int(np.argmax(away)) if away.any() else None]))
@@ -414,12 +414,12 @@ def _fit_ends(
 
     Notes
     -----
-    The rules are those of `reduction.stages.cycles.cycle_pairing.find_half_cycles`; where the
-    movement begins and ends, `_without_stands` says.
+    The rules are those of `reduction.stages.cycles.cycle_pairing.find_half_cycles`; the beginning
+    and end of the movement are found by `_without_stands`.
 
     Examples
     --------
-    From slack at 0; the first half cycle is cut where it passes the valley.
+    From slack at 0; the first half cycle is cut where it passes the valley:
 
     >>> values = np.array([0.0, 1, 2, 3, 2, 3, 2])
     >>> _fit_ends(np.arange(7.0), values, _Run(np.array([0, 3, 4, 5, 6]), "record", "record"),
@@ -459,7 +459,7 @@ def _fit_ends(
                 nodes[end] = _passing(values, nodes[turn], far, values[nodes[beside]])
             elif side == 1:
                 nodes[end] = _end_of_sine(values, nodes[[turn, beside]], far, tolerance)
-            else:  # where an approach goes over into a sine, its acceleration jumps
+            else:  # where an approach joins a sine, its acceleration jumps
                 nodes[end] = nodes[turn]
         if is_sinusoidal and (
             nodes[end] == nodes[turn] or not _keeps_pace(time, nodes, end, turn, beside, at_edge)
@@ -475,14 +475,14 @@ def _fit_ends(
             left_out[side] = 1
             short.append(int(nodes[end]))
     nodes = nodes[left_out[0] : nodes.size - left_out[1]]
-    # cycles run from valley to valley: a half cycle before the first valley is in none of them
+    # cycles run from valley to valley: a half cycle before the first valley is not part of one
     valley = slice(*_valleys(values, nodes))
     nodes[valley] = moving(nodes[valley])
     return _FittedRun(nodes, tuple(cut), tuple(short), tuple(paced))
 
 
 def _beyond(ranges: Floats, still: float) -> float:
-    """How much more than its neighbour the first of a row may move, by what the next ones differ.
+    """Allowed excess of the first movement over its neighbour, from the spread of the next ones.
 
     Examples
     --------
@@ -515,13 +515,13 @@ def _passing(values: Floats, turn: int, end: int, level: float) -> int:
 
 
 def _end_of_sine(values: Floats, nodes: Indices, far: int, tolerance: float) -> int:
-    """Sample where a last half cycle that ran on from a turn ends, by the one before it.
+    """Sample where a last half cycle that goes too far from a turn ends, by the one before it.
 
-    The turn itself where the two are no images of each other beyond the middle of the stroke.
+    The turn itself where the two are not mirror images beyond the middle of the stroke.
 
     Examples
     --------
-    Two cycles, a wait of one sample at the valley, and a move to slack.
+    Two cycles, a wait of one sample at the valley, and a move to slack:
 
     >>> values = np.concatenate([-np.cos(np.pi * np.arange(33) / 8), [-1], np.arange(-1, -6, -0.5)])
     >>> _end_of_sine(values, np.array([24, 16]), 42, 0.0)
@@ -535,7 +535,7 @@ def _end_of_sine(values: Floats, nodes: Indices, far: int, tolerance: float) -> 
     own, other = (_passing(values, turn, end, middle) for end in (far, beside))
     image = np.arange(other, beside - 1, -1)
     at = np.minimum(own + other - image, values.size - 1)
-    # each passes the middle up to half a sample beside the one that is taken
+    # each passes the middle up to half a sample from the one that is taken
     allowed = max(_SHORT * stroke, 2 * stroke / (turn - beside), tolerance)
     apart = np.abs(values[at] - values[image])
     return turn if (apart > allowed).any() else int(at[-1])
@@ -544,15 +544,15 @@ def _end_of_sine(values: Floats, nodes: Indices, far: int, tolerance: float) -> 
 def _keeps_pace(
     time: Floats, nodes: Indices, end: int, turn: int, beside: int, at_edge: bool
 ) -> bool:
-    """Whether an end half cycle takes the time of its neighbour, as every one of a sine does."""
+    """Whether an end half cycle has the duration of its neighbour, as in a sine."""
     lasts, usual = np.abs(time[nodes[[end, beside]]] - time[nodes[turn]])
     return not at_edge or bool(abs(lasts - usual) <= _PACE * usual)
 
 
 def _allowed(neighbour: float, n_steps: int, edge: Edge, *, begins: bool, still: float) -> float:
-    """How far a half cycle at an edge may be short of the level of its neighbour."""
+    """Distance by which a half cycle at an edge may end short of the level of its neighbour."""
     if begins and edge == "standstill":
-        return DIFFERENT * neighbour  # nothing was broken off: a machine settles as it starts
+        return DIFFERENT * neighbour  # nothing was cut off: a machine settles as it starts
     within = max(_SHORT * neighbour, neighbour / n_steps)
     return max(within, still) if edge == "standstill" else within
 
@@ -566,8 +566,8 @@ _GAP_STEPS = 3.5  # median time steps
 class _HalfCycles:
     """Half cycles in order of time, shape (n_half_cycles,) each.
 
-    ``first`` and ``last`` are samples, both inside, and ``run`` counts runs of half cycles
-    that follow each other; within a run they rise and fall in turn.
+    ``first`` and ``last`` are samples, both inside, and ``run`` numbers the runs of consecutive
+    half cycles; within a run they rise and fall alternately.
     """
 
     first: Indices
@@ -580,7 +580,7 @@ class _HalfCycles:
 
 
 def _replaced(samples: Indices, old: Indices, new: Integers) -> Indices:
-    """Samples with each of the old ones, in order of time, replaced by the new."""
+    """Samples in order of time, with each of the old ones replaced by the new one."""
     if old.size == 0:
         return samples
     place = np.minimum(np.searchsorted(old, samples), old.size - 1)
@@ -597,7 +597,7 @@ def find_half_cycles(
     skips: Indices | None = None,
     is_sinusoidal: bool = False,
 ) -> _HalfCycles:
-    """Keep the half cycles of runs that cycle, ends cut or left out.
+    """Find the half cycles of runs that cycle, with their ends cut or left out.
 
     Parameters
     ----------
@@ -610,12 +610,12 @@ def find_half_cycles(
     standstills : Standstills
         They end a run, unless they are dwells. [SI]
     band : float
-        With which the reversals were found. [m] or [N]
+        Band by which the reversals were found. [m] or [N]
     skips : ndarray of int, shape (n_skips,), optional
-        Samples after which the log goes on with a later cycle, though its time does not show it.
+        Samples after which the log continues with a later cycle, though its time does not show it.
         They end a run, as a gap does. [1]
     is_sinusoidal : bool
-        Whether every half cycle takes the same time.
+        Whether all half cycles have the same duration.
 
     Returns
     -------
@@ -630,31 +630,31 @@ def find_half_cycles(
     Notes
     -----
     A *run* is a stretch between standstills and between gaps of the record of more than
-    30 % of a half cycle.  It cycles where two half cycles in a row have ranges that
+    30 % of a half cycle.  It cycles where two consecutive half cycles have ranges that
     differ by at most 30 %: the moves between holds before a test do not.  A standstill
-    at a reversal is a *dwell* and ends no run where three or more peaks in a row, or
-    valleys, have one at the same level, and their durations differ by at most a factor 2, or
-    where it lasts at most twice as long as the turns of its kind do.
+    at a reversal is a *dwell* and does not end a run where three or more consecutive peaks, or
+    valleys, have one at the same level, with durations that differ by at most a factor 2, or
+    where it lasts at most twice as long as the turns of its kind.
     A half cycle at least as long as its two neighbours together is a move from one level
-    to another: the run is parted there, and the move serves as an end of both parts.
+    to another: the run is split there, and the move serves as an end of both parts.
 
     *Ends.* A first or last half cycle with a range over 1.3 times its neighbour's is cut
     where it passes the neighbour's level, cf. the return to slack after the tenth peak
-    in [1]_.  So is one that moves 5 % more, and by three times what the three beside it differ
-    by: it holds the approach.  One that begins or ends with the record or at a gap, or ends at
-    a standstill, short of the neighbour's level by more than 5 % of its range, the travel of a
-    sample and the tolerance of the standstill, is incomplete and left out; so is one that begins
-    at a standstill, or at an edge where the signal stands, with less than 0.7 times its range.
-    Between two reversals it is whole, but for one beside a move away: a sine that begins or
+    in [1]_.  So is one that moves 5 % more, if also by three times the spread of the three beside
+    it: it contains the approach.  One that begins or ends with the record or at a gap, or ends at
+    a standstill, is incomplete and left out if it is short of the neighbour's level by more than
+    5 % of its range, the travel of a sample and the tolerance of the standstill.  So is one that
+    begins at a standstill, or at an edge where the signal stands, with less than 0.7 times its
+    range.  Between two reversals it is whole, except beside a move away: a sine that begins or
     ends at its mean has moved half a range there.
-    In a sinusoidal test an end that takes 25 % more or less time is left out, and one that ran
-    on is, unless it is the last and an image of its neighbour (`_end_of_sine`).
-    A wait at an end, too short for a standstill, is no part of the half cycle there
+    In a sinusoidal test an end that takes 25 % more or less time is left out, as is one that goes
+    too far, unless it is the last and a mirror image of its neighbour (`_end_of_sine`).
+    A wait at an end, too short for a standstill, is not part of the half cycle there
     (`reduction.stages.cycles.cycle_pairing._without_stands`).
 
     Examples
     --------
-    Slack, two cycles between 2 and 3, and back to slack.
+    Slack, two cycles between 2 and 3, and back to slack:
 
     >>> values = np.array([0.0, 1, 2, 3, 2.5, 2, 3, 2, 1, 0])
     >>> none = np.empty(0)
@@ -717,17 +717,17 @@ def find_half_cycles(
     )
 
 
-# an amplitude that is halved leaves a cycle open by a quarter of its range where that happens at
+# an amplitude that is halved leaves a cycle open by a quarter of its range if that happens at
 # the peak, by a third at the valley
 _OPEN = 0.2
 
-_SETTLING = 0.3  # for the first of a run, in which a machine settles
+_SETTLING = 0.3  # for the first cycle of a run, in which a machine settles
 
-_STEADY = 0.5  # share of the step of a valley by which the one beside it goes on
+_STEADY = 0.5  # of the step of a valley: least step of a neighbour in the same direction
 
 
 def whole_cycles(values: Floats, halves: _HalfCycles) -> tuple[Indices, Indices, Indices]:
-    """Branches of the cycles, and the first samples of those that are no cycle.
+    """Branches of the cycles, and the first samples of pairs that are not a cycle.
 
     Parameters
     ----------
@@ -751,16 +751,16 @@ def whole_cycles(values: Floats, halves: _HalfCycles) -> tuple[Indices, Indices,
     Notes
     -----
     An ascending half cycle with the descending one after it, in the same run, is a cycle [1]_.
-    Where the two valleys lie apart by more than 20 % of its range (30 % in the first of a run,
-    since a machine settles), one branch is of one amplitude or level and the other of the
-    next: such a pair is left out. It stays where the amplitude grows or decays steadily, that
-    is where the valley before or after goes on in the same sense by at least half as much. Of
-    each valley and its neighbours the median is taken, so that a drop-out at one opens no
+    Where the two valleys differ by more than 20 % of its range (30 % in the first of a run,
+    since a machine settles), one branch belongs to one amplitude or level and the other to the
+    next: such a pair is left out. It is kept where the amplitude grows or decays steadily, that
+    is, where the valley before or after steps in the same direction by at least half as much. The
+    median of each valley and its neighbours is used, so that a drop-out at one does not open a
     cycle.
 
     Examples
     --------
-    Two cycles of 2, two of 1: the rise between them has a range of 1.5.
+    Two cycles of 2, two of 1; the rise between them has a range of 1.5:
 
     >>> values = np.array([-1.0, 1, -1, 1, -1, 0.5, -0.5, 0.5, -0.5])
     >>> place = np.arange(8)
@@ -792,7 +792,7 @@ def whole_cycles(values: Floats, halves: _HalfCycles) -> tuple[Indices, Indices,
 
 
 def _steps(begin: Floats, end: Floats, follows: Bools) -> Floats:
-    """From the first to the last valley of each pair, each the median of it and its neighbours."""
+    """Step between the valleys of each pair, each valley the median of it and its neighbours."""
     before, after = begin.copy(), end.copy()
     before[1:] = np.where(follows, begin[:-1], begin[1:])
     after[:-1] = np.where(follows, end[1:], end[:-1])

@@ -1,4 +1,4 @@
-"""What the cycle stage returns."""
+"""Results of the cycle stage."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from reduction.record.measurement import Bools, Floats, Integers, read_only_arra
 from reduction.record.notes import Note
 from reduction.record.samples import release_pages, trim_heap_after
 
-_SAMPLES_OF_BLOCK = 1 << 17  # near the cache, yet long enough for threads to pay
+_SAMPLES_OF_BLOCK = 1 << 17  # close to the cache size, but long enough for threads to pay
 
 
 @dataclass(frozen=True)
@@ -20,8 +20,8 @@ _SAMPLES_OF_BLOCK = 1 << 17  # near the cache, yet long enough for threads to pa
 class Cycles:
     """Cycles of one test, all specimens together, since they share the crosshead.
 
-    A cycle runs from one reversal to the next but one of the same kind; it has
-    one ascending and one descending branch.  Sample indices count the record.
+    A cycle runs from one reversal to the next one of the same kind; it has
+    one ascending and one descending branch.  Sample indices refer to the record.
 
     Parameters
     ----------
@@ -43,9 +43,9 @@ class Cycles:
     counted_by : str
         ``reversals`` or ``machine counter``.
     count : ndarray of int, shape (n_cycles,), or None
-        Number of each cycle, those included that the log lacks; None: 1, 2, 3, ...
+        Number of each cycle, counting those missing in the log; None: 1, 2, 3, ...
     is_count_sure : bool
-        False where gaps of the log may hold cycles, or none.
+        False where gaps of the log may contain cycles, or may not.
     notes : tuple of Note
         A count that differs from the plan, gaps of the record, ...
     made : tuple of str
@@ -74,23 +74,23 @@ class Cycles:
 
     @property
     def number(self) -> Integers:
-        """Number of each cycle, those included that the log lacks; shape (n_cycles,)."""
+        """Number of each cycle, counting those missing in the log; shape (n_cycles,)."""
         return np.arange(1, self.n_cycles + 1) if self.count is None else self.count
 
     @property
     def n_between(self) -> int:
-        """Cycles that surely ran between the first and the last of the log, and are not in it."""
+        """Cycles that surely ran between the first and the last of the log, but are not in it."""
         if self.count is None or not self.is_count_sure:
             return 0
         return int(np.maximum(np.diff(self.count) - 1, 0).sum())  # a counter may start again
 
     @property
     def longest(self) -> int:
-        """Samples of the longest cycle."""
+        """Number of samples of the longest cycle."""
         return int((self.last - self.first).max(initial=0)) + 1
 
     def blocks(self, n_samples: int = _SAMPLES_OF_BLOCK) -> list[slice]:
-        """Runs of whole cycles of about so many samples together, one cycle at least."""
+        """Runs of whole cycles of about this many samples together, at least one cycle."""
         number = (self.first - self.first[:1]) // n_samples
         starts = np.flatnonzero(np.diff(number, prepend=-1))
         return [
@@ -102,16 +102,16 @@ class Cycles:
 @dataclass(frozen=True)
 @read_only_arrays
 class Loops:
-    """One row a cycle and specimen; every array has shape (n_specimens, n_cycles).
+    """One row per cycle and specimen; every array has shape (n_specimens, n_cycles).
 
     The fields are the contract's per-cycle variables.  ``uncertainty`` holds the
     standard uncertainty of each field that has one, by the field's name, same
     shape and unit.  ``storage_over_time`` and ``loss_over_time`` are those of the
-    fundamental over time, which a linear model of the material asks for; of a sine
+    fundamental over time, as a linear model of the material needs; for a sine
     they are the storage and loss spring constants.  ``tension_turn_missed`` and
-    ``strain_turn_missed`` are by how much half a range that turns between samples may
-    be too small or too large, together, ``energy_turn_missed`` the same of the area.
-    ``foot_strain`` is that of the turn a cycle begins with, with the creep of no cycle taken off.
+    ``strain_turn_missed`` are the full width by which half a range that turns between samples may
+    be too small or too large; ``energy_turn_missed`` is the same for the area.
+    ``foot_strain`` is that of the turn with which a cycle begins, not corrected for creep.
     """
 
     frequency: Floats
@@ -140,9 +140,9 @@ class Loops:
     def over_time(self, n_samples: float) -> Loops:
         r"""Return the same with storage and loss of the fundamental over time.
 
-        It misses no turn.  Of ``n_samples`` a cycle, in step, harmonics as far off count as the
-        fundamental: of a wave of ramps :math:`1 / (n - 1)^2` of it, of which a specimen that is
-        stiffer to them leaves less than a half in the ratio of the channels.
+        It misses no turn.  With ``n_samples`` a cycle, in step, harmonics that far away count as
+        the fundamental: in a wave of ramps :math:`1 / (n - 1)^2` of it; for a specimen that is
+        stiffer to them, less than half of that remains in the ratio of the channels.
         """
         alias = _LEFT_OF_ALIAS / (n_samples - 1) ** 2
         missed = {
@@ -162,11 +162,11 @@ class Loops:
     def shared_by_cycles(
         self, cycles: slice | Integers, *, turns_alike: Floats | float = 0.0
     ) -> dict[str, Floats]:
-        """Standard uncertainties that the cycles have alike, so that no mean over them is better.
+        """Standard uncertainties common to the cycles, which a mean over them does not reduce.
 
-        A turn between two readings lies there in all cycles, or nearly, and so does the part of a
+        A turn between two readings is there in all cycles, or nearly, and so is the part of a
         cycle in which it drifts.  Shape (n_specimens,) each, over some of the cycles.
-        ``turns_alike``, from `turns_alike`, is of what tension and strain miss of one turn.
+        ``turns_alike``, from `turns_alike`, is the correlation of the errors of tension and strain.
         """
 
         def mean(name: str) -> Floats:
@@ -179,16 +179,16 @@ class Loops:
                 np.nan_to_num(mean(f"{name}_turn_missed"))
                 for name in ("tension", "strain", "energy")
             )
-            # tension may turn at another place between its samples than strain; what both miss
-            # of one turn, in equal shares, is not in their ratio
+            # tension may turn at another place between its samples than strain; the common error
+            # of one turn, in equal shares, cancels in their ratio
             shares = np.array(
                 [tension / mean("tension_amplitude"), strain / mean("strain_amplitude")]
             )
             apart = np.sqrt((shares**2).sum(axis=0) - 2 * turns_alike * shares.min(axis=0) ** 2)
-            # half of what a turn may hold was added to the area: the truth is at either end of it
+            # half of the possible error of a turn was added to the area: the truth is at either end
             drift = mean("closed_loop_energy") - mean("hysteresis_energy")
             area = np.hypot(energy, drift * self.drift_not_placed())
-            # of the area, and of the square of the amplitude that it is divided by
+            # of the area, and of the square of the amplitude by which it is divided
             loss = np.hypot(
                 area / (np.pi * mean("strain_amplitude") ** 2),
                 2 * strain / mean("strain_amplitude") * mean("loss_spring_constant") / WITHIN_STEP,
@@ -214,7 +214,7 @@ class Loops:
         return np.array([drift_not_placed(one, closed, f * e) for one, closed, f, e in rows])
 
     def release_pages(self) -> None:
-        """Take the tables of a long test, which lie on disk, off the memory of the process."""
+        """Release the tables of a long test, which are on disk, from the memory of the process."""
         own = (getattr(self, item.name) for item in fields(self))
         release_pages(
             *(one for one in own if isinstance(one, np.ndarray)), *self.uncertainty.values()
@@ -223,7 +223,7 @@ class Loops:
 
 
 def turns_alike(lag: Floats, interval: float, *, period: float = 0.0, n_cycles: int = 1) -> Floats:
-    r"""Correlation of what tension and strain miss of the corners that both have. [1].
+    r"""Correlation of the errors of tension and strain at the corners that both have. [1].
 
     .. math:: r = 1 - \frac{64}{\pi^4} \sum_{k\ \mathrm{odd}} \frac{R_k^2}{k^4}
               \left(1 - e^{-2 \pi^2 k^2 \sigma^2}\right), \qquad
@@ -231,24 +231,24 @@ def turns_alike(lag: Floats, interval: float, *, period: float = 0.0, n_cycles: 
 
     Notes
     -----
-    A corner of two ramps lies d from the nearest reading, anywhere within half an interval to
-    either side, and :math:`|d|` times the slope is missed.  Tension that is logged late turns at
-    another place: the autocorrelation of :math:`|d|`, a triangle over the intervals, in the mean
-    over lags of standard uncertainty :math:`\sigma` intervals.  Of the mean over N corners, p
-    intervals apart, the harmonic k of that triangle keeps :math:`R_k`: all of it where each lies
-    at the same place between two readings, nothing where they lie evenly there.  The
-    difference of two shares that lie anywhere within one width W then has the variance
-    :math:`W^2 (1 - r) / 4`, where each alone has :math:`W^2 / 8` (`WITHIN_STEP`): what a machine
-    rounds of its corners, both have.
+    A corner of two ramps is a distance d from the nearest reading, anywhere within half an interval
+    to either side, and :math:`|d|` times the slope is missed.  Tension that is logged late turns at
+    another place: r is the autocorrelation of :math:`|d|`, a triangle over the intervals, averaged
+    over lags of standard uncertainty :math:`\sigma` intervals.  In the mean over N corners, p
+    intervals apart, the harmonic k of that triangle keeps :math:`R_k`: all of it if each is
+    at the same place between two readings, nothing if they are evenly distributed there.  The
+    difference of two errors that lie anywhere within one width W then has the variance
+    :math:`W^2 (1 - r) / 4`, where each alone has :math:`W^2 / 8` (`WITHIN_STEP`): corners rounded
+    by the machine are common to both.
 
     Examples
     --------
-    Lags of no, a tenth and one interval:
+    Lags of zero, a tenth and one interval:
 
     >>> print(turns_alike(np.array([0.0, 0.01, 0.1]), 0.1).round(3))
     [1.    0.874 0.333]
 
-    Of ten cycles of 50 and of 50.3 readings:
+    For ten cycles of 50 and of 50.3 readings:
 
     >>> for readings in (50, 50.3):
     ...     print(turns_alike(np.array([0.1]), 0.1, period=0.1 * readings, n_cycles=10).round(3))
@@ -263,7 +263,7 @@ def turns_alike(lag: Floats, interval: float, *, period: float = 0.0, n_cycles: 
 
 _LEFT_OF_ALIAS = 0.5
 
-WITHIN_STEP = np.sqrt(8)  # width over deviation, of what is likeliest at either end
+WITHIN_STEP = np.sqrt(8)  # width over standard deviation, for errors most likely at either end
 
 PLACE_OF_DRIFT = np.sqrt(6)  # half width of a triangular distribution over its deviation
 
@@ -273,7 +273,7 @@ _LEAST_NOT_PLACED = 0.02  # the drift of a cycle is the median of three
 
 
 def drift_not_placed(energy: Floats, closed: Floats, work: Floats) -> float:
-    r"""Standard uncertainty of the work of a drift, over that work, of one specimen. [1].
+    r"""Standard uncertainty of the work of a drift, over that work, for one specimen. [1].
 
     .. math:: u = \min\left(\frac{1}{\sqrt 6}, \sqrt{\beta^2 + s_\beta^2 + 0.02^2}\right), \qquad
               \frac{H}{T_a \varepsilon_a} = a + \beta \frac{H_{closed} - H}{T_a \varepsilon_a}
@@ -288,7 +288,7 @@ def drift_not_placed(energy: Floats, closed: Floats, work: Floats) -> float:
     Returns
     -------
     not_placed : float
-        That of a triangular distribution where the cycles do not tell. [1]
+        That of a triangular distribution if the cycles do not determine it. [1]
 
     Raises
     ------
@@ -297,11 +297,11 @@ def drift_not_placed(energy: Floats, closed: Floats, work: Floats) -> float:
 
     Notes
     -----
-    In which part of its cycle a drift takes place one cycle does not tell: at one turn it does no
-    work, at the other twice that of an even one.  Cycles that drift unequally do: where all of them
+    A single cycle does not show in which part of it a drift takes place: at one turn it does no
+    work, at the other twice that of an even one.  Cycles of unequal drift do: if all of them
     have one energy without the work of an even drift, the drift is even.  An energy that settles as
-    the drift does makes beta no smaller but by chance.  The first two cycles, which are still on
-    their way to the others, and the last one, whose drift is that of its neighbour, say nothing.
+    the drift does reduces beta only by chance.  The first two cycles, which are still
+    settling, and the last one, whose drift is that of its neighbour, are not used.
     Slope and its standard error are those of least squares ([1]_).
 
     References
@@ -329,9 +329,9 @@ def drift_at_peaks(energy: Floats, closed: Floats, work: Floats) -> float:
 
     Notes
     -----
-    What gives way while the load is highest makes beta 1, and its work no part of the loop.  Losses
-    that settle as an even drift does make the same slope: the energy is half way between both.  A
-    slope beyond 1 is of no drift alone, and at valleys nothing gives way.
+    Yielding while the load is highest makes beta 1, and its work is not part of the loop.  Losses
+    that settle as an even drift does make the same slope: the energy is half way between.  A
+    slope above 1 is not due to drift alone, and nothing yields at valleys.
 
     Examples
     --------
@@ -346,11 +346,11 @@ def drift_at_peaks(energy: Floats, closed: Floats, work: Floats) -> float:
     return min(beta, 1.0) / 2 if is_shown else 0.0
 
 
-_CLEARLY = 3.0  # standard errors of a slope that is shown
+_CLEARLY = 3.0  # standard errors of a significant slope
 
 
 def _slope_on_drift(energy: Floats, closed: Floats, work: Floats) -> tuple[float, float]:
-    """Slope of `drift_not_placed` and its standard error; NaN where the cycles do not tell."""
+    """Slope of `drift_not_placed` and its standard error; NaN if the cycles do not determine it."""
     inner = slice(2, -1)
     with np.errstate(divide="ignore", invalid="ignore"):
         share, of_drift = (one[inner] / work[inner] for one in (energy, closed - energy))

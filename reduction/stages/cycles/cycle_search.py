@@ -45,10 +45,10 @@ _BAND_SHARE = 0.1
 _SLOW_PASS = 0.1
 
 FEWEST_SAMPLES = 4
-"""In a cycle, the last one left to the next: two turns, and a sample on each branch between."""
+"""Per cycle, not counting the last, which belongs to the next: two turns, a sample per branch."""
 
 ENOUGH_SAMPLES = 12
-"""In a cycle: the polygon through so many encloses 4.5 % less than the loop."""
+"""Per cycle: the polygon through that many encloses 4.5 % less than the loop."""
 
 _GROUP = 4
 
@@ -66,9 +66,9 @@ def _turning_points(values: Floats) -> Indices:
 def _turns_of_record(values: Floats, band: float) -> Indices:
     """Turning points of a record, without those that the band drops within a block.
 
-    The last two of a block go on to the next: from there to the end the level may still go
-    on, and only then is the end a turn.  A swing that is not over can but grow, so that
-    what is dropped beside it would be dropped later.
+    The last two of a block are carried over to the next: the level may go on beyond the end of
+    the block, and only if it does not is the end a turn.  An unfinished swing can only grow, so
+    any point dropped beside it would be dropped later as well.
     """
     found = []
     carried = np.empty(0, dtype=np.intp)
@@ -91,7 +91,7 @@ def _turns_of_record(values: Floats, band: float) -> Indices:
 
 
 def _without_small_pairs(level: Floats, band: float) -> NDArray[np.bool_]:
-    """Turning points that stay after pairs with the smallest swings are dropped, ends never."""
+    """Mark turning points left when pairs with the smallest swings are dropped; ends are kept."""
     swing = np.abs(np.diff(level))
     stays = np.ones(level.size, dtype=bool)
     pair = 1 + np.flatnonzero(
@@ -102,10 +102,10 @@ def _without_small_pairs(level: Floats, band: float) -> NDArray[np.bool_]:
 
 
 def _drop_pairs(level: Floats, band: float) -> NDArray[np.bool_]:
-    """Turning points that stay after the smallest swings of one pass are dropped."""
+    """Mark turning points left after one pass that drops the smallest swings."""
     stays = _without_small_pairs(level, band)
     swing = np.abs(np.diff(level))
-    # An end that moved less than the band before a larger swing is no extreme.
+    # An end that moved less than the band before a larger swing is not an extreme.
     if swing[0] < band and (swing.size == 1 or swing[0] < swing[1]):
         stays[0] = False
     if swing[-1] < band and (swing.size == 1 or swing[-1] <= swing[-2]):
@@ -114,7 +114,7 @@ def _drop_pairs(level: Floats, band: float) -> NDArray[np.bool_]:
 
 
 def _merge_groups(level: Floats, band: float) -> NDArray[np.bool_]:
-    """Turning points that stay when groups narrower than the band keep only their extremes."""
+    """Mark turning points left when groups narrower than the band keep only their extremes."""
     whole = level.size // _GROUP * _GROUP
     group = level[:whole].reshape(-1, _GROUP)
     is_narrow = np.ptp(group, axis=1) < band
@@ -132,19 +132,19 @@ def find_reversals(values: ArrayLike, *, band: float) -> NDArray[np.intp]:
 
     Notes
     -----
-    The extremes that a hysteresis of width ``band`` confirms, together with the extreme
-    before the first and after the last movement of that size.  They do not cross a
+    These are the extremes confirmed by a hysteresis of width ``band``, together with the extreme
+    before the first and after the last movement of that size.  They do not depend on crossing a
     mid-level, so drift and changes of level do not matter.
 
-    All turning points are found, block by block; then pairs of neighbours are dropped, many
-    at once, whose swing is below the band and no larger than the swings at both sides.  This is
-    the removal of small ranges of [1]_ in the order of size: what is left does not
+    All turning points are found, block by block.  Then pairs of neighbours whose swing is below
+    the band and no larger than the swings on both sides are dropped, many at once.  This is
+    the removal of small ranges of [1]_ in order of size: the result does not
     depend on the order within a pass, and dropping with a smaller band first changes
-    nothing.  Where swings grow steadily a pass drops few; then groups of four that are
-    narrower than the band keep their extremes only, which loses no reversal since two
-    of them are never that close.  Each pass drops a share of the points: O(n).
+    nothing.  Where swings grow steadily, a pass drops few points.  Then groups of four that are
+    narrower than the band keep only their extremes, which loses no reversal since two
+    reversals are never that close.  Each pass drops a fraction of the points: O(n).
 
-    A level that is reached several times counts where it is reached first, or next to
+    A level that is reached several times counts where it is first reached, or next to
     the larger swing.
 
     Examples
@@ -175,16 +175,16 @@ def find_reversals(values: ArrayLike, *, band: float) -> NDArray[np.intp]:
 
 
 def _typical_range(values: ArrayLike) -> float:
-    """Range of a half cycle of typical size: half of all travel is in larger ones.
+    """Range of a half cycle of typical size: half of all travel is in larger half cycles.
 
     Notes
     -----
-    A few long moves to and from the test level do not count against many cycles, and
-    what noise leaves does not count at all.
+    A few long moves to and from the test level do not outweigh many cycles, and
+    residual noise does not count at all.
 
     Examples
     --------
-    A move of 12 in and out, and five cycles of 5.
+    A move of 12 in and out, and five cycles of 5:
 
     >>> _typical_range([0, 12] + [7, 12] * 5 + [0])
     5.0
@@ -200,15 +200,15 @@ def _typical_range(values: ArrayLike) -> float:
 
 
 def _first_pass(values: ArrayLike) -> tuple[NDArray[np.intp], float]:
-    """Reversals of a record that states no band, and the band: above its noise, below its cycles.
+    """Reversals of a record without a stated band, and the band found: between noise and cycles.
 
     Notes
     -----
     The band is the greater of the range that noise alone may span (`noise_range`) and a
     tenth of the typical half cycle: backward slips of less than a tenth of the stroke
-    make no cycles.  Slips part half cycles, so that the typical one is found again with
-    each wider band until it stays.  Cycles smaller than a tenth of the typical ones need
-    a stated band.
+    make no cycles.  Slips split half cycles, so the typical one is found again with
+    each wider band until it no longer changes.  Cycles smaller than a tenth of the typical ones
+    need a stated band.
 
     Examples
     --------
@@ -231,13 +231,13 @@ def _first_pass(values: ArrayLike) -> tuple[NDArray[np.intp], float]:
 
 
 def _small_pass(values: Floats) -> tuple[Indices, float]:
-    """Reversals of small cycles in a record whose pulls have most of its travel, and the band.
+    """Reversals of small cycles in a record dominated by large pulls, and the band.
 
-    The band is a tenth of the range of the movements that are most in number.
+    The band is a tenth of the range of the most numerous movements.
 
     Examples
     --------
-    A move of 12 in and out, and ten cycles of 0.5.
+    A move of 12 in and out, and ten cycles of 0.5:
 
     >>> wave = np.interp(np.arange(0, 24, 0.01), np.arange(24), [0, 12, *[11.5, 12] * 10, 6, 0])
     >>> _first_pass(wave)[0].size, _small_pass(wave)[0].size
@@ -254,13 +254,13 @@ def _small_pass(values: Floats) -> tuple[Indices, float]:
     )  # fmt: skip
 
 
-_FEWEST_SMALL = 5  # small cycles that are no accident
+_FEWEST_SMALL = 5  # small cycles that are not accidental
 
-_ALIKE = 0.3  # of stroke and duration, nine tenths of them
+_ALIKE = 0.3  # relative spread of stroke and of duration, for nine tenths of the cycles
 
 
 def _are_alike(time: Floats, values: Floats, branch_first: Indices, branch_last: Indices) -> bool:
-    """Whether whole cycles are so many, and so like each other, that a machine made them."""
+    """Whether whole cycles are so many and so similar that a machine made them."""
     if branch_first.shape[0] < _FEWEST_SMALL:
         return False
     stroke = np.abs(take_samples(values, branch_last) - take_samples(values, branch_first))
@@ -276,7 +276,7 @@ _JUMP_SHARE = 0.8  # of the range of a half cycle, in one step
 
 _LONGEST = 0.25  # of a typical half cycle
 
-_FEWEST_STEPS = 8  # with fewer steps a half cycle, one step is a good part of it
+_FEWEST_STEPS = 8  # in a half cycle with fewer steps, one step is a large part of it
 
 
 def _drop_jumps(values: Floats, reversals: Indices) -> tuple[Indices, Indices]:
@@ -284,16 +284,16 @@ def _drop_jumps(values: Floats, reversals: Indices) -> tuple[Indices, Indices]:
 
     Notes
     -----
-    A channel that drops out on a branch leaves it and comes back: one half cycle more
-    each way, one of which is nothing but the jump.  A half cycle is a jump where a
-    single step at its begin or end makes 80 % of its range, while it lasts at most a
+    A channel that drops out on a branch leaves it and comes back: one more half cycle
+    each way, one of which is only the jump.  A half cycle is a jump where a
+    single step at its beginning or end makes 80 % of its range, while it lasts at most a
     quarter as long as the half cycle of median length, and that has at least 8 steps.
-    The samples themselves are left as they are. A channel that is set to zero after a short
-    preload does not come back: what is before that is no part of the first cycle.
+    The samples themselves are left unchanged. A channel that is set to zero after a short
+    preload does not come back: the part before that does not belong to the first cycle.
 
     Examples
     --------
-    A drop-out of two samples on the way up.
+    A drop-out of two samples on the way up:
 
     >>> values = np.r_[np.arange(9.0), [0, 0], np.arange(9.0, 20), np.arange(20.0, 0, -1)]
     >>> _drop_jumps(values, np.array([0, 8, 9, 22, 41]))
@@ -312,11 +312,11 @@ def _drop_jumps(values: Floats, reversals: Indices) -> tuple[Indices, Indices]:
     at_begin = np.abs(take_samples(values, begin + 1) - level[:-1])
     at_end = np.abs(level[1:] - take_samples(values, end - 1))
     is_jump = (np.fmax(at_begin, at_end) >= _JUMP_SHARE * size) & (steps <= _LONGEST * typical)
-    is_jump[[0, -1]] = False  # without a neighbour at each side it is an end, not a pair
+    is_jump[[0, -1]] = False  # an end has no neighbour on one side, so it is not a pair
     rows = np.flatnonzero(is_jump)
     if rows.size == 0:
         return reversals, none
-    # of jumps that follow each other, there and back, every other one: each takes two reversals
+    # in a run of jumps there and back, every other one: each takes two reversals
     row_start = np.concatenate([[True], np.diff(rows) > 1])
     place = np.arange(rows.size)
     place -= np.maximum.accumulate(np.where(row_start, place, 0))
@@ -330,11 +330,11 @@ def _drop_jumps(values: Floats, reversals: Indices) -> tuple[Indices, Indices]:
     return reversals[stays], reversals[rows]
 
 
-_CYCLES_READ = 64  # before their samples are let go
+_CYCLES_READ = 64  # before their samples are released
 
 
 def _changes_of_count(cycle_counter: Integers) -> Indices:
-    """Samples after which the machine's count is another.
+    """Samples after which the machine's count changes.
 
     Examples
     --------
@@ -351,16 +351,16 @@ def _changes_of_count(cycle_counter: Integers) -> Indices:
 def _counted_cycles(
     time: Floats, values: Floats, cycle_counter: Integers
 ) -> tuple[Indices, Indices, Indices, Indices, Integers]:
-    """First and last sample, the turns, and the machine's number of every counted cycle.
+    """First and last sample, turns, and machine's number of every counted cycle.
 
     Notes
     -----
-    A machine changes its count at a phase of its own command, which the crosshead follows
-    late, so that a count may begin a little before the valley; the cycle is as counted,
-    and its extremes are those the machine prints, while its branches run between the
+    A machine changes its count at a phase of its own command, which the crosshead follows with
+    a delay, so a count may begin a little before the valley.  The cycle is as counted
+    and has the extremes that the machine prints, while its branches run between the
     extremes.  It lasts until the first sample of the next count, unless the log has a gap between
-    them or the count skips.  A count that changes after the valley begins at it, and one that an
-    end of the log cuts off is left out.  Missing samples are passed over.
+    them or the count skips.  If the count changes after the valley, the cycle begins at the valley.
+    A cycle that is cut off by an end of the log is left out.  Missing samples are skipped.
 
     Examples
     --------
@@ -373,7 +373,7 @@ def _counted_cycles(
     change = _changes_of_count(cycle_counter)
     step = take_samples(time, change + 1) - take_samples(time, change)
     counts = take_samples(cycle_counter, np.concatenate([[0], change + 1]))
-    # where the count skips, the log does too, though its time may not show it
+    # where the count skips, the log has a gap too, though its time may not show it
     goes_on = (step < _GOES_ON * median_step(time)) & (np.diff(counts) <= 1)
     begin = change + 1
     length = np.diff(begin, prepend=0, append=time.size)
@@ -416,17 +416,17 @@ _GOES_ON = 3.0  # steps of the log
 
 _LATE_COUNT = 0.1  # of a cycle
 
-_WHOLE_COUNT = 0.8  # of the usual length: what is cut off by an end of the log is shorter
+_WHOLE_COUNT = 0.8  # of the usual length: a cycle cut off by an end of the log is shorter
 
 
 _NEAR_VALLEY = 0.15
-"""Share of a stroke above the valley by which a count may change: a crosshead late by .8 rad."""
+"""Fraction of a stroke above the valley at which a count may change: crosshead late by .8 rad."""
 
 
 def _change_at_valleys(
     values: Floats, first: Indices, last: Indices, branch_first: Indices, branch_last: Indices
 ) -> bool:
-    """Whether the machine counts where cycles begin: most of them, of those with a stroke."""
+    """Whether most counts that have a stroke begin where cycles begin."""
     begin, peak, end = (take_samples(values, at) for at in (first, branch_first[:, 1], last))
     valley = np.fmin(
         take_samples(values, branch_first[:, 0]), take_samples(values, branch_last[:, 1])
@@ -438,7 +438,7 @@ def _change_at_valleys(
 
 
 def _begin_at_peaks(values: Floats, branch_first: Indices, branch_last: Indices) -> bool:
-    """Whether most counted cycles lack a good part of the rise to their peak, or of the fall."""
+    """Whether most counted cycles lack a large part of the rise to their peak, or of the fall."""
     peak = take_samples(values, branch_last[:, 0])
     ways = np.stack([
         peak - take_samples(values, at) for at in (branch_first[:, 0], branch_last[:, 1])
@@ -451,11 +451,11 @@ _OF_RANGE = 0.25
 
 
 def _skips_of_count(cycle_counter: Integers, reversals: Indices) -> Indices:
-    """Samples after which the count goes on by more than one, where each count lasts one cycle.
+    """Samples after which the count increases by more than one, if each count lasts one cycle.
 
     A machine that stores some of its cycles writes them one below the other, often with a time
     that counts rows: the halves on both sides of a skip belong to two cycles.  A count that is
-    read more slowly than the cycles skips too, but lasts longer than they do.
+    logged more slowly than the cycles skips too, but each value lasts longer than a cycle.
 
     Examples
     --------
@@ -473,20 +473,20 @@ def _skips_of_count(cycle_counter: Integers, reversals: Indices) -> Indices:
     return change[(np.diff(count) > 1) & (count[:-1] > 0) & lasts_one]
 
 
-_AS_LONG = 0.25  # of a cycle, by which a count may last longer or shorter
+_AS_LONG = 0.25  # of a cycle: tolerance on the duration of a count
 
 
 def _are_apart(number: Integers, n_reversals: int) -> bool:
-    """Whether counted cycles stand alone in the log, so that no reversals part them."""
+    """Whether counted cycles stand alone in the log, so that reversals do not separate them."""
     begins = np.flatnonzero(np.diff(number, prepend=number[:1] - 2) != 1)
     lengths = np.diff(begins, append=number.size)
     return bool((lengths == 1).any()) or n_reversals < number.size - 2 * begins.size
 
 
 def _number_of_cycles(cycle_counter: Integers, first: Indices, last: Indices) -> Integers:
-    """The machine's number of cycles from valley to valley, wherever in them its count changes.
+    """The machine's number of each cycle from valley to valley, wherever its count changes.
 
-    It is read half a cycle from where it does.
+    The number is read half a cycle away from the change.
 
     Examples
     --------
@@ -506,10 +506,10 @@ def _number_of_cycles(cycle_counter: Integers, first: Indices, last: Indices) ->
 def _count_over_gaps(
     time: Floats, first: Indices, last: Indices, standstills: Standstills
 ) -> Integers | None:
-    """Number of each cycle with those that would fit into gaps of the log; None without any.
+    """Number of each cycle, counting those that would fit into gaps of the log; None without gaps.
 
-    A logger that stores a few cycles in a hundred leaves gaps while the machine goes on; one
-    that is off while it rests leaves them in a standstill, where no cycle fits.
+    A logger that stores a few cycles in a hundred leaves gaps while the machine runs.  A
+    logger that is off while the machine rests leaves gaps in a standstill, where no cycle fits.
 
     Examples
     --------
@@ -535,7 +535,7 @@ def _count_over_gaps(
 
 
 def _check_rises(counts: Integers) -> None:
-    """Refuse a channel that falls and rises as no count does."""
+    """Refuse a channel that falls and rises as a cycle count cannot."""
     counts = counts[counts > 0]
     backward = np.flatnonzero((counts[1:] < counts[:-1]) & (counts[1:] > 1))
     if backward.size:
@@ -554,7 +554,7 @@ _WIDEST = 4  # a window is at most this part of a branch
 
 _RATES_READ = 33
 
-_CELLS = 1 << 18  # samples looked at in one step, so that they stay in the cache
+_CELLS = 1 << 18  # samples searched in one step, so that they stay in the cache
 
 _FIRST_STEPS = 8
 
@@ -574,9 +574,9 @@ def _rate(time: Floats, values: Floats, begin: Indices, end: Indices) -> Floats:
 def _steps_until(
     start: Indices, direction: int, reach: Indices, passes: Callable[[Indices, Indices], Bools]
 ) -> Indices:
-    """Samples from each start to the first that passes, -1 where none within reach does.
+    """Number of samples from each start to the first that passes, -1 if none within reach does.
 
-    ``passes`` takes samples, shape (n_rows, n_steps), and the rows of ``start`` they are of.
+    ``passes`` takes samples, shape (n_rows, n_steps), and the rows of ``start`` they belong to.
     Ends of branches are short, so all branches are searched at once, a few steps at a time.
     """
     found = np.full(start.size, -1, dtype=np.intp)
@@ -608,17 +608,17 @@ def _constant_rate_span(
 
     Notes
     -----
-    The rate is that between two samples a window apart, both inside the branch.  The
-    window is as many samples as make the noise of the rate 1 % of it,
+    The rate is taken between two samples a window apart, both inside the branch.  The
+    window has as many samples as reduce the noise of the rate to 1 % of it,
     :math:`\sqrt 2 / 0.01` times the noise of a sample and of its time stamp over the
     travel and the time of a step, at most a quarter of the branch.  The trimmed
-    part is all that lies from the begin of the first window to the end of the last
+    part runs from the beginning of the first window to the end of the last
     window whose rate is at least ``trim_threshold`` times the plateau: a window that
     begins in the turn of the machine is slow as a whole.  A missing sample gives no rate.
 
     Examples
     --------
-    One slow sample at each end.
+    One slow sample at each end:
 
     >>> values = np.array([0.0, 0.2, 1.2, 2.2, 3.2, 4.2, 5.2, 5.4])
     >>> _constant_rate_span(
@@ -670,7 +670,7 @@ def _plateau(
     travel = take_samples(values, branch_last) - take_samples(values, branch_first)
     sign = np.sign(travel)
     width = _window(time, travel, n_steps, noise)
-    reach = n_steps - width  # last begin of a window, from the first sample
+    reach = n_steps - width  # last start of a window, from the first sample
 
     plateau = np.full(n_steps.size, np.nan)
     n_read = min(_RATES_READ, int(reach.max(initial=0)) + 1)
@@ -699,7 +699,7 @@ def _window(time: Floats, travel: Floats, n_steps: Indices, noise: float) -> Ind
 
 
 def _median(rates: Floats) -> Floats:
-    """Median of each row, what is missing left out; NaN where all is."""
+    """Median of each row without missing values; NaN where all are missing."""
     missing = np.isnan(rates)
     if not missing.any():
         ordered, middle = np.sort(rates, axis=1), rates.shape[1] // 2  # faster than np.median
@@ -718,7 +718,7 @@ def _stroke_span(
     Notes
     -----
     For waveforms without a plateau.  Five hundredths of the stroke are left out at each
-    end; a sine has 44 % of its greatest rate there.
+    end, where a sine has 44 % of its greatest rate.
 
     Examples
     --------
@@ -751,7 +751,7 @@ def label_phases(
     Parameters
     ----------
     time : ndarray, shape (n_samples,)
-        Elapsed time of the record, beside which the labels lie. [s]
+        Elapsed time of the record, aligned with the labels. [s]
     standstills : Standstills
         Rests and holds. [SI]
     cycles : Cycles or None
@@ -760,7 +760,7 @@ def label_phases(
     Returns
     -------
     phase : ndarray of int8, shape (n_samples,)
-        Cycling where a cycle is, dwells included; else rest or hold where the crosshead
+        Cycling during a cycle, including dwells; else rest or hold where the crosshead
         stands; else approach: every other movement, to and from the test. [1]
 
     Raises
@@ -832,7 +832,7 @@ _NO_LOAD = 0.1  # of the greatest
 
 
 def _let_back(tension: Floats, settings: CycleSettings) -> str:
-    """What to state where a specimen is let back to no load, and is longer there than it was."""
+    """Advice for a specimen that is longer when it returns to no load than it was before."""
     ends, most = tension[:, [0, -1]], np.nanmax(tension)
     if settings.control == "load" or not bool((ends < _NO_LOAD * most).all()):
         return ""
@@ -843,7 +843,7 @@ def _let_back(tension: Floats, settings: CycleSettings) -> str:
 
 
 def _hint(time: Floats, values: Floats) -> str:
-    """What to look at where no cycle is found; a log may be too coarse, or cut off at a value."""
+    """Advice where no cycle is found; a log may be too coarse, or cut off at a value."""
     step = median_step(time)
     if values.size > FEWEST_SAMPLES and _turning_points(values).size > _AT_TURNS * values.size:
         return (
@@ -871,11 +871,11 @@ def control_channel(position: Floats, tension: Floats, settings: CycleSettings) 
     Parameters
     ----------
     position : ndarray, shape (n_samples,)
-        Of the crosshead. [m]
+        Position of the crosshead. [m]
     tension : ndarray, shape (n_specimens, n_samples)
         [N]
     settings : CycleSettings
-        Which of them.
+        Which channel is controlled.
 
     Returns
     -------
@@ -900,7 +900,7 @@ def control_channel(position: Floats, tension: Floats, settings: CycleSettings) 
 
 @dataclass(frozen=True)
 class _Paired:
-    """Reversals found with a band, less those of jumps, and the whole cycles between them."""
+    """Reversals found with a band, without those of jumps, and the whole cycles between them."""
 
     reversals: Indices
     band: float
@@ -948,9 +948,9 @@ def _paired_cycles(
     counter: Integers | None,
     is_counted: bool,
 ) -> tuple[_Paired, list[Note]]:
-    """Cycles by the band that is stated, or by one that is found; small ones where no others are.
+    """Cycles by the stated or the estimated band; small cycles where there are no others.
 
-    A tenth of most of the travel hides cycles that are small beside the pull to them.
+    A band of a tenth of the typical travel hides cycles that are small beside the pull to them.
     """
     pair = partial(
         _paired, time, values, standstills,
@@ -991,9 +991,9 @@ def _range(values: Floats) -> float:
     return max(high - low, 0.0)
 
 
-_STEADY = 0.015  # of a range: by less a mean of a dozen cycles is moved by a thousandth
+_STEADY = 0.015  # of a range: a smaller difference changes a mean of a dozen by a thousandth
 
-_STARTING = 0.25  # of a range: by more it is another level, not a machine that starts
+_STARTING = 0.25  # of a range: a larger difference is another level, not a machine that starts
 
 _OTHER_LENGTH = 0.1
 
@@ -1001,14 +1001,14 @@ _MOST_STARTING = 3
 
 _LEFT_STEADY = 5
 
-_READ_CLOSELY = 0.5  # of the cycles: fewer of a log that goes on with readings at the turns alone
+_READ_CLOSELY = 0.5  # of the cycles: a lower fraction is a log that goes on at the turns only
 
 
 def _steady_span(values: Floats, branch_first: Indices, branch_last: Indices) -> slice:
-    """Cycles but for those at either end in which the machine starts or stops.
+    """Cycles without those at either end in which the machine starts or stops.
 
-    A controller takes a cycle or some to the amplitude that it is set to, and the phase of those
-    cycles is not that of the others.
+    A controller takes one or a few cycles to reach its set amplitude, and the phase of those
+    cycles differs from that of the others.
 
     Examples
     --------
@@ -1025,19 +1025,19 @@ def _steady_span(values: Floats, branch_first: Indices, branch_last: Indices) ->
         return slice(0, n_cycles)
 
     def apart(of: Floats) -> Floats:
-        """How far ranges are from the middle one, as a share; zero within their scatter."""
+        """Relative distance of ranges from the median; zero within their scatter."""
         middle = np.median(of)
         far = np.abs(of - middle)
         return np.where(far > 6 * 1.5 * np.median(far), far / middle, 0.0)
 
     of_rise, of_fall = apart(rises), apart(falls)
-    # a branch that is as the others says that the level is theirs
+    # one branch with the range of the others shows that the level is the same
     worse, better = np.maximum(of_rise, of_fall), np.minimum(of_rise, of_fall)
-    # a machine that waits before it starts makes a cycle of another length
+    # a machine that waits before it starts makes a cycle of different length
     length = end - begin
     is_long = np.abs(length / np.median(length) - 1) > _OTHER_LENGTH
     is_off = ((worse > _STEADY) | is_long) & (better < _STARTING)
-    # a record may begin and end within a cycle: that branch says nothing
+    # a record may begin and end within a cycle: the branch there is no evidence
     reach = int(np.median(end - begin)) // 20
     if begin[0] <= reach:
         is_off[0] = _STEADY < of_fall[0] < _STARTING
@@ -1045,23 +1045,23 @@ def _steady_span(values: Floats, branch_first: Indices, branch_last: Indices) ->
         is_off[-1] = _STEADY < of_rise[-1] < _STARTING
 
     def n_off(of: Bools) -> int:
-        first = int(np.argmin(of))  # that is as the others
+        first = int(np.argmin(of))  # the first that is like the others
         return first if first <= min(_MOST_STARTING, (n_cycles - _LEFT_STEADY + 1) // 2) else 0
 
     return slice(n_off(is_off), n_cycles - n_off(is_off[::-1]))
 
 
-_MOST_ODD = 0.1  # of the cycles, and no more than so many of a few
+_MOST_ODD = 0.1  # of the cycles, and at most this many
 
 _FEW = 3
 
 
 def _odd_cycles(time: Floats, first: Indices, last: Indices, ranges: Floats) -> Bools:
-    """Cycles within a row that last otherwise than all others: the machine jumped or waited there.
+    """Cycles within a row whose duration differs from all others: the machine jumped or waited.
 
-    A function generator that starts again goes on at another phase.  A cycle at an end of the row
-    may have been cut there; that both its ranges, shape (n_cycles, 2), are not those of the two
-    beside it says that it is the way to the cycles or from them.
+    A function generator that restarts continues at another phase.  A cycle at an end of the row
+    may have been cut there; if both its ranges, shape (n_cycles, 2), differ from those of the two
+    beside it, it is part of the way to the cycles or from them.
 
     Examples
     --------
@@ -1080,7 +1080,7 @@ def _odd_cycles(time: Floats, first: Indices, last: Indices, ranges: Floats) -> 
         _OTHER_LENGTH * middle + 2 * sample, 6 * 1.5 * np.median(abs(length - middle))
     )
     is_odd[1:-1] = (np.abs(length - middle) > limit)[1:-1]
-    # two that last as long as two others have the turn between them at the wrong place
+    # two that together last as long as two others only have a misplaced turn between them
     beside = is_odd[1:] & is_odd[:-1] & (np.abs(length[1:] + length[:-1] - 2 * middle) < limit[1:])
     is_odd[1:][beside] = is_odd[:-1][beside] = False
     n_odd = np.count_nonzero(is_odd)
@@ -1092,7 +1092,7 @@ def _odd_cycles(time: Floats, first: Indices, last: Indices, ranges: Floats) -> 
 
 
 def _labels(first: Indices, last: Indices, values: NDArray[Any], time: Floats) -> NDArray[Any]:
-    """Value of the interval of each sample, 0 outside; a shared sample is the later one's."""
+    """Value of the interval of each sample, 0 outside; a shared sample belongs to the later one."""
     end = last + 1
     end[:-1] = np.minimum(end[:-1], first[1:])
     return interval_labels(time, first, end, values)
@@ -1108,7 +1108,7 @@ def _trimmed(
     noise = estimate_noise(values)[0]
     if settings.waveform != "triangular":
         first, last = _stroke_span(values, branch_first, branch_last)
-        # a wave that stops at its turns has a ramp within the stroke alone
+        # a wave that stops at its turns has a ramp only within the stroke
         ends = (first, last) if settings.waveform == "other" else (branch_first, branch_last)
         return (
             first,
@@ -1155,19 +1155,19 @@ def find_cycles(
 
     Notes
     -----
-    Reversals by a hysteresis band (`_first_pass` where none is stated, and `_small_pass` where
-    that leaves no cycle and this one five that are alike), half cycles by the rules of
+    Reversals are found by a hysteresis band (`_first_pass` where none is stated; `_small_pass`
+    where that gives no cycle and this gives five similar ones), half cycles by the rules of
     `find_half_cycles`. An ascending half cycle with the descending one after it is a
-    cycle; a run that begins at a peak loses its first half cycle. A pair of which one branch
-    is of one amplitude and the other of the next is left out (`whole_cycles`). At a dwell the
-    branches end where the crosshead arrives and begin where it leaves. A sample that two
-    branches or cycles share is labelled with the later cycle and the earlier branch of a
-    cycle, a peak with the later branch where only that has its rate (`_own_begin`).
+    cycle; a run that begins at a peak loses its first half cycle. A pair whose branches have
+    different amplitudes is left out (`whole_cycles`). At a dwell the
+    branches end where the crosshead arrives and begin where it leaves. A sample shared by two
+    branches or cycles is labelled with the later cycle and with the earlier branch of a
+    cycle; a peak gets the later branch where only that has its rate (`_own_begin`).
     Constant rate: `_constant_rate_span`; without a triangular waveform `_stroke_span`.
 
     Examples
     --------
-    Slack, two cycles between 1 and 3 m, and back.
+    Slack, two cycles between 1 and 3 m, and back:
 
     >>> from reduction.stages.standstills import find_standstills
     >>> from reduction.record.settings import PhaseSettings
@@ -1205,7 +1205,7 @@ def find_cycles(
     branch_first, branch_last, left_out = found.branch_first, found.branch_last, found.left_out
     if jumps.size:
         notes.append(note("jumps-no-reversals", n_jumps=jumps.size, time=float(time[jumps[0]])))
-    # a stroke of constant speed has its amplitude from the first, a sine grows into it
+    # a stroke of constant speed has its full amplitude from the start, a sine grows into it
     steady = slice(0, branch_first.shape[0])
     if settings.waveform == "sinusoidal":
         steady = _steady_span(values, branch_first, branch_last)
@@ -1218,7 +1218,7 @@ def find_cycles(
     stand_alone = at_valleys
     skips = () if counter is None or at_valleys else _skips_of_count(counter, reversals)
     if counted is not None and len(skips):
-        # a cycle that is stored alone has no other half, wherever in it the count changes
+        # a cycle stored alone has no other half, wherever the count changes in it
         stand_alone = not _begin_at_peaks(values, *counted[2:4])
         if not stand_alone:
             notes.append(note("stored-from-peak", n_cycles=len(skips)))
@@ -1236,7 +1236,7 @@ def find_cycles(
         branch_first, branch_last = branch_first[steady], branch_last[steady]
         first, last = first[steady], last[steady]
         if cycle_counter is not None and counter is None and first.size == 1:
-            counted_by = "machine counter"  # the one cycle of a log, which a machine stored
+            counted_by = "machine counter"  # the only cycle of a log, stored by a machine
         n_moves = reversals.size // 2
         has_gaps = any(one.code == "gaps-end-runs" for one in notes)
         if counted is None and has_gaps and 0 < first.size < _READ_CLOSELY * n_moves:
@@ -1268,7 +1268,7 @@ def find_cycles(
             hint=_let_back(tension, settings) + _hint(time, values),
         )
     notes += _refuse_coarse(time, first, branch_first[:, 1], last)
-    is_sure = count is not None and bool(np.all(np.diff(count) > 0))  # it may begin again with 1
+    is_sure = count is not None and bool(np.all(np.diff(count) > 0))  # it may restart at 1
     if not is_sure:
         count = _count_over_gaps(time, first, last, standstills)
         if count is not None:
@@ -1278,11 +1278,11 @@ def find_cycles(
             count, is_sure = np.flatnonzero(~odd) + 1 - int(odd[0]), True
     if first.size == 1:
         notes.append(note("one-cycle"))
-    # the way to the cycles and from them is none
+    # the way to the cycles and from them is not a cycle
     n_left = n_unsteady + np.count_nonzero(odd[1:-1])
     n_made = first.size + (n_left if counted_by == "reversals" else 0)
     if settings.expected_cycles is not None and settings.expected_cycles != n_made:
-        # each end that is left out takes a cycle with it at most
+        # each end that is left out removes at most one cycle
         is_ends = 0 < settings.expected_cycles - n_made <= found.n_ends_left_out
         code = "planned-cycles-not-whole" if is_ends else "cycles-not-as-planned"
         notes.append(note(code, n_found=n_made, n_planned=settings.expected_cycles))
@@ -1321,13 +1321,13 @@ def _own_begin(
 ) -> Indices:
     """First sample that is a branch's own, shape (n_cycles, 2); `start`, `stop`: its trimmed part.
 
-    Branches in turn: a shared peak is the end of the ascending one, a shared valley the begin of
-    it.  But a reading behind the corner of a ramp is the greatest and lies on the way down: a peak
-    at the rate of the descending branch alone is the begin of that one.
+    Branches alternate: a shared peak is the end of the ascending branch, a shared valley its
+    beginning.  But a reading just after the corner of a ramp is the greatest and lies on the way
+    down: a peak at the rate of the descending branch alone is the beginning of that branch.
 
     Examples
     --------
-    Ramps that turn at 3.5, shortly before the reading of 3.4, and shortly behind it.
+    Ramps that turn at 3.5, shortly before the reading of 3.4, and shortly after it.
 
     >>> first, last = np.array([[0, 4]]), np.array([[4, 8]])
     >>> _own_begin(first, last, np.array([[0, 4]]), np.array([[3, 8]]))
@@ -1339,7 +1339,7 @@ def _own_begin(
     peak = branch_last[:, 0]
     is_behind = (start[:, 1] == peak) & (stop[:, 0] < peak)
     begin[:, 1] += (branch_first[:, 1] == peak) & ~is_behind
-    return np.minimum(begin, branch_last)  # of a count that ends with its peak
+    return np.minimum(begin, branch_last)  # for a count that ends at its peak
 
 
 def _refuse_coarse(time: Floats, first: Indices, leaves_peak: Indices, last: Indices) -> list[Note]:
@@ -1368,7 +1368,7 @@ def _refuse_coarse(time: Floats, first: Indices, leaves_peak: Indices, last: Ind
         )
     if usual < ENOUGH_SAMPLES:
         return [note("few-samples-a-cycle", n_samples=usual, needed=ENOUGH_SAMPLES, step=wanted)]
-    # of the faster stroke, with the rest after it: what turns between its samples is in no reading
+    # the faster stroke, with the rest after it: a turn between its samples is in no reading
     goes_on = np.append(first[1:], last[-1])
     faster = np.minimum(leaves_peak - first, goes_on - leaves_peak)
     fewest = float(np.median(faster))
@@ -1388,7 +1388,7 @@ def _counter_notes(
     n_reversals: int,
     band: float,
 ) -> list[Note]:
-    """What the machine's counter says that the reversals do not."""
+    """Differences between the machine's counter and the reversals."""
     notes = []
     travel = take_samples(values, branch_last) - take_samples(values, branch_first)
     stroke = np.abs(travel).max(axis=1)
@@ -1409,7 +1409,7 @@ def _counter_notes(
             )
         )
     moving = int((~still).sum())
-    # a count is cut off where the log or a part of it begins and ends
+    # a count is cut off at each end of the log or of a part of it
     n_cut = 2 * (1 + int((np.diff(number) != 1).sum()))
     if not moving - n_cut <= n_reversals <= moving:
         notes.append(note("counter-differs", n_counted=moving, n_reversals=n_reversals))

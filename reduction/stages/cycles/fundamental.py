@@ -2,8 +2,8 @@ r"""Fundamental of a series over each cycle, at the frequency of the cycles arou
 
 .. math:: y(t) \approx \bar y + a \cos \omega t + b \sin \omega t
 
-by least squares over the samples of the cycle, weighted by time.  Noise and sampling put a turn
-a sample early or late, so that a cycle's own duration is no period; the mean over twenty is.
+by least squares over the samples of the cycle, weighted by time.  Noise and sampling shift a turn
+by a sample, so that the duration of one cycle is not a period; the mean over twenty is.
 
 References
 ----------
@@ -28,7 +28,7 @@ from reduction.stages.cycles.reading_noise import reading_noise
 
 
 def sums_over_cycles(values: Floats, first: Integers, last: Integers) -> Floats:
-    """Sum of a series over the samples from ``first`` up to, not with, ``last``.
+    """Sum of a series over the samples from ``first`` up to but excluding ``last``.
 
     Examples
     --------
@@ -40,18 +40,18 @@ def sums_over_cycles(values: Floats, first: Integers, last: Integers) -> Floats:
     if first.size == 0:
         return np.empty(0)
     holds_some = last > first
-    if not holds_some.all():  # of nothing reduceat gives the sample at its begin
+    if not holds_some.all():  # for an empty range reduceat gives the sample at its beginning
         sums = np.zeros(first.size)
         sums[holds_some] = sums_over_cycles(values, first[holds_some], last[holds_some])
         return sums
     # pairs (first, last): the even entries are the sums, the odd ones the gaps between cycles;
-    # the last pair's end may be one past the series, which reduceat does not take
+    # the last pair's end may be one past the series, which reduceat does not accept
     pairs = np.column_stack([first, last]).ravel()
     stop = int(last[-1])
     return np.asarray(np.add.reduceat(values[:stop], pairs[:-1])[::2])
 
 
-# a cycle that lacks a larger share of its readings gives no numbers
+# a cycle that lacks a larger fraction of its readings gives no results
 _MISSING_SHARE = 0.1
 
 
@@ -62,9 +62,9 @@ def bridge_gaps(
 
     Notes
     -----
-    Over a tenth of a cycle a straight line is off by up to 5 % of its amplitude at a turn.  Of a
-    series that ``is_smooth`` it is a cubic through the readings beside the gap, and through those
-    one length of the gap away from them: of a sine, off by 0.4 % there.
+    Over a tenth of a cycle a straight line is wrong by up to 5 % of its amplitude at a turn.  For a
+    series that ``is_smooth`` a cubic is used, through the readings beside the gap and those
+    one length of the gap away from them: for a sine its error there is 0.4 %.
 
     Examples
     --------
@@ -117,7 +117,7 @@ def bridge_gaps(
     return bridged, too_many
 
 
-_PLACES = 1 << 12  # a power of two, so that the turns come off an index bit by bit
+_PLACES = 1 << 12  # a power of two, so that whole turns are removed from an index by a bit mask
 
 
 _STEP = 2 * np.pi / _PLACES
@@ -131,8 +131,8 @@ def _cosine_and_sine(phase: Floats) -> tuple[Floats, Floats]:
 
     Notes
     -----
-    From the nearest of 4,096 tabulated angles by the sum of two angles ([1]_).  Over the rest, at
-    most 8e-4, the next terms of both series, of fifth and sixth power, are below 1e-17.
+    From the nearest of 4,096 tabulated angles by the sum of two angles ([1]_).  For the remainder,
+    at most 8e-4, the omitted terms of both series, of fifth and sixth power, are below 1e-17.
 
     Examples
     --------
@@ -142,18 +142,18 @@ def _cosine_and_sine(phase: Floats) -> tuple[Floats, Floats]:
     """
     nearest = phase * (1 / _STEP)
     np.rint(nearest, out=nearest)
-    with np.errstate(invalid="ignore"):  # NaN has no place, and its rest is NaN
+    with np.errstate(invalid="ignore"):  # NaN has no place, and its remainder is NaN
         place = nearest.astype(np.intp)
     place &= _PLACES - 1
     nearest *= _STEP
     rest = np.subtract(phase, nearest, out=nearest)
     square = rest * rest
-    less = square * (-1 / 24)  # one less the cosine of the rest
+    less = square * (-1 / 24)  # one less the cosine of the remainder
     less += 0.5
     less *= square
     square *= rest
     square *= 1 / 6
-    rest -= square  # now its sine
+    rest -= square  # now the sine of the remainder
     cosine, sine = _COSINE.take(place), _SINE.take(place)
     change = np.multiply(sine, rest, out=square)
     change += cosine * less
@@ -165,7 +165,7 @@ def _cosine_and_sine(phase: Floats) -> tuple[Floats, Floats]:
     return cosine, sine
 
 
-_AROUND = 10  # cycles on either side whose durations make the period of one
+_AROUND = 10  # cycles on either side whose durations give the period of one
 
 
 _LEAST_DETERMINANT = 1e-9  # of the normal equations; 2 where samples are many and even
@@ -179,9 +179,9 @@ class CycleBasis:
     ``share`` (twice the trapezoid's weight over the duration), ``cosine`` and ``sine`` have
     shape (n_samples,); ``end_share`` is the share of the last sample of each cycle,
     ``end_cosine`` and ``end_sine`` the same times those of its phase.  ``inverse``, shape
-    (n_cycles, 3, 3), turns sums of a series over share, cosine and sine into its mean and
+    (n_cycles, 3, 3), converts sums of a series over share, cosine and sine to its mean and
     its two amplitudes; ``turn_rate`` [rad s-1] is that of the phase; ``first`` and ``last``
-    are the cycles they were made for.
+    are the cycles to which they belong.
     """
 
     share: Floats
@@ -217,9 +217,9 @@ def cycle_basis(
         )
     weight = np.zeros_like(time)
     np.subtract(time[2:], time[:-2], out=weight[1:-1])
-    # an end of the cycle counts half; the other half belongs to the cycle that it touches
+    # an end of the cycle counts half; the other half belongs to the adjoining cycle
     weight[first] = time[first + 1] - time[first]
-    # one value a sample from one value a cycle, with nothing between cycles
+    # one value per sample from one value per cycle, with nothing between cycles
     gaps = np.diff(first, append=time.size) - (last - first)
     lengths = np.column_stack([last - first, gaps]).ravel()
     nothing = np.zeros(first.size)
@@ -271,7 +271,7 @@ def cycle_basis(
 
 
 def steady_cycles(*amplitudes: Floats) -> Bools:
-    """Cycles but for the first and the last ones, each of another amplitude than its neighbour.
+    """Cycles without those at both ends whose amplitude still differs from that of the next one.
 
     Examples
     --------
@@ -286,7 +286,7 @@ def steady_cycles(*amplitudes: Floats) -> Bools:
             changes = np.abs(np.diff(amplitude)) > _GROWING * np.nanmedian(amplitude)
         if changes.all():
             continue
-        # and the one beside them, which begins or ends at their level
+        # and the adjoining one, which begins or ends at their level
         for part, first in (
             (kept, int(np.argmin(changes))),
             (kept[::-1], int(np.argmin(changes[::-1]))),
@@ -306,7 +306,7 @@ def mean_period(
     last_turn: Floats,
     steady: Bools | None = None,
 ) -> Floats:
-    """Mean duration of up to 21 cycles that touch, around each cycle; of steady ones if any are.
+    """Mean duration of up to 21 touching cycles around each cycle; of steady ones if any.
 
     Examples
     --------
@@ -321,7 +321,7 @@ def mean_period(
     starts = np.concatenate([[0], breaks])
     stops = np.append(breaks, first.size) - 1
     if steady is not None:
-        # a wave that grows turns early or late by its phase
+        # in a growing wave the turns are early or late, depending on its phase
         begin = np.maximum(place[np.argmax(steady)], starts)
         end = np.minimum(place[::-1][np.argmax(steady[::-1])], stops)
         starts, stops = np.where(begin <= end, (begin, end), (starts, stops))
@@ -403,7 +403,7 @@ def part_means(values: Floats, basis: CycleBasis, middles: Integers) -> Floats:
 
 
 def turn_over_cycle(phase: Floats, follows: Bools) -> Floats:
-    """Change of a phase of cycles over each, from those beside it; 0 where a row is parted. [rad].
+    """Change of phase over each cycle, from the adjoining ones; 0 where a row is broken. [rad].
 
     Examples
     --------
@@ -420,15 +420,15 @@ def turn_over_cycle(phase: Floats, follows: Bools) -> Floats:
 def without_turning(
     cosine: Floats, sine: Floats, mean: Floats, turned: Floats
 ) -> tuple[Floats, Floats, Floats]:
-    r"""Fundamental and mean in the middle of each cycle, of a wave whose phase turns in it.
+    r"""Fundamental and mean in the middle of each cycle, for a wave whose phase changes in it.
 
-    Of :math:`A \cos(\theta + \varphi + q\theta)` over :math:`-\pi \le \theta \le \pi`, least
+    For :math:`A \cos(\theta + \varphi + q\theta)` over :math:`-\pi \le \theta \le \pi`, least
     squares give :math:`1 + q/2` times its cosine, :math:`1 - q/2` times its sine, and a mean of
     :math:`-q A \cos\varphi`, to first order: ``turned`` [rad] is :math:`2 \pi q`.
 
     Examples
     --------
-    A wave that lags 0.2 in the middle of its cycle, and 0.03 less at its end than at its begin:
+    A wave that lags 0.2 in the middle of its cycle, and 0.03 less at its end than at its beginning:
 
     >>> t = np.arange(401.0)
     >>> wave = 7 - 3 * np.cos(2 * np.pi * t / 400 - 0.2 + 0.03 * (t / 400 - 0.5))
@@ -442,7 +442,7 @@ def without_turning(
     return cosine, sine, mean - 2 * share * cosine
 
 
-_PASSES = 4  # each leaves a part in so many of the error as there are cycles
+_PASSES = 4  # each divides the error by the number of cycles
 
 
 def sine_period(
@@ -450,8 +450,8 @@ def sine_period(
 ) -> tuple[Floats, Floats]:
     """Period of the wave in each cycle, and the spread of one turn, by the driven channel's phase.
 
-    Noise puts the turns of a log a sample early or late; the phase of a fundamental over a
-    hundred samples is known to a hundredth of one.  The phase of the other channel moves with its
+    Noise shifts the turns of a log by a sample; the phase of a fundamental over a
+    hundred samples is known to a hundredth of one.  The phase of the other channel changes with its
     loss angle, which settles over a test.
     """
     phased, amplitude = np.empty((2, cycles.n_cycles))
@@ -467,9 +467,9 @@ def sine_period(
         phased[block] = _phase_turns(cosine, sine, basis, time[low:high])
 
     run_blocks(find, blocks, samples=(time, driven), longest=cycles.longest)
-    # a wrong period turns the phase about the middle of the cycle, which it leaves alone
+    # a wrong period rotates the phase about the middle of the cycle, where it has no effect
     middle = (take_samples(time, cycles.first) + take_samples(time, cycles.last)) / 2
-    # the last cycle of a run ends where it would go on, at the period of the others
+    # the last cycle of a run is taken to end at the period of the others
     ends_run = np.append(cycles.last[:-1] != cycles.first[1:], True)
     found, turns = period, phased
     for _ in range(_PASSES):

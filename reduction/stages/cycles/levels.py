@@ -1,6 +1,6 @@
 """Levels of one record: runs of cycles at one mean, amplitude and period of the control channel.
 
-A mean over cycles at several levels is that of none of them.
+A mean over cycles at several levels represents none of them.
 
 References
 ----------
@@ -22,30 +22,30 @@ from reduction.record.samples import take_samples
 from reduction.record.settings import Waveform
 from reduction.stages.cycles.cycle_product import Cycles
 
-_STEP = 0.1  # of the range of a cycle: what makes a level, in the mean or in the range
+_STEP = 0.1  # of the range of a cycle: least change, of the mean or of the range, for a level
 
-_STEP_OF_PERIOD = 0.25  # of itself: noise puts the turns of a slow wave samples early or late
+_STEP_OF_PERIOD = 0.25  # relative: noise shifts the turns of a slow wave by some samples
 
-_NOISE = 5.0  # times the scatter from cycle to cycle, where that is more
+_NOISE = 5.0  # times the scatter from cycle to cycle, if that is more
 
-_ABRUPT = 5.0  # times what the cycles beside it change from one to the next
+_ABRUPT = 5.0  # times the change between neighbouring cycles
 
 _FEWEST = 3  # cycles of a level: two that agree may do so by chance
 
-_BESIDE = 5  # cycles on either side of a step that say how steady its levels are
+_BESIDE = 5  # cycles on either side of a step, to judge how steady its levels are
 
 _MOST = 20  # levels; a record with more is a spectrum
 
-_UNLIKE = 0.5  # of the range of a cycle; of the ratio of ranges or periods, less one
+_UNLIKE = 0.5  # of the range of a cycle; excess of the ratio of ranges or periods over one
 
-_SAME_PERIOD = 0.25  # by which the first cycle after a ramp may differ from the next
+_SAME_PERIOD = 0.25  # relative difference allowed for the first cycle after a ramp
 
 
 @dataclass(frozen=True)
 class Level:
     """Cycles at one level: from ``start`` to ``stop`` [s], mean and half range of the control.
 
-    ``first`` and ``last`` are places among the cycles of the record, both inside.
+    ``first`` and ``last`` are numbers of the first and last one among the cycles of the record.
     """
 
     first: int
@@ -71,39 +71,39 @@ def find_levels(
     cycles : Cycles
         From `reduction.stages.cycles.cycle_search.find_cycles`.
     waveform : {"triangular", "sinusoidal", "other"}
-        Of the machine.
+        Waveform of the machine.
 
     Returns
     -------
     levels : tuple of Level
-        Empty where the record is of one level, of more than 20, where the level goes on from
-        cycle to cycle, or where the cycles between two steps are unlike each other.
+        Empty if the record has one level or more than 20, if the level changes continually from
+        cycle to cycle, or if the cycles between two steps are unlike each other.
 
     Raises
     ------
     DataError
-        If time and channel are not of one length.
+        If time and channel differ in length.
 
     Notes
     -----
-    Of each cycle mean, half range and period are read at its turns.  A *step* is a change of
-    the mean by a tenth of the range, of the range by a tenth or of the period by a quarter of
-    itself, and by five times the scatter from cycle to cycle where that is more.  Neighbours
-    that differ by less than half a step belong together; three cycles that do are a run.  Two
-    runs are two levels where the medians of the three cycles on both sides differ by a step, and
-    by five times as much as the cycles beside them change from one to the next: a ramp of the
+    Mean, half range and period of each cycle are taken at its turns.  A *step* is a change of
+    the mean by a tenth of the range, of the range by a tenth or of the period by a quarter,
+    or by five times the scatter from cycle to cycle if that is more.  Neighbours
+    that differ by less than half a step belong together; three or more such cycles are a run.  Two
+    runs are two levels if the medians of the three cycles on both sides differ by a step, and
+    by five times the change between the cycles beside them.  A ramp of the
     amplitude, slow or fast, has no such place and is not cut, nor is a single cycle that
     differs.  Cycles between two levels belong to neither.
 
-    The machine's own channel is looked at, so that creep of strain in load control, or
+    The channel controlled by the machine is used, so that creep of strain in load control, or
     slips of a splice in position control, which change the other channel, make no level.
 
     Where a ramp leads into the first cycle without a turn, that cycle begins as the ramp
-    passes the valley, if it is then as long as those that follow; and, of sines, rises as they do.
+    passes the valley, if it is then as long as the next ones and, for a sine, has the same rise.
 
     Examples
     --------
-    Four cycles about 10, then four about 20, on the way from one to the other a ramp.
+    Four cycles about 10, then four about 20, with a ramp between them:
 
     >>> turns = [9, 11, 9, 11, 9, 11, 9, 11, 9, 19, 21, 19, 21, 19, 21, 19, 21, 19]
     >>> time = np.arange(0.0, 17.01, 0.1)
@@ -167,7 +167,7 @@ def find_levels(
 
 
 def _in_steps(one: Floats, other: Floats, noise: Floats) -> Floats:
-    """How many steps two cycles lie apart, in the one of three numbers that differs most."""
+    """Distance of two cycles in steps, for the one of three numbers that differs most."""
     least = np.minimum(np.exp(one[1]), np.exp(other[1]))
     ratios = [np.full_like(least, np.log1p(step)) for step in (_STEP, _STEP_OF_PERIOD)]
     size = np.stack([2 * _STEP * least, *ratios])
@@ -184,7 +184,7 @@ def _runs(is_joined: NDArray[np.bool_]) -> Iterator[tuple[int, int]]:
 
 
 def _is_step(read: Floats, change: Floats, noise: Floats, between: tuple[int, int]) -> bool:
-    """Whether the cycles up to one and those from another on are of two levels."""
+    """Whether the cycles up to one and those from another on are two levels."""
     last, first = between
     before = np.median(read[:, last + 1 - _FEWEST : last + 1], axis=1)
     after = np.median(read[:, first : first + _FEWEST], axis=1)
@@ -206,7 +206,7 @@ def _start(
     period: float,
     is_sine: bool,
 ) -> float:
-    """When the first cycle of a level begins, which may be that before the first that was found."""
+    """Beginning of the first cycle of a level, possibly the one before the first found."""
     begin = int(cycles.first[first])
     valley = float(values[begin])
     earliest = int(np.searchsorted(time, time[begin] - (1 + _SAME_PERIOD) * period))
@@ -216,7 +216,7 @@ def _start(
         return float(time[begin])
     before = values[earliest : latest + 1]
     passes = np.flatnonzero((before[:-1] < valley) & (before[1:] >= valley))
-    # a level that is reached from above has its valley found
+    # the valley of a level that is reached from above has been found
     is_reached_from_below = passes.size and np.nanmin(values[after + 1 : earliest + 1]) < valley
     if not is_reached_from_below:
         return float(time[begin])
@@ -230,7 +230,7 @@ _ALIKE = 0.05  # of a stroke
 
 
 def _rises_alike(time: Floats, values: Floats, begins: tuple[int, int], peak: int) -> bool:
-    """Whether two rises, one before the other, are one to a twentieth, about their middles.
+    """Whether two successive rises agree to a twentieth, aligned at their middles.
 
     ``begins`` are their first samples, and ``peak`` is the end of the later one.
     """
@@ -249,13 +249,13 @@ def _rises_alike(time: Floats, values: Floats, begins: tuple[int, int], peak: in
 
 
 def spread_of_cycles(time: Floats, control: Floats, cycles: Cycles) -> tuple[float, float, float]:
-    """Range of the means of nine tenths of the cycles over a cycle's range; ratios of the others.
+    """Range of the means of nine tenths of the cycles over a cycle's range, and two ratios.
 
-    Those of their ranges and of their periods.
+    The ratios are those of the ranges and of the periods.
 
     Examples
     --------
-    Twenty cycles of range 2, then twenty of range 4, about one mean.
+    Twenty cycles of range 2, then twenty of range 4, about one mean:
 
     >>> time = np.arange(0.0, 161.0)
     >>> control = np.tile([-1.0, 0.0, 1.0, 0.0], 41)[:161] * np.where(time < 80, 1, 2)
@@ -272,7 +272,7 @@ def spread_of_cycles(time: Floats, control: Floats, cycles: Cycles) -> tuple[flo
 
 
 def are_unlike(mean: float, ratio: float, of_periods: float) -> bool:
-    """Whether a mean over cycles of such a spread represents none of them."""
+    """Whether the mean over cycles of such a spread represents none of them."""
     return mean > _UNLIKE or max(ratio, of_periods) > 1 + _UNLIKE
 
 

@@ -3,14 +3,14 @@ r"""Energy of the loops of tension against strain.
 .. math:: H = \oint T \, d\varepsilon = \sum_i T_i \, \Delta\varepsilon_i
 
 A polygon through N samples of an ellipse is too small by :math:`(2\pi/N)^2/6`: 4.5 %
-at 12 samples a cycle.  Where strain and tension run smoothly (sinusoidal tests) the
+at 12 samples a cycle.  Where strain and tension are smooth (sinusoidal tests) the
 differences of strain are taken to eighth order, which leaves 1e-5 at 12 samples.  Where
 the crosshead turns sharply (triangular tests) the polygon is the better area: it follows
-straight branches exactly, and only the two tips between samples are cut, while a high
-order difference would ring at each turn.
+straight branches exactly, and only the two tips between samples are cut, while a
+high-order difference would ring at each turn.
 
-Storage and loss of a wave that is no sine are taken at equal phase of the channel that the machine
-moves.  With that channel as :math:`\cos\theta` of its half range,
+Storage and loss of a wave that is not a sine are taken at equal phase of the channel that the
+machine moves.  With that channel as :math:`\cos\theta` of its half range,
 
 .. math::
 
@@ -18,9 +18,10 @@ moves.  With that channel as :math:`\cos\theta` of its half range,
         = \frac{H}{\pi \varepsilon_a^2}, \qquad
     E' = \frac{1}{\pi \varepsilon_a} \oint T \, d\sin\theta
 
-([1]_), into which no time enters: the loss of an elastic curve is zero, however long its strokes
-last.  Of a sine they are those of the fundamental over time.  Of a triangle they are not: a linear
-material of constant loss angle has two thirds of its loss in a sine, since ramps make its area.
+([1]_), which do not depend on time: the loss of an elastic curve is zero, whatever the duration of
+its strokes.  For a sine they are those of the fundamental over time.  For a triangle they are not:
+a linear material of constant loss angle has two thirds of its loss in a sine, since ramps make its
+area.
 
 References
 ----------
@@ -51,7 +52,7 @@ def _smooth_steps(strain: Floats, first: Integers, last: Integers, stride: int =
     """Eighth-order change of strain per stride of samples at each sample, shape (n_samples,).
 
     Where the record ends within four strides of a cycle, that cycle is continued
-    periodically, its drift added, so that a log of one cycle is as good as any.
+    periodically, with its drift added, so that a log of one cycle is as good as any.
     """
     reach = stride * len(_EIGHTH_ORDER)
     ahead, behind = strain[:0], strain[:0]
@@ -89,9 +90,9 @@ def loop_energy(
     Notes
     -----
     An open loop is closed by the straight line from its last sample to its first; `without_drift`
-    then takes out what the line adds.
+    then subtracts the energy added by that line.
     Independent noise of tension and strain leaves the energy unbiased, since no
-    product of a reading with itself enters.
+    reading is multiplied by itself.
 
     Examples
     --------
@@ -114,8 +115,8 @@ def loop_energy(
         )
     if first.size == 0:
         return np.empty(0), np.empty(0)
-    # tension is counted from the closing line, so that an end of the loop, whose strain is
-    # noisy, does not enter with the whole of the mean tension
+    # tension is counted from the closing line, so that the noise of strain at an end of the loop
+    # is not multiplied by the whole mean tension
     closing = (force[last] + force[first]) / 2
     if waveform == "sinusoidal":
         step = _smooth_steps(stretch, first, last)
@@ -150,17 +151,17 @@ def without_drift(
 
     Notes
     -----
-    A cycle begins at a reversal, so its closing line lies at an extreme: while a rope still
+    A cycle begins at a reversal, so its closing line is at an extreme: while a rope still
     creeps by d a cycle under a tension amplitude, that line adds the amplitude times d to
-    the area, which in a narrow loop is several per cent.  Both series are taken as a steady
+    the area, several per cent in a narrow loop.  Both series are taken as a steady
     cycle and a drift that is linear in time; with y = y_s + d t / P the work of the drift,
-    integrated by parts, is the correction.  Means of cycles carry little noise, so it adds none
-    to speak of.
+    integrated by parts, is the correction.  Means of cycles have little noise, so it adds hardly
+    any.
 
     Examples
     --------
-    The ellipse of 31.416 J/m whose strain grows by 0.01 a cycle, begun at its least tension:
-    the closed loop has 50 N * 0.01 = 0.5 J/m too much.
+    The ellipse of 31.416 J/m whose strain grows by 0.01 a cycle, begun at its least tension;
+    the closed loop has 50 N * 0.01 = 0.5 J/m too much:
 
     >>> turn = np.linspace(0, 1, 401)
     >>> tension = 1000 - 50 * np.cos(2 * np.pi * turn)
@@ -187,17 +188,17 @@ def work_at_equal_phase(
     branch_last: Integers,
     levels: Floats,
 ) -> tuple[Floats, Floats, Floats]:
-    r"""Integral of a series over the sine of the phase of another, the mean of that sine, and x_a.
+    r"""Integral of a series over the sine of the phase of another, mean of that sine, and x_a.
 
     .. math:: \oint y \, d\sin\theta, \qquad \overline{\sin\theta}, \qquad
               \cos\theta = \frac{x - \bar x}{x_a}
 
     Notes
     -----
-    Between samples of a branch the series is a straight line over the other, so that the turns,
-    near which the phase runs fast, cost nothing; where noise sends the other backward it is a
-    straight line over the sine.  ``levels`` are those of the other in the first valley, the peak
-    and the last valley of each cycle: at noisy readings it would end short of its turns.
+    Between samples of a branch the series is linear in the other one, so that the turns,
+    where the phase changes fast, cause no error; where noise reverses the other one, the series is
+    linear in the sine.  ``levels`` are those of the other series in the first valley, the peak
+    and the last valley of each cycle: with noisy readings it would end short of its turns.
 
     Examples
     --------
@@ -222,7 +223,7 @@ def work_at_equal_phase(
         with np.errstate(divide="ignore", invalid="ignore"):
             level = (driven[at] - middle[row]) / half[row]
         level[at == begin[row]], level[at == end[row]] = way, -way
-        # noise takes a rest beyond its level as often as below it: the sine there is of other sign
+        # noise takes a rest beyond its level as often as below it: there the sine changes sign
         mirror = np.where(np.abs(level) > 1, 2 * np.sign(level), 0.0)
         inside = np.clip(np.where(mirror == 0, level, mirror - level), -1, 1)
         sine = np.where(mirror == 0, way, -way) * np.sqrt(1 - inside**2)
@@ -246,11 +247,11 @@ def work_at_equal_phase(
 def energy_of_cycles_beside_polygon(
     force: Floats, stretch: Floats, moved: Floats, begin: Integers, end: Integers
 ) -> tuple[Floats, Floats]:
-    """What the polygon of the readings lacks of each loop, and how far that may be off."""
+    """Area missing from the polygon of the readings of each loop, and its possible error."""
 
     def of_cycles(lacking: Floats) -> Floats:
         up_to = np.concatenate([[0.0], np.cumsum(lacking)])
-        # what lies beside a valley is half of the cycle before it and half of the one after it
+        # the area beside a valley belongs half to the cycle before it and half to the one after it
         beside = sum(lacking[np.maximum(at - 1, 0)] + lacking[at] for at in (begin, end))
         return np.asarray(up_to[np.maximum(end - 1, begin + 1)] - up_to[begin + 1] + beside / 2)
 
@@ -258,25 +259,25 @@ def energy_of_cycles_beside_polygon(
         of_cycles(one)
         for one in energy_beside_polygon(force, stretch, moved, noise=reading_noise(moved))
     )
-    # half of it, as of the levels: no machine turns at once
+    # half of it, as for the levels: no machine turns at once
     return at_corners / 2 + between, np.abs(at_corners / 2) + _OF_A_KINK * np.abs(between)
 
 
 def energy_by_chance(tension: Floats, strain: Floats, first: Integers, last: Integers) -> float:
-    r"""How far kinks of tension between readings may put the energy of smooth steps off.
+    r"""Possible error of the energy of smooth steps due to kinks of tension between readings.
 
     .. math:: u = \max_r \frac{1}{r^2} \sqrt{\frac1r \sum_p (H_{rp} - \bar H_r)^2}
 
     Notes
     -----
-    The sum of a kinked integrand is off by its second Bernoulli polynomial at the place of the
-    kink between two readings, times the square of the interval.  So is the sum over every r-th
-    reading from the p-th on, H_rp, of r times the interval: their scatter is r^2 times what is
-    sought.  In a log that is no multiple of the wave the mean over cycles has none of it.
+    The error of the sum of a kinked integrand is its second Bernoulli polynomial at the place of
+    the kink between two readings, times the square of the interval.  The same holds for the sum
+    over every r-th reading from the p-th on, H_rp, of r times the interval: their scatter is r^2
+    times the error.  If the sampling is not synchronous with the wave, it averages out over cycles.
 
     Examples
     --------
-    Dry friction of 10 N, 24 readings a cycle: 40.0 J/m.
+    Dry friction of 10 N, 24 readings a cycle, 40.0 J/m:
 
     >>> turn = 2 * np.pi * (np.arange(24 * 6 + 1) + 0.3) / 24
     >>> drag = np.where(np.sin(turn) > 0, 10.0, -10.0)
@@ -310,7 +311,7 @@ def energy_by_chance(tension: Floats, strain: Floats, first: Integers, last: Int
 
 
 def _energy_by_aliases(tension: Floats, strain: Floats, first: Integers, n_samples: int) -> float:
-    r"""How far kinks of tension put the energy of a sine off whose log is in step with it.
+    r"""Error of the energy of a sine due to kinks of tension, in a log synchronous with it.
 
     .. math:: u = \pi \hat\varepsilon \frac{C}{\sqrt 2}
         \sqrt{\frac1{(n - 1)^4} + \frac1{(n + 1)^4}}, \qquad
@@ -318,15 +319,16 @@ def _energy_by_aliases(tension: Floats, strain: Floats, first: Integers, n_sampl
 
     Notes
     -----
-    Of n readings a cycle the harmonics n - 1 and n + 1 count as the fundamental.  Those of a wave
-    with kinks fall with the square of their number: what they are follows from the upper ones that
-    the readings show, of the same parity: of the lower ones that which no elastic line has, as a
-    line that bends has many of those, and of all but what a jump at the turns has, as by dry
-    friction, since that cancels.  Sums over every other reading may agree by chance.
+    With n readings a cycle the harmonics n - 1 and n + 1 count as the fundamental.  Those of a wave
+    with kinks fall with the square of their order, so they are estimated from the upper harmonics
+    of the same parity that the readings show.  Of the lower harmonics only the part that no elastic
+    line has is used, since a nonlinear line has many; and from all the part of a jump at the
+    turns, as by dry friction, is excluded, since that cancels.  Sums over every other reading may
+    agree by chance.
 
     Examples
     --------
-    Slip at 10 N, read 12 and 1,200 times a cycle: energies, and what the first may be off.
+    Slip at 10 N, read 12 and 1,200 times a cycle; energies, and the possible error of the first:
 
     >>> def loop(per_cycle, first):
     ...     turn = 2 * np.pi * (np.arange(6 * per_cycle + 1) + 0.3) / per_cycle
@@ -367,7 +369,7 @@ def _energy_by_aliases(tension: Floats, strain: Floats, first: Integers, n_sampl
     return float(energy) if np.isfinite(energy) else 0.0
 
 
-_MOST_FOLDED = 50  # cycles that say how far chance puts all of them off
+_MOST_FOLDED = 50  # cycles used to find how far chance changes all of them
 
 
 _OF_A_KINK = 0.45
@@ -387,14 +389,14 @@ def energy_of_rounding(
 ) -> Floats:
     """Standard uncertainty of the energy of each cycle by the steps of both converters.
 
-    Of every reading by itself, by the norm of the steps of strain, and of the branches together.
+    For every reading by itself, by the norm of the steps of strain, and for the branches together.
     """
     force, strain = ranges
     own = norm * np.hypot(left[0], left[1] * force / strain)
     if waveform == "sinusoidal":
         return np.asarray(own)
     of_branches = [
-        # of both branches; what noise leaves of an error of one reading it leaves of their mean
+        # for both branches; noise reduces an error of their mean as it does that of one reading
         np.sqrt(2) * rounding_of_branches(one, cycles, step) * rest * np.sqrt(12) / step * other
         if step
         else 0.0

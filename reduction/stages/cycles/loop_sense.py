@@ -1,12 +1,12 @@
-r"""Loops that run the wrong way round, and what the drift of the cycles does to their energy.
+r"""Loops that run the wrong way round, and effect of the drift of cycles on their energy.
 
-Of a passive specimen tension rises with stretch and leads it.  Where it falls with stretch one
-channel counts backward; where it rises and follows, tension was logged late, by
+In a passive specimen tension rises with stretch and leads it.  Where it falls with stretch, one
+channel has the wrong sign; where it rises and lags, tension was logged late, by
 
 .. math:: \ell \ge -\delta / (2 \pi f)
 
-with the angle :math:`\delta` of the loop, or something in the specimen does work.  No single
-frequency tells these two apart, but what is known of the lag of the channels may.
+with the angle :math:`\delta` of the loop, or something in the specimen does work.  A single
+frequency does not distinguish these two, but the known lag of the channels may.
 
 References
 ----------
@@ -42,21 +42,21 @@ _BEYOND_SCATTER = 3.0
 
 _DRIFT_TOLD = 0.02  # of the energy
 
-_FEWEST_CYCLES, _SETTLING = 24, 0.1  # of a drift between clocks; share of cycles left out first
+_FEWEST_CYCLES, _SETTLING = 24, 0.1  # for a drift of clocks; fraction of cycles omitted at first
 
-_EVEN = 0.5  # slope of one half of the cycles over that of the other
+_EVEN = 0.5  # least ratio of the slopes of both halves of the cycles
 
-_STIFFNESS_STAYS = 0.1  # change of EA over that of the energy
+_STIFFNESS_STAYS = 0.1  # greatest relative change of EA over that of the energy
 
-_LEAST_LOSS = 1e-3  # loss factor that no rubber and no fibre comes near
+_LEAST_LOSS = 1e-3  # loss factor that no rubber or fibre comes near
 
-_FRICTION = 2.0  # loss over the fall of tension with stretch: less may be damping beside inertia
+_FRICTION = 2.0  # loss over the fall of tension with stretch: less may be damping besides inertia
 
-_PLACED = 0.5  # of what is not known of the work of a drift whose cycles tell nothing of its place
+_PLACED = 0.5  # of the uncertainty of the work of a drift whose place in the cycles is unknown
 
 
 def without_backward_loops(loops: Loops) -> Loops:
-    """Leave out what is no property of a specimen where tension falls with stretch.
+    """Leave out results that do not describe a specimen, where tension falls with stretch.
 
     Parameters
     ----------
@@ -67,8 +67,8 @@ def without_backward_loops(loops: Loops) -> Loops:
     -------
     loops : Loops
         With NaN for stiffness, energy and loss of such specimens; means, amplitudes, frequency and
-        the fundamental over time are what was logged, and stay. Of friction that falls with stretch
-        the loss factor alone is left out.
+        the fundamental over time are kept as logged. For friction that falls with stretch
+        only the loss factor is left out.
 
     Raises
     ------
@@ -104,11 +104,11 @@ def without_backward_loops(loops: Loops) -> Loops:
 def contradicts_sine(loops: Loops) -> Bools:
     """Specimens whose loops are not those of a sine, shape (n_specimens,).
 
-    Where the driven channel is a sine the energy of a loop is that of the fundamentals alone,
-    whatever the other channel does.  A rise that takes another time than the fall makes a loss of
-    the curvature of an elastic specimen, over time; in its energy there is none.  Of a specimen
-    that loses next to nothing, a difference that is small beside its stiffness is no contradiction:
-    splices between it and the machine bend its strain.
+    Where the driven channel is a sine, the energy of a loop is that of the fundamentals alone,
+    whatever the other channel does.  A rise of different duration than the fall turns the curvature
+    of an elastic specimen into a loss, over time; its energy has none.  For a specimen
+    with hardly any loss, a difference that is small compared with its stiffness is no
+    contradiction: splices between it and the machine distort its strain.
 
     Examples
     --------
@@ -137,7 +137,7 @@ def contradicts_sine(loops: Loops) -> Bools:
 def unlike_neighbours(
     time: Floats, driven: Floats, cycles: Cycles, standstills: Standstills
 ) -> float:
-    r"""By how much the wave of a cycle is not that of the cycle before it; 0 where it repeats.
+    r"""Difference between the wave of a cycle and that of the cycle before it; 0 if it repeats.
 
     .. math:: x_{k+1}(\varphi) \approx a + b \varphi + c \, x_k(\varphi)
 
@@ -146,14 +146,14 @@ def unlike_neighbours(
     time, driven : ndarray, shape (n_samples,)
         [s], and position or tension. [m] or [N]
     cycles : Cycles
-        Of the record.
+        Cycles of the record.
     standstills : Standstills
-        Of the record.
+        Standstills of the record.
 
     Returns
     -------
     share : float
-        Root mean square of what is left, or the scatter of the steps of its middle, over half the
+        Root mean square of the residual, or the scatter of the steps of its middle, over half the
         range: the greater one; 0 where readings, their noise or chance explain it. [1]
 
     Raises
@@ -163,8 +163,8 @@ def unlike_neighbours(
 
     Notes
     -----
-    The median over some forty pairs at equal shares of their durations.  A mean that drifts, an
-    amplitude that grows and a sweep of the frequency leave nothing; a second frequency does.
+    The median over some forty pairs at equal fractions of their durations.  A drifting mean, a
+    growing amplitude and a frequency sweep leave no residual; a second frequency does.
 
     Examples
     --------
@@ -182,7 +182,7 @@ def unlike_neighbours(
     follows = touching(cycles)
     threes = np.flatnonzero(follows[1:-1] & follows[2:])
     if threes.size >= _FEWEST_CYCLES - 1:
-        # from middle to middle of the rises: noise and rests at the turns leave them in place
+        # from middle to middle of the rises, which noise and rests at the turns do not shift
         which = (_spread(threes)[:, None] + np.arange(3)).ravel()
         edges = cycles.first[which], cycles.branch_last[which, 0] + 1
         begins = [
@@ -190,7 +190,7 @@ def unlike_neighbours(
             for first, stop in zip(*(one.tolist() for one in edges), strict=True)
         ]
         pairs = np.array(begins).reshape(-1, 3)
-    else:  # cycles that no like one follows, while the machine goes on
+    else:  # cycles that no similar one follows, while the machine goes on
         ends = np.stack([cycles.first, cycles.last, 2 * cycles.last - cycles.first], axis=1)
         stop = ends[:, 1] + _GOES_ON * (ends[:, 1] - ends[:, 0])
         goes_on = [
@@ -198,7 +198,7 @@ def unlike_neighbours(
             for first, end in zip(cycles.first.tolist(), stop.tolist(), strict=True)
         ]
         pairs = take_samples(time, _spread(ends[np.array(goes_on, dtype=bool)]))
-        # behind a cycle that is stored alone the log goes on with one that is another time's
+        # after a cycle that is stored alone the log continues with one of another time
         own, following = np.diff(pairs, axis=1).T
         pairs = pairs[following < _GAP * own]
     phase = np.linspace(0, 1, _PHASES, endpoint=False)
@@ -223,7 +223,7 @@ def unlike_neighbours(
     scatter = 1.4826 * _median(np.abs(np.array(gone) - np.median(gone)))
     share = max(float(np.median(left)), scatter)
     n_readings = float(np.median(cycles.last - cycles.first))
-    # a turn lies up to half a reading off
+    # a turn is uncertain by up to half a reading
     by_chance = _REPEATS + np.pi / n_readings + _BEYOND_SCATTER * float(np.median(noise))
     return share if share > by_chance else 0.0
 
@@ -232,17 +232,17 @@ _PHASES = 64
 
 _GOES_ON = 3  # durations of a cycle
 
-_GAP = 1.3  # times as long for as many readings
+_GAP = 1.3  # ratio of durations for equal numbers of readings
 
 
 def _spread(values: Integers) -> Integers:
-    """At most forty of many, from the first to the last."""
+    """At most forty of many values, from the first to the last."""
     some = np.linspace(0, len(values) - 1, min(len(values), _MOST_CYCLES))
     return values[np.unique(some.astype(np.int64))]
 
 
 def _crossing(time: Floats, rise: Floats) -> float:
-    """Time at which a rise first comes to its middle. [s]."""
+    """Time at which a rise first reaches its middle. [s]."""
     level = (np.fmin.reduce(rise) + np.fmax.reduce(rise)) / 2
     after = max(int(np.argmax(rise >= level)), 1)
     return float(np.interp(level, rise[after - 1 : after + 1], time[after - 1 : after + 1]))
@@ -251,11 +251,11 @@ def _crossing(time: Floats, rise: Floats) -> float:
 _REPEATS = 0.03  # of half the range; a machine repeats its wave to a hundredth
 
 OPEN = 0.1
-"""Of half a range, from which on a cycle is too far from a closed loop to have a loss."""
+"""Of half a range: a cycle farther than this from a closed loop has no loss."""
 
 
 def without_loss(loops: Loops) -> Loops:
-    """Leave out energy and loss of cycles that are no closed loops.
+    """Leave out energy and loss of cycles that are not closed loops.
 
     Parameters
     ----------
@@ -270,7 +270,7 @@ def without_loss(loops: Loops) -> Loops:
     Raises
     ------
     TypeError
-        If it is no `Loops`.
+        If it is not a `Loops`.
 
     Examples
     --------
@@ -288,9 +288,9 @@ _OF_LOSS = (
     "closed_loop_energy",
 )  # fmt: skip
 
-_MOST_CYCLES = 40  # that are looked at, spread over the test
+_MOST_CYCLES = 40  # that are examined, spread over the test
 
-_FEWEST_READINGS = 10  # of a cycle whose shape can be told
+_FEWEST_READINGS = 10  # of a cycle whose shape can be determined
 
 _LIKE_LINES, _UNLIKE_LINES = 0.06, 0.09  # of half the range, root mean square: a twentieth at rest
 
@@ -300,21 +300,21 @@ _LIKE_SINE = 0.03  # a symmetrical trapezoid has 0.033 at least
 def waveform_of_log(
     time: Floats, driven: Floats, cycles: Cycles
 ) -> Literal["triangular", "sinusoidal", "other", ""]:
-    """Tell the waveform of a test by the channel that the machine drives.
+    """Determine the waveform of a test from the channel that the machine drives.
 
     Parameters
     ----------
     time, driven : ndarray, shape (n_samples,)
         [s], and position or tension. [m] or [N]
     cycles : Cycles
-        Of the record.
+        Cycles of the record.
 
     Returns
     -------
     waveform : str
         ``triangular`` where two straight lines from turn to turn fit, ``sinusoidal`` where a sine
-        does, ``other`` where neither comes near, as of ramps with dwells; empty in between, and
-        where the readings are too few.
+        does, ``other`` where neither comes near, as for ramps with dwells; empty in between, and
+        where there are too few readings.
 
     Raises
     ------
@@ -354,7 +354,7 @@ def waveform_of_log(
         return "triangular"
     if sine < _LIKE_SINE:
         return "sinusoidal"
-    # a reading at a turn that lies between two readings is on the line of the other stroke
+    # near a turn between two readings, a reading is on the line of the other stroke
     is_far = inside > _UNLIKE_LINES + _WITHIN * noise and sine > _LIKE_SINE + _WITHIN * noise
     return "other" if is_far else ""
 
@@ -362,7 +362,7 @@ def waveform_of_log(
 def _apart_from_shapes(time: Floats, driven: Floats) -> tuple[float, float, float, float]:
     """Root mean square about two lines, inside their turns and about a sine, and noise.
 
-    Over half the range.
+    All are divided by half the range.
     """
     known = np.isfinite(driven)
     t, x = time[known], driven[known]
@@ -389,20 +389,20 @@ def _apart_from_shapes(time: Floats, driven: Floats) -> tuple[float, float, floa
 
 _FEWEST_INSIDE = 4  # readings of a stroke
 
-_MATTERS = 20  # readings of a stroke, of which one at a turn is far off: a tenth
+_MATTERS = 20  # readings of a stroke: with fewer, one at a turn is far off, by a tenth
 
-_SINE_TOLD = 0.05  # of the loss: no machine draws a sine to a per cent
+_SINE_TOLD = 0.05  # of the loss: no machine makes a sine to one per cent
 
-_SINE_LEAST = 5e-4  # of the storage: no lag is known to so little of a radian
+_SINE_LEAST = 5e-4  # of the storage: no lag is known to this fraction of a radian
 
 _FEWEST_CYCLES = 3
 
 
 def _least_delay(loops: Loops, row: int) -> float:
-    r"""Delay of tension that explains an energy below zero, or the fundamental over time. [s].
+    r"""Delay of tension that explains a negative energy, or the fundamental over time. [s].
 
-    A delay turns the fundamental, and takes off the energy of a loop: of a sine most,
-    :math:`2 \pi^2 f` times both amplitudes; of ramps without a rest 16 f times.
+    A delay rotates the fundamental and reduces the energy of a loop: for a sine most,
+    :math:`2 \pi^2 f` times both amplitudes; for ramps without a rest 16 f times.
     """
     frequency, tension, strain, energy, loss, storage = (
         _median(getattr(loops, one)[row])
@@ -416,9 +416,9 @@ def _least_delay(loops: Loops, row: int) -> float:
 def _drift_of_lag(loops: Loops, row: int, *, stated: float) -> tuple[float, float]:
     """Change of the lag of tension over a test, and its duration; NaN where none shows. [s].
 
-    Loops widen or narrow by as much in the first half of the cycles as in the second, beyond the
-    stated lag, while their stiffness stays.  A specimen that settles changes less and less, and one
-    that heats or wears changes its stiffness too.
+    The loops widen or narrow by as much in the first half of the cycles as in the second, by more
+    than the stated lag, while EA is constant.  A specimen that settles changes less and less, and
+    one that heats or wears usually changes its stiffness too.
     """
     energy, stiffness = loops.hysteresis_energy[row], loops.apparent_spring_constant[row]
     swing = loops.frequency[row] * loops.tension_amplitude[row] * loops.strain_amplitude[row]
@@ -462,18 +462,18 @@ def notes_of_loops(
     time_step: float,
     is_sinusoidal: bool = False,
 ) -> tuple[Note, ...]:
-    """What loops say of channels and specimens: which one runs backward, is late, or gives work.
+    """Notes on channels and specimens from loops: running backward, late, or giving work.
 
     Parameters
     ----------
     loops : Loops
         From `reduction.stages.cycles.loops`. [SI]
     names : sequence of str, length n_specimens
-        Of the specimens.
+        Names of the specimens.
     lag : sequence of float, length n_specimens
-        Standard uncertainty of the lag of tension, 0 where none is stated. [s]
+        Standard uncertainty of the lag of tension, 0 if none is stated. [s]
     time_step : float
-        Between two samples. [s]
+        Time between two samples. [s]
     is_sinusoidal : bool, optional
         Whether the waveform is stated as a sine.
 
@@ -488,12 +488,12 @@ def notes_of_loops(
 
     Notes
     -----
-    Source of the sense: [1]_.  Loops give out work where the mean of their energy is below zero by
-    more than three times what it scatters by.
+    Source of the sense: [1]_.  Loops give out work where the mean of their energy is negative by
+    more than three times its scatter.
 
     Examples
     --------
-    Tension that follows strain by 0.1 rad at 2 Hz, 8 ms, which are half a sample:
+    Tension that follows strain by 0.1 rad at 2 Hz, 8 ms, which is half a sample:
 
     >>> one = {name: np.ones((1, 9)) for name in Loops.__dataclass_fields__}
     >>> found, = notes_of_loops(
@@ -539,7 +539,7 @@ def notes_of_loops(
                 "loops-give-work", name, energy=mean, n_cycles=int((known < 0).sum()),
                 n_known=known.size, delay=delay, stated=stated, time_step=time_step, cause=cause,
             )  # fmt: skip
-            # the interval of the energy has the stated lag, and holds zero
+            # the interval of the energy includes the stated lag, and contains zero
             told.append(replace(found, severity="note") if cause == "lag" else found)
         change, duration = _drift_of_lag(loops, row, stated=stated)
         if np.isfinite(change):
@@ -552,27 +552,27 @@ def notes_of_loops(
                     first=mean - half, last=mean + half, effect=half / abs(mean),
                 )
             )  # fmt: skip
-        # of a first cycle the ramp before it makes most of the drift, and little of the mean
+        # in a first cycle the ramp before it makes most of the drift, and little of the mean
         later = np.flatnonzero(np.isfinite(energy))[int(known.size > 2) :]
         mean = float(energy[later].mean())
         closed = float(np.nanmean(loops.closed_loop_energy[row, later]))
-        # of an elastic specimen any drift is many times what is lost
+        # in an elastic specimen any drift is many times the loss
         elastic = np.pi * abs(storage) * _median(loops.strain_amplitude[row]) ** 2
         least = max(_DRIFT_TOLD * abs(mean), _BEYOND_SCATTER * scatter, _LEAST_LOSS * elastic)
         if abs(closed - mean) > least:
             effect = (closed - mean) / abs(mean)
             found = note("drift-in-energy", name, energy=mean, closed=closed, effect=effect)
-            # cycles that drift unequally and lose alike show that what was taken off is right
+            # cycles of unequal drift and equal loss show that the correction is right
             is_placed = not_placed[row] < _PLACED / PLACE_OF_DRIFT
             told.append(replace(found, severity="note") if is_placed else found)
     return tuple(told)
 
 
 def _runs_backward(loops: Loops) -> Bools:
-    """Specimens whose tension falls with stretch in most cycles, and not by friction that does.
+    """Specimens whose tension falls with stretch in most cycles, except by friction.
 
-    A reversed channel turns the loop round as well: what takes up energy, and much more of it than
-    its slope stores, is friction.
+    A reversed channel also turns the loop round: a loop that takes up energy, and much more of it
+    than its slope stores, is due to friction.
     """
     pairs = zip(loops.storage_over_time, loops.loss_over_time, strict=True)
     middle = np.array([[_median(store), _median(loss)] for store, loss in pairs]).reshape(-1, 2)
@@ -580,7 +580,7 @@ def _runs_backward(loops: Loops) -> Bools:
 
 
 def _channel_that_runs_backward(tension: float, strain: float) -> str:
-    """Which channel the means blame: a specimen pulls, and at a length above its own."""
+    """Channel that the means point to: a specimen pulls, and at a length above its own."""
     if tension > 0 > strain:
         return "crosshead_position"
     if strain > 0 > tension:

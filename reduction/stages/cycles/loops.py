@@ -1,8 +1,8 @@
 r"""Loops of tension against strain: one row of dynamic quantities per cycle and specimen.
 
-What only the samples tell of a cycle (its energy, fundamental, levels at its turns) is measured
-in blocks of whole cycles; the quantities, freed of the drift from cycle to cycle, and how far noise
-and missed turns move them, follow from these alone.
+Quantities that need the samples of a cycle (its energy, fundamental, levels at its turns) are
+measured in blocks of whole cycles.  All other quantities, the correction of drift from cycle to
+cycle, and the effect of noise and missed turns follow from these alone.
 
 References
 ----------
@@ -73,21 +73,21 @@ from reduction.stages.cycles.turns import Turn
 
 
 def _are_parted(cycles: Cycles) -> bool:
-    """Whether rests part most cycles from the next one."""
+    """Whether rests separate most cycles from the next one."""
     follows = touching(cycles)
     return bool(2 * np.count_nonzero(follows) < follows.size - 1)
 
 
 def _drift_between_rests(top: Floats, valley: Floats, ends: Floats, number: Integers) -> Floats:
-    """Steady drift of a series over each cycle where a rest parts it from the next one.
+    """Steady drift of a series over each cycle where a rest separates it from the next one.
 
-    Of the middle between its turns, since a mean over the cycle holds more or less of its rests.
-    The median of three steps beside it: a first cycle after a ramp says nothing of the others.
-    Between two cycles lies at least the time of those that the machine counted and did not store.
+    The drift is that of the middle between turns, since a mean over the cycle may hold more or less
+    of its rests.  The median of three steps is taken: a first cycle after a ramp is not typical.
+    Cycles that the machine counted but did not store add their time between two cycles.
 
     Examples
     --------
-    Cycles of 6 s every 10 s, of which each lies 2 higher than the last:
+    Cycles of 6 s every 10 s, each 2 higher than the last:
 
     >>> ends = np.array([[0.0], [1], [5], [6]]) + np.arange(0, 40, 10)
     >>> top, valley = 9 + 2 * np.arange(4.0), 2 * np.arange(4.0)
@@ -112,16 +112,16 @@ def _mean_drift(means: Floats, ends: Floats) -> Floats:
     Notes
     -----
     A mean from the middle of one rise to the middle of the next, or from fall to fall, is
-    that of a period; the two together lie around the end of a cycle, and the change from one
-    end to the other is the drift.  At such a middle the series is near its mean, so a sample
-    more or less, as noise puts the turns, does not enter; in a mean from turn to turn it does,
-    with the whole amplitude.  Beside a transient (the first cycle after a ramp, a change of
-    amplitude) one of these changes says nothing of this cycle: the median of three neighbours
+    that of a period.  The average of the two is centred on the end of a cycle, and the change from
+    one end to the next is the drift.  At such a middle the series is near its mean, so one sample
+    more or less, as noise shifts the turns, has no effect; in a mean from turn to turn it counts
+    with the whole amplitude.  Near a transient (the first cycle after a ramp, a change of
+    amplitude) one of these changes is not typical of this cycle: the median of three neighbours
     is taken, and of two the lesser, or zero where they disagree in sign.
 
     Examples
     --------
-    Means that grow by 2 a cycle, and a transient in the first cycle of four.
+    Means that grow by 2 a cycle, and a transient in the first cycle of four:
 
     >>> ends = np.array([[0.0], [2], [6], [8]]) + np.arange(0, 32, 8)
     >>> print(_mean_drift(np.tile(2 * np.arange(4.0), (3, 1)), ends))
@@ -149,7 +149,7 @@ def _mean_drift(means: Floats, ends: Floats) -> Floats:
     pair = np.sort(beside[:, two], axis=0)[:2]  # NaN is sorted last
     lesser = np.where(np.abs(pair[0]) < np.abs(pair[1]), pair[0], pair[1])
     drift[two] = np.where(pair[0] * pair[1] > 0, lesser, 0.0)
-    # an end of a run has no change of its own: that of its neighbour is the best guess
+    # an end of a run has no change of its own: that of its neighbour is the best estimate
     touches = np.isfinite(around_end)
     of_next = np.append(np.where(touches, drift[1:], np.nan), np.nan)
     of_last = np.append(np.nan, np.where(touches, drift[:-1], np.nan))
@@ -160,7 +160,7 @@ def _mean_drift(means: Floats, ends: Floats) -> Floats:
 
 _CLEAR_CREEP = 3.0  # of its standard uncertainty
 
-_OF_GAP = 8  # part of a cycle, from its first turn on
+_OF_GAP = 8  # fraction of a cycle, from its first turn on, as its reciprocal
 
 
 def _gap_of_first(
@@ -168,13 +168,14 @@ def _gap_of_first(
 ) -> Floats:
     """Creep over the first cycle of a run under a driven load; NaN for others or if unclear.
 
-    From its first eighth to that of the next cycle, at the same tension: a turn found a sample off,
-    or a valley that the machine misses, is no creep.  A cycle after a ramp or a hold creeps more
-    than its neighbours.  A driven position leaves no gap: the area as logged is the work.
+    The first eighth is compared with that of the next cycle, at the same tension, so that a turn
+    found one sample off, or a valley that the machine misses, does not count as creep.  A cycle
+    after a ramp or a hold creeps more than its neighbours.  A driven position leaves no gap: the
+    area as logged is the work.
 
     Examples
     --------
-    Cycles that end 0.2 higher than they begin, but the first, which ends 1 higher:
+    Cycles that end 0.2 higher than they begin, except the first, which ends 1 higher:
 
     >>> angle = 2 * np.pi * np.arange(161) / 40
     >>> tension = -np.cos(angle)
@@ -215,15 +216,15 @@ MEASURED = (
     "force_top", "force_begin", "force_end_turn", "force_missed",
     "strain_top", "strain_begin", "strain_end_turn", "strain_missed", "energy_missed",
 )  # fmt: skip
-"""What is summed over the samples of a cycle, in this order."""
+"""Sums over the samples of a cycle, in this order."""
 
 
 @dataclass(frozen=True)
 class _Shape:
-    """Half the range of a wave and its middle, over the amplitude of its fundamental.
+    """Half range and middle of a wave, relative to the amplitude of its fundamental.
 
-    ``missed`` is the range that half the range may still have, by how much it changed with the
-    number of harmonics, up or down, and by their noise.
+    ``missed`` is the width of the interval of the half range, from its change with the
+    number of harmonics, up or down, and from their noise.
     """
 
     half: float = 1.0
@@ -237,7 +238,7 @@ _MOST_HARMONICS = 16
 _FINEST = 1e-3  # of a cycle, between phases
 
 
-_CYCLES_OF_SHAPE, _SAMPLES_OF_SHAPE = 100, 400  # that are looked at; of each of them
+_CYCLES_OF_SHAPE, _SAMPLES_OF_SHAPE = 100, 400  # greatest number of cycles; samples of each
 
 
 _FEWEST_INSIDE = 4
@@ -265,18 +266,18 @@ def _shape_of_wave(
 ) -> _Shape:
     """Shape of a wave by its harmonics, over some of its cycles together.
 
-    ``turned`` [rad] is what its phase turns by over each cycle; ``rounding`` is the standard
-    uncertainty that the steps of a converter leave in each reading.
+    ``turned`` [rad] is the change of its phase over each cycle; ``rounding`` is the standard
+    uncertainty of each reading due to the steps of a converter.
 
     Notes
     -----
-    The answer to a sine is none where the material bends or has a kink at its turns, and its
-    extremes are those of the wave and not of the fundamental.  Noise does not lift a sum of
-    harmonics as it lifts the greatest of many readings.
+    The response to a sine is not a sine where the material is nonlinear or has a kink at its turns,
+    and its extremes are those of the wave, not of the fundamental.  Noise does not raise a sum of
+    harmonics as it raises the greatest of many readings.
 
     Examples
     --------
-    A sine whose turns a tenth of its third harmonic makes sharper:
+    A sine with turns sharpened by a third harmonic of a tenth:
 
     >>> t = np.arange(0, 100.5, 0.5)
     >>> wave = -np.cos(0.2 * np.pi * t) - 0.1 * np.cos(0.6 * np.pi * t)
@@ -296,19 +297,19 @@ def _shape_of_wave(
     sine = sine + drift / np.pi
     amplitude = np.hypot(cosine, sine)
     known = np.flatnonzero(np.isfinite(amplitude + mean) & (amplitude > 0))
-    # cycles of another amplitude are not of one wave
+    # cycles of another amplitude belong to another wave
     middle = np.median(amplitude[known]) if known.size else np.nan
     known = known[np.abs(amplitude[known] - middle) < _OF_ONE_WAVE * middle]
     if known.size > _FEWEST_INSIDE:
-        known = known[1:-1]  # what stands beside cycles of another amplitude may hold part of them
+        known = known[1:-1]  # neighbours of cycles of another amplitude may hold part of them
     elif known.size > 2:
-        known = known[1:]  # behind a ramp the drift dies away within the cycle, as harmonics do not
+        known = known[1:]  # drift after a ramp dies away within the cycle, unlike harmonics
     if not known.size:
         return _Shape()
     some = known[
         np.unique(np.linspace(0, known.size - 1, min(known.size, _CYCLES_OF_SHAPE)).astype(int))
     ]
-    # a wave that grows within its cycle has harmonics of that, which lift its extremes
+    # growth of a wave within its cycle adds harmonics, which raise its extremes
     before, after = np.diff(amplitude, prepend=np.nan), np.diff(amplitude, append=np.nan)
     lesser = np.where(np.abs(before) < np.abs(after), before, after)
     growth = np.where(before * after > 0, lesser / amplitude, 0.0)
@@ -324,7 +325,7 @@ def _shape_of_wave(
         phase += turns[one] * place - np.arctan2(sine[one], cosine[one])
         phases.append(phase[usable])
         waves.append(level[usable] / amplitude[one])
-    # a log in step with its period reads the same few phases of every cycle
+    # a log synchronous with the period reads the same few phases of every cycle
     read = np.concatenate(phases) / (2 * np.pi) % 1
     order = min(_MOST_HARMONICS, int(1 / max(step_that_fills(read), _FINEST) - 2) // 2)
     if order < 2:
@@ -338,12 +339,12 @@ def _shape_of_wave(
     design, wave = terms(np.concatenate(phases)), np.concatenate(waves)
     of_wave = np.linalg.lstsq(design, wave, rcond=None)[0]
     spread = float(np.std(wave - design @ of_wave)) * np.sqrt(2 / wave.size)
-    # of readings at the same phases every cycle has the same error
+    # with readings at the same phases, every cycle has the same error
     n_phases = min(wave.size, 1 / max(step_that_fills(read), _FINEST))
     per_harmonic = rounding / middle * np.sqrt(2 / n_phases)
     spread = float(np.hypot(spread, per_harmonic))
     size = np.hypot(of_wave[1 : order + 1], of_wave[order + 1 :])
-    # the fundamental is that of each cycle; a harmonic within the noise is none, but for the third,
+    # each cycle has its own fundamental; harmonics within the noise are dropped, except the third,
     # which every curve that bends has, and which moves both extremes apart
     is_kept = ((size > _ABOVE_NOISE * spread) & (orders > 1)) | (orders == 3)
     weights = np.concatenate([[0.0], of_wave[1:] * np.tile(is_kept, 2)])
@@ -352,11 +353,11 @@ def _shape_of_wave(
         period[some] - (take_samples(time, cycles.last) - take_samples(time, cycles.first))[some]
     )
     if np.median(lacks / period[some]) > _FINEST:
-        # of a stored cycle that ends before it is whole, the harmonics are part of its fundamental
+        # if stored cycles end before they are complete, the harmonics alter their fundamental
         weights[:2] = of_wave[:2]
     curve = terms(np.linspace(0, 2 * np.pi, 721))
-    # the sums of de la Vallee Poussin, which hardly swing over where a wave falls at once, and keep
-    # the lower half of the harmonics as they are
+    # the sums of de la Vallee Poussin, which hardly overshoot where a wave falls at once, and keep
+    # the lower half of the harmonics unchanged
     faded = np.clip(2 - 2 * orders / np.arange(max(order // 2, 1) + 1, order + 2)[:, None], 0, 1)
     faded = np.vstack([np.ones(order), faded])
     sums = curve @ (np.column_stack([np.zeros(len(faded)), np.tile(faded, 2)]) * weights).T
@@ -369,7 +370,7 @@ def _shape_of_wave(
     return _Shape(half[-1], (high[-1] + low[-1]) / 2, missed)
 
 
-_IRREGULAR = 0.03  # change of amplitude from one cycle to the next, median
+_IRREGULAR = 0.03  # median change of amplitude from one cycle to the next
 
 
 def _change_of(amplitude: Floats) -> float:
@@ -397,12 +398,12 @@ def _quantities_of_cycles(
 
     Notes
     -----
-    Source: [1]_, eq. 1 and 4, freed of drift.  Where the drift is more than the range of the
-    cycle, what it is taken off is NaN.
+    Source: [1]_, eq. 1 and 4, corrected for drift.  Where the drift exceeds the range of the
+    cycle, the corrected quantities are NaN.
 
     Examples
     --------
-    Of a triangular cycle from 100 to 300 N and from 1 to 3 %, K_ap is 100 N over 1 %:
+    For a triangular cycle from 100 to 300 N and from 1 to 3 %, K_ap is 100 N over 1 %:
 
     >>> known = {"peak": 300.0, "valley": 100.0, "high": 0.03, "low": 0.01,
     ...     "force_missed": 0.0, "force_top": 300.0, "force_begin": 100.0, "force_end_turn": 100.0,
@@ -426,7 +427,7 @@ def _quantities_of_cycles(
     force_cos, strain_cos = row["force_cosine"], row["strain_cosine"]
     follows = touching(cycles)
     is_parted = waveform != "sinusoidal" and _are_parted(cycles)
-    # of a sine the mean is fitted beside it: what a cycle has of a sample more or less is not in it
+    # the mean of a sine is fitted along with it, so one sample more or less does not change it
     parts = ("mean",) * 3 if waveform == "sinusoidal" else _OF_PERIOD
     force_drift, strain_drift = (
         _drift_between_rests(row[f"{name}_top"], row[f"{name}_begin"], ends, cycles.number)
@@ -438,12 +439,12 @@ def _quantities_of_cycles(
     if gap is not None and not is_parted:
         is_own = np.abs(gap) > np.abs(strain_drift)
         strain_drift = np.where(is_own, gap, strain_drift)
-    # of the creep behind a ramp the way down has no more than its part of the cycle, and no less
-    # than that part of the next one
+    # of the creep after a ramp, the fall has at most its part of the creep of this cycle, and at
+    # least that part of the creep of the next one
     falls = 1 - rise_shares[1]
     on_fall = np.where(is_own, falls * (strain_drift + of_neighbours) / 2, np.nan)
     of_ramp = np.where(is_own, falls * np.abs(strain_drift - of_neighbours) / 2, 0.0)
-    # drift of more than the range is that of a jump among the neighbours: no steady cycle is left
+    # drift above the range comes from a jump among the neighbours: no steady cycle is left
     force_drift[np.abs(force_drift) > peak - valley] = np.nan
     for drift in (strain_drift, of_neighbours):
         drift[np.abs(drift) > row["high"] - row["low"]] = np.nan
@@ -461,7 +462,7 @@ def _quantities_of_cycles(
         mean_strain = mean_strain + of_strain.middle * strain_amplitude
         amplitude, strain_amplitude = amplitude * of_force.half, strain_amplitude * of_strain.half
         begin = mean_strain - strain_amplitude
-        # cycles of many amplitudes have no wave in common: what their logged extremes say of K_ap
+        # cycles of many amplitudes have no wave in common: K_ap by their logged extremes
         if _change_of(amplitude if control == "load" else strain_amplitude) > _IRREGULAR:
             by_extremes = np.nanmean(peak - valley) / np.nanmean(row["high"] - row["low"])
             by_wave = np.nanmean(amplitude) / np.nanmean(strain_amplitude)
@@ -469,12 +470,12 @@ def _quantities_of_cycles(
             row["force_missed"] = np.hypot(row["force_missed"], of_shape)
     else:
         begin = row["strain_begin"]
-        if is_parted:  # all of it may take place on one way between the turns
+        if is_parted:  # the drift may all take place on one way between the turns
             for name, drift in (("force", force_drift), ("strain", strain_drift)):
                 row[f"{name}_missed"] = np.hypot(
                     row[f"{name}_missed"], EITHER_WAY * np.abs(drift) / 4
                 )
-        # a cycle that is stored without the next one may end before its valley
+        # a cycle stored without the next one may end before its valley
         ends_alone = np.append(cycles.first[1:] == cycles.last[:-1] + 1, False)
         turns = [row["force_top"], row["force_begin"], row["force_end_turn"]]
         peak, valley = np.max(turns, axis=0), np.min(turns, axis=0)
@@ -490,7 +491,7 @@ def _quantities_of_cycles(
             )
             for name, drift, rise_share, way_down in (
                 ("force", force_drift, rise_shares[0], np.full_like(on_fall, np.nan)),
-                # what a first cycle lets out beyond its neighbours is no part of its wave
+                # the creep of a first cycle beyond its neighbours is not part of its wave
                 ("strain", of_neighbours, rise_shares[1], on_fall),
             )
         )
@@ -525,10 +526,10 @@ def _quantities_of_cycles(
             storage, loss = over_time, lost_over_time
             u_storage = u_loss = u_apparent = u_over_time
         else:
-            # of one cycle the turn lies anywhere between two samples
+            # in a single cycle the turn lies anywhere between two samples
             u_half = np.hypot(noise / np.sqrt(2), row["force_missed"] / np.sqrt(12))
             u_strain = np.hypot(strain_noise / np.sqrt(2), row["strain_missed"] / np.sqrt(12))
-            # a missed turn takes the same share off both amplitudes; only noise is left
+            # a missed turn reduces both amplitudes by the same fraction; only noise is left
             u_apparent = apparent * np.hypot(noise / amplitude, strain_noise / strain_amplitude)
             u_apparent /= np.sqrt(2)
             drift, own = (
@@ -537,7 +538,7 @@ def _quantities_of_cycles(
             in_phase = (row["phase_work"] + drift * row["phase_sine"]) / (np.pi * row["phase_half"])
             quadrature = energy / (np.pi * own**2)
             if control == "load":
-                # compliances, of which the modulus is the inverse
+                # these are compliances; the modulus is their inverse
                 in_phase, quadrature = (
                     one / (in_phase**2 + quadrature**2) for one in (in_phase, quadrature)
                 )
@@ -549,12 +550,12 @@ def _quantities_of_cycles(
         u_ramp, u_foot = of_ramp / np.sqrt(12), np.sqrt(2) * u_strain
         u_apparent = np.hypot(u_apparent, apparent * u_ramp / strain_amplitude)
         u_strain = np.hypot(u_strain, u_ramp)
-        if waveform == "sinusoidal":  # whose foot is its mean less its amplitude
+        if waveform == "sinusoidal":  # the foot is the mean less the amplitude
             u_foot = np.sqrt(2) * u_strain
         factor = loss / storage
-        # where in its cycle the drift takes place is not known
+        # the part of the cycle in which the drift takes place is not known
         not_placed = drift_not_placed(energy, row["energy"], amplitude * strain_amplitude)
-        # of the creep behind a ramp the later cycles do not tell
+        # later cycles give no information on the creep after a ramp
         placed = np.where(is_own, 1 / PLACE_OF_DRIFT, not_placed)
         placed *= np.abs(row["energy"] - energy)
         per_energy = 1 / (np.pi * strain_amplitude**2)
@@ -612,13 +613,13 @@ def _mean_and_amplitude(
     follows: Bools,
     on_fall: Floats,
 ) -> tuple[Floats, Floats]:
-    """Mean of peak and valley and half of what lies between, without a steady drift.
+    """Mean of peak and valley, and half their difference, without a steady drift.
 
-    Of the valleys on either side, at the time of the peak.  Where no cycle comes before, the first
-    valley is that of an approach or a hold, and no line through both is a drift: the one farther
-    from the peak is taken, and of the range what drifts on the way from it to the peak.  Where the
-    cycle drifts more than its neighbours, the range is that of the way down, on which ``on_fall``
-    drifts; NaN elsewhere.
+    The valley is interpolated between those on either side, at the time of the peak.  Where no
+    cycle comes before, the first valley is that of an approach or a hold, and a line through both
+    is not a drift.  The one farther from the peak is taken, and the range is corrected for the
+    drift on the way from it to the peak.  Where the cycle drifts more than its neighbours, the
+    range is that of the way down, with the drift ``on_fall``; NaN elsewhere.
 
     Examples
     --------
@@ -629,7 +630,7 @@ def _mean_and_amplitude(
     ...     np.array([20.0, 22.0]), *one, np.array([2.0, 2.0]), 0.5, np.array([False, True]), none)
     (array([ 9.5, 12. ]), array([10., 10.]))
     """
-    # of a channel of the wrong sign the top is the lower one
+    # in a channel of the wrong sign the top is the lower one
     far = np.where(np.abs(top - begin) > np.abs(top - end), begin, end)
     foot = np.where(follows, (1 - rise_share) * begin + rise_share * end, far)
     way = np.where(far == begin, rise_share, 1 - rise_share)
@@ -639,17 +640,17 @@ def _mean_and_amplitude(
 
 
 def _missed_turn(amplitude: Floats | float, n_samples: Floats) -> Floats:
-    """How far the logged extreme may lie below the turn between two samples.
+    """Standard deviation of the distance of the logged extreme from the turn between samples.
 
-    A branch at constant rate rises by four amplitudes over N per sample; the turn lies
-    within half a sample of the logged extreme, evenly spread, so the loss is spread evenly
-    over half a step: the root of its mean square is the step over the root of 12.
+    A branch at constant rate rises by four amplitudes over N per sample.  The turn lies
+    within half a sample of the logged extreme, uniformly distributed, so the loss is uniform
+    over half a step: its root mean square is the step over the root of 12.
     """
     missed: Floats = 4 * amplitude / n_samples / np.sqrt(12)
     return missed
 
 
-# samples beside a block that its differences of strain reach
+# samples beyond a block that its differences of strain need
 _REACH = 4
 
 
@@ -667,12 +668,12 @@ _WITHOUT_UNCERTAINTY = (
 )  # fmt: skip
 
 
-_OF_GREATEST = 0.55  # of the noise: scatter of the greatest of some ten readings
+_OF_GREATEST = 0.55  # of the noise: scatter of the greatest of about ten readings
 
 
 _OF_BOTH_ENDS = 2.0
-"""Width that `Loops` takes over the root of 8, of two errors that leave half a range one over the
-root of 2. [1]"""
+"""Width that `Loops` divides by the root of 8, of two errors that make that of half a range one
+over the root of 2. [1]"""
 
 
 def _measure(
@@ -689,7 +690,7 @@ def _measure(
     ways: tuple[int, int],
     alone: bool,
 ) -> Floats:
-    """What only the samples tell, one row a quantity of `MEASURED`, one column a cycle."""
+    """Quantities that need the samples: one row a quantity of `MEASURED`, one column a cycle."""
     first, last = basis.first, basis.last
     is_smooth = waveform == "sinusoidal"
     force, lost_force = bridge_gaps(tension, first, last, is_smooth=is_smooth)
@@ -709,7 +710,7 @@ def _measure(
                 reach=reach,
                 turn=turn,
                 way=way,
-                # of two the other one answers: strain follows the position that is driven
+                # the other one of the two responds: strain follows the position that is driven
                 moved=ways[moved is stretch] * moved,
                 answers=(series is force) != (moved is force),
                 sticks=moved is force,
@@ -757,13 +758,13 @@ def _integrate_over_phase(
     control: Control,
     block: slice,
 ) -> None:
-    """Fill in the rows of `work_at_equal_phase` for some cycles; ``measured`` is of `_measure`."""
+    """Fill the rows of `work_at_equal_phase` for some cycles; ``measured`` is from `_measure`."""
     low, high = int(cycles.first[block.start]), int(cycles.last[block.stop - 1]) + 1
     moved, answer = (
         bridge_gaps(one[low:high], cycles.first[block] - low, cycles.last[block] - low)[0]
         for one in ((tension, strain) if control == "load" else (strain, tension))
     )
-    # a rest is found some noise early, where its ramp still goes on
+    # noise makes a rest begin early, while its ramp still goes on
     begin, end = cycles.first[block] - low, cycles.last[block] - low
     peak, leaves = cycles.branch_last[block, 0] - low, cycles.branch_first[block, 1] - low
     into = np.minimum(leaves - peak, (peak - begin) // _WIDER) // 2
@@ -802,10 +803,10 @@ def close_loops(
     waveform : {"triangular", "sinusoidal", "other"}
         How the control channel moves; see `reduction.stages.cycles.loops`. [-]
     control : {"position", "load"}
-        What the machine moves. [-]
+        Channel that the machine drives. [-]
     driven : ndarray, shape (n_samples,), optional
-        That channel; strain, or tension under load control, of the first specimen where it is left
-        out. [m] or [N]
+        The driven channel; by default strain of the first specimen, or its tension under load
+        control. [m] or [N]
 
     Returns
     -------
@@ -821,22 +822,22 @@ def close_loops(
     -----
     Means and amplitudes of a sinusoidal test are those of the extremes of its wave, by its
     harmonics (`_shape_of_wave`): the turn of a slow log lies between two samples, earlier in
-    tension than in strain, and the answer to a sine may have a kink there.  Peaks and valleys,
-    and of other waves means and amplitudes, are of the logged extremes:
-    noise makes a peak read high by about one to two standard deviations of a reading, and a
-    slow log misses the turn by up to half a sample.  Uncertainties are of one cycle: the
-    noise of a reading (`reading_noise`) carried through and, for extremes, the turn between
+    tension than in strain, and the response to a sine may have a kink there.  Peaks and valleys,
+    and means and amplitudes of other waves, are those of the logged extremes: the expected excess
+    of the noise there is subtracted (`take_noise_off_levels`), and a slow log misses the turn by up
+    to half a sample.  Uncertainties are those of one cycle: the
+    propagated noise of a reading (`reading_noise`) and, for extremes, the turn between
     two samples; nothing else.  K_ap
-    by amplitudes is one of three readings of "slope of the loop"; for an ellipse it is
+    by amplitudes is one of three meanings of "slope of the loop"; for an ellipse it is
     hypot(K', K''), and K' itself is the slope of the regression of tension on strain.  An
-    open loop is closed by a straight line and freed of its drift (`without_drift`), and
-    so are the amplitudes of other waves: half the range less a quarter of the drift.  A
-    cycle that lacks up to a tenth of its readings has them bridged by straight lines; one
+    open loop is closed by a straight line and corrected for its drift (`without_drift`), as
+    are the amplitudes of other waves: half the range less a quarter of the drift.  In a
+    cycle that lacks up to a tenth of its readings, these are bridged by straight lines; a cycle
     that lacks more is NaN throughout.
 
     Examples
     --------
-    A standard linear solid with K' = 900 N and K'' = 100 N at 0.1 Hz, strain 1 +- 0.2.
+    A standard linear solid with K' = 900 N and K'' = 100 N at 0.1 Hz, strain 1 +- 0.2:
 
     >>> t = np.arange(0, 30.01, 0.1)
     >>> strain = 1 - 0.2 * np.cos(0.2 * np.pi * t)
@@ -879,11 +880,11 @@ def close_loops(
         (tension, strain)[answer], moved, cycles, waveform,
         [one[answer] for one in noises], [one[answer] for one in ways], sticks=control == "load",
     )  # fmt: skip
-    # on a plateau the driven channel turns anywhere, and the other one at its beginning
+    # on a plateau the driven channel turns anywhere, the other one at its beginning
     share = 1.0 if waveform == "other" else _REACH_OF_TURN
-    # what creeps on behind a fast stroke turns well within the slow one
+    # creep after a fast stroke turns well within the slow one
     on_rise, on_fall = (max(int(share * one), 1) for one in branches)
-    # the middles of rise and fall, at least a sample apart and from either end
+    # the middles of rise and fall, at least a sample apart and away from either end
     middles = (cycles.branch_first + cycles.branch_last).T // 2
     middles[0] = np.clip(middles[0], cycles.first + 1, cycles.last - 2)
     middles[1] = np.clip(middles[1], middles[0] + 1, cycles.last - 1)
@@ -942,15 +943,16 @@ def close_loops(
             )
             tips = measured[index, of_driven + 3] / 2 if turns[index] == "sharp" else 0.0
             rests = None
-            for channel in (1 - answer, answer):  # what answers is led by the rests of the other
+            for channel in (1 - answer, answer):  # the response uses the rests of the driven one
                 series, step, rows = (
                     (force, stretch)[channel],
                     steps[channel],
                     _OF_TURNS + 4 * channel,
                 )
                 own = own_noise[channel]
-                # the step of a converter lifts no extreme, and moves it alike in all cycles; the
-                # greatest of some ten noisy readings scatters, and the mean of many is free of it
+                # the step of a converter does not raise an extreme, and shifts it alike in all
+                # cycles; the greatest of about ten noisy readings scatters, which removes this
+                # error from the mean of many
                 missed = measured[index, rows + 3]
                 rounded = rounding_left(step, _OF_GREATEST * min(own, scatter[channel]))
                 np.hypot(missed, _OF_BOTH_ENDS * rounded, out=missed)
@@ -1017,7 +1019,7 @@ def close_loops(
         release_pages(measured)
     tables["cycle_start_time"][:] = begin
     tables["frequency"][:] = 1 / duration
-    # a turn is known to one sample at each end of the cycle, evenly spread
+    # a turn is known to one sample at each end of the cycle, uniformly distributed
     if turn_spread is None:
         turn_spread = time_of_sample(duration, cycles)
     uncertainty["frequency"][:] = turn_spread / duration**2 * np.sqrt(2)
@@ -1026,10 +1028,10 @@ def close_loops(
 
 
 def _into_rests(cycles: Cycles) -> Cycles:
-    """Cycles that rests part, first and last as far inside these as noise may hide of their ramps.
+    """Cycles separated by rests, extended into these as far as noise may hide their ramps.
 
-    Within the tolerance of a rest the first readings of a ramp belong to it, many of one that
-    begins slowly, and a loop without them is cut off at its ends.
+    The first readings of a ramp lie within the tolerance of a rest and are counted to it, many
+    where it begins slowly; without them a loop is cut off at its ends.
 
     Examples
     --------
@@ -1047,14 +1049,14 @@ def _into_rests(cycles: Cycles) -> Cycles:
         return cycles
     ramp = int(np.median(cycles.branch_last - cycles.branch_first, axis=0).min())
     reach = 1 + ramp // _WIDER // 2
-    # no farther than the middle of a rest; before the first cycle and after the last may be a ramp
+    # at most to the middle of a rest; before the first cycle and after the last may be a ramp
     room = np.minimum(reach, (cycles.first[1:] - cycles.last[:-1]) // 2)
     return replace(
         cycles, first=cycles.first - np.append(0, room), last=cycles.last + np.append(room, 0)
     )
 
 
-_REACH_OF_TURN = 0.25  # of a branch, in which its extremes are sought
+_REACH_OF_TURN = 0.25  # of a branch, in which its extremes are searched
 
 
 _OF_PHASE, _OF_TURNS, _OF_ENERGY, _OF_NORM = (

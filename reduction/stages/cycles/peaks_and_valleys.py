@@ -1,6 +1,6 @@
 """Levels of a series at the turns of its cycles: peaks and valleys without noise or missed tips.
 
-A turn lies between two readings, or on a rest of many, and a reading beside it is neither.
+A turn lies between two readings, or on a rest of many; a reading beside it is neither.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from reduction.stages.cycles.turns import (
 
 
 def extremes_of_cycles(values: Floats, first: Integers, last: Integers) -> tuple[Floats, Floats]:
-    """Greatest and least reading of each cycle, its last one included."""
+    """Greatest and least reading of each cycle, including its last one."""
     pairs = np.column_stack([first, last]).ravel()
     stop = int(last[-1])
     greatest = np.maximum.reduceat(values[:stop], pairs[:-1])[::2]
@@ -51,26 +51,26 @@ def peaks_and_valleys(
     sticks: bool,
     alone: bool,
 ) -> tuple[Floats, Floats, Floats, Floats]:
-    """Greatest reading near each peak, least ones near both valleys, and what they miss.
+    """Greatest reading near each peak, least ones near both valleys, and the possible error.
 
-    A turn between two samples lies above the readings, and below where the lines beside it cross,
-    since no machine turns at once: half way, and half the range is missed by as much again.  Of a
-    turn that is rounded over samples the readings miss less.  What answers a corner of the channel
-    that ``moved`` it, if it ``answers``, turns where its approach meets that corner: it may relax
-    before the next reading, or ``sticks`` there, as strain does under a driven load.  A series of
-    way -1 falls where the driven channel rises.
-    Between two cycles is a rest, unless they share a reading or are stored one below the other.
-    One that is ``alone`` is followed by itself.
+    A turn between two samples lies above the readings, and below the crossing of the lines beside
+    it, since no machine turns at once: the midpoint is taken, with half the range as possible
+    error.  At a turn that is rounded over samples the readings miss less.  A series that
+    ``answers`` the channel ``moved`` turns where its approach meets the corner of that channel: it
+    may relax before the next reading, or stay there (``sticks``), as strain does under a driven
+    load.  A series of way -1 falls where the driven channel rises.
+    There is a rest between two cycles, unless they share a reading or are stored one below the
+    other.  A cycle that is ``alone`` is followed by itself.
     """
     on_rise, on_fall = reach
     begin, peak, end = branch_first[:, 0], branch_last[:, 0], branch_last[:, 1]
-    if alone:  # its valley is between its last reading and its first
+    if alone:  # the valley is between the last reading and the first
         series, moved = (np.append(one, one[:_BEHIND_TURN]) for one in (series, moved))
     values = way * series
     is_stored_alone = ends[0][1:] == ends[1][:-1] + 1
     earliest = np.append(begin[:1], np.where(is_stored_alone, ends[0][1:], end[:-1]))
     latest = np.append(np.where(is_stored_alone, ends[1][:-1], begin[1:]), end[-1:])
-    # what creeps while its channel is held at the peak is farthest where that leaves
+    # creep while the channel is held at the peak is greatest where it leaves
     after_peak = np.minimum(branch_first[:, 1] + on_fall, end)
 
     def extreme(of: np.ufunc, low: Integers, high: Integers) -> Floats:
@@ -83,16 +83,16 @@ def peaks_and_valleys(
         found = of.reduceat(values[:stop], np.minimum(pairs, stop - 1))[::2]
         return np.asarray(of(found, values[high]))
 
-    # what noise adds is that of both sides of a turn, also where one of them is a rest
+    # noise acts on both sides of a turn, even where one of them is a rest
     rest = 0 if turn == "sharp" else values.size
     top = extreme(np.maximum, peak - on_rise, after_peak)
     first = extreme(np.minimum, begin - rest, begin + on_rise)
     last = extreme(np.minimum, end - on_fall, end + rest)
     missed = np.zeros(top.size)
     if turn == "sharp":
-        # what creeps while its channel rests is farthest after the turn that ends the cycle
+        # creep while the channel rests is greatest after the turn that ends the cycle
         stop = np.minimum(end + on_rise, np.append(peak[1:], values.size - 1))
-        goes_on = np.append(begin[1:] == end[:-1], False)  # and after the last one it unloads
+        goes_on = np.append(begin[1:] == end[:-1], False)  # after the last one the machine unloads
         at_top = _places(values, peak - on_rise, after_peak)
         at_last = _places(-values, np.maximum(end - on_fall, peak), np.where(goes_on, stop, end))
         last = np.fmin(last, values[at_last])
@@ -100,7 +100,7 @@ def peaks_and_valleys(
         below = last - level_of_turn(values, end, last, sign=-1)
         noise = within_scatter(reading_noise(moved), moved[peak])
         own = within_scatter(reading_noise(values), values[peak])
-        # a machine may rest at one of its turns alone
+        # a machine may rest at only one of its turns
         lowest = _places(-moved, np.maximum(end - on_fall, peak), stop)
         rests, rests_below = rests_at_turns(moved, peak), rests_at_turns(-moved, lowest)
         of_peak, of_valley = (
@@ -119,10 +119,10 @@ def peaks_and_valleys(
             )
             for at, sign, level, rest in ((at_top, 1, top, rests), (at_last, -1, last, rests_below))
         )
-        # lines beside a rest cross above it, and of its readings noise makes one the greatest
+        # lines beside a rest cross above it, and noise makes one of its readings the greatest
         step = (top - last) / (end - peak)
         bow = np.zeros(top.size)
-        if rests:  # or what seems one is a turn that a machine rounds over two readings or three
+        if rests:  # or an apparent rest, a turn that a machine rounds over two or three readings
             above, bow = np.zeros(top.size), _bow(values, at_top)
             if not answers:
                 top = _mean_of_rest(values, at_top, top, within=_OF_A_STEP * step)
@@ -131,57 +131,57 @@ def peaks_and_valleys(
             if not answers:
                 last = -_mean_of_rest(-values, at_last, -last, within=_OF_A_STEP * step)
         if answers:
-            # what sticks behind a corner falls off slowly there under a load, and lines beside it
-            # cross above the level to which the approach leads; a force falls off at once
+            # a series that sticks at a corner falls off slowly under a load, and lines beside it
+            # cross above the level of the approach; a force falls off at once
             is_led = np.isfinite(of_peak), np.isfinite(of_valley)
             of_peak = np.where(is_led[0] & sticks, of_peak, np.fmax(of_peak, above))
             of_valley = np.where(is_led[1] & sticks, of_valley, np.fmax(of_valley, below))
             for level, at, sign, reading, is_rest in (
                 (of_peak, peak, 1, top, rests), (of_valley, end, -1, last, rests_below)
             ):  # fmt: skip
-                # of a series that stiffens all lines cross too low, or below its reading
+                # for a series that stiffens all lines cross too low, or below its reading
                 beyond = sign * (level_beside_corner(values, moved, at, sign=sign) - reading)
                 if not is_rest and np.nanmedian(beyond) > _STIFFENS * np.nanmedian(level):
                     np.fmax(level, beyond, out=level)
             excess = np.maximum(of_peak - above, 0.0), np.maximum(of_valley - below, 0.0)
             above, below = of_peak, of_valley
             missed = (_EITHER - 1) * (excess[0] + excess[1]) / 2
-            if sticks:  # steps of the driven channel move its corner, in step in all cycles alike
+            if sticks:  # steps of the driven channel shift its corner, in step alike in all cycles
                 grain = rounding_left(*noise_and_step(moved, reading_noise(moved))[::-1])
                 missed = np.hypot(
                     missed, _OF_CORNER * grain * (top - last) / np.abs(moved[peak] - moved[end])
                 )
         else:
-            # a machine that dwells is at the level of its corner, and misses nothing
+            # a machine that dwells is at the level of its corner, without error
             upper = _plateau(values, peak - on_rise, after_peak, top)
             lower = _plateau(-values, np.maximum(end - on_fall, peak), stop, -last)
             top, above = (top, above) if upper is None else (upper[0], 0 * above)
             if lower is not None:  # it is held at one level at both ends of a cycle
                 first = np.append(-lower[0][0], -lower[0][:-1])
             last, below = (last, below) if lower is None else (-lower[0], 0 * below)
-        # the readings of a rounded turn are the lower end of it, and not its middle
+        # the readings of a rounded turn are its lower bound, not its middle
         missed = missed + (above + below) / 2 + bow
         top, last = top + above / 2, last - below / 2
     elif turn == "rounded":
         above = missed_by_extreme(values, peak, top, sign=1)
         below = missed_by_extreme(values, end, last, sign=-1)
-        # the readings are the lower end of it, and not its middle
+        # the readings are its lower bound, not its middle
         missed = np.full(top.size, np.nanmedian(above + below))
-    elif turn == "hidden":  # at most what lines of these ramps add where they cross half way
+    elif turn == "hidden":  # at most the rise of these ramps to a crossing half way
         wait = np.diff(time, append=time[-1])
         at_peak, at_end = (np.fmax(wait[at - 1], wait[at]) for at in (peak, end))
         beside = (at_peak + at_end) / 2
         missed = (top - (first + last) / 2) * beside / (time[end] - time[begin])
-        # readings miss half of that where corners lie anywhere, nothing of a rounded turn or a rest
+        # readings miss half of that if corners lie anywhere, nothing at a rounded turn or a rest
         if not rests_at_turns(moved, peak):
             top, first, last = top + missed / 4, first - missed / 4, last - missed / 4
-        # noise hides the slow stroke of a saw alone: its readings are the lower end of what lies
-        # within its step, which is greater where the series relaxes behind a fast stroke
+        # noise hides only the slow stroke of a saw: its readings are the lower bound of the range
+        # within its step, which is larger where the series relaxes after a fast stroke
         after = np.minimum(end + 1, values.size - 1)
         above = top - np.stack([values[peak - 1], values[peak + 1]])
         below = np.stack([values[end - 1], values[after]]) - last
         slow, fast = np.nanmedian(np.sort(above, axis=0) + np.sort(below, axis=0), axis=1)
-        # of a driven channel with even strokes both are where its corners lie between readings
+        # in a driven channel with even strokes both follow from corners between readings
         strokes = np.median([peak - begin, end - peak], axis=1)
         may_fall = answers or strokes.max() > _UNEVEN * strokes.min()
         if may_fall and slow < _STEEP * reading_noise(values) < fast:
@@ -189,23 +189,23 @@ def peaks_and_valleys(
     return way * top, way * first, way * last, missed
 
 
-_BEHIND_TURN = 5  # readings behind a turn, of which it is seen
+_BEHIND_TURN = 5  # readings after a turn, needed to detect it
 
 
 _EITHER = 2**0.5
-"""What relaxes at a corner is at one end of its range or at the other, and not between them: the
-whole of half the range, where `Loops.shared_by_cycles` takes it over this."""
+"""An error by relaxation at a corner is at one end of its range or the other, not between: the
+whole of half the range, where `Loops.shared_by_cycles` divides it by this."""
 
 
-_SHOWN = 3.0  # noise of a reading of the load, by which its steps show a corner, also in a mean
+_SHOWN = 3.0  # times the noise of a reading of the load: such steps show a corner, even in a mean
 
 
 _OF_CORNER = 10**0.5
-"""Of both levels at which steps of two readings on either side let a corner lie, over the rounding
+"""Range of a corner's level by steps of two readings on either side, over the rounding
 of a reading and the ratio of the channels: the root of 10 over twice the ramp, at either turn."""
 
 
-_STIFFENS = 2.0  # times what lines show to lie beyond a reading, by which they are of no use
+_STIFFENS = 2.0  # times the height of the lines' crossing above a reading: then they are of no use
 
 
 _ON_PLATEAU = 6.0  # noise of a reading below the greatest one, on a plateau of some tens
@@ -214,23 +214,23 @@ _ON_PLATEAU = 6.0  # noise of a reading below the greatest one, on a plateau of 
 _FEWEST_ON_PLATEAU = 5
 
 
-_BENT = 0.45  # noise, by which the middle of a dome or the beginning of a decay is above the whole
+_BENT = 0.45  # noise: height of the middle of a dome, or the start of a decay, above the whole
 
 
 _PARTS = 5  # of a plateau: tension that relaxes at once is above its mean in the first or second
 
 
-_LOW = 1.5  # noise below a plateau, where few of its readings lie, and those of ramps
+_LOW = 1.5  # times the noise below a plateau: few of its readings are there, and those of ramps
 
 
-_LEVEL, _CLEARLY = 0.25, 5.0  # noise and standard errors of the mean, within which it is level
+_LEVEL, _CLEARLY = 0.25, 5.0  # times the noise, and standard errors of the mean, within which level
 
 
 def noise_of_corners(noise: float, turns: Floats) -> float:
-    """Noise of a driven channel over its range, where its corners are taken for it; else zero.
+    """Noise of a driven channel over its range if its corners are mistaken for noise; else zero.
 
-    What they make of the driven channel they make of the other one as well, which relaxes behind
-    them, so that its extremes scatter and say nothing of its noise.  ``turns``: peaks, valleys.
+    Corners have the same effect on the other channel, which relaxes after them, so that its
+    extremes scatter without showing its noise.  ``turns``: peaks, valleys.
     """
     if within_scatter(noise, turns[0]) >= noise / 2:
         return 0.0
@@ -257,14 +257,14 @@ def _means_of_parts(values: Floats) -> Floats:
 def _plateau(
     values: Floats, low: Integers, high: Integers, top: Floats
 ) -> tuple[Floats, float, float] | None:
-    """Mean of the readings of a plateau, of which noise makes the greatest one too great.
+    """Mean of the readings of a plateau, whose greatest reading is too great by noise.
 
-    With it, by how much the ends of the plateau lie above that mean at most and at least: a decay
-    that noise hides has its extreme there.
+    Also returns the greatest and least height of the ends of the plateau above that mean: a decay
+    hidden by noise has its extreme there.
 
-    None where a window has no plateau: its middle lies no higher than its ends, as that of a dome
-    does, and its beginning no higher than its end, as of what relaxes.  The middle half is taken,
-    since ramps begin in the noise.
+    None where a window has no plateau.  On a plateau the middle is not higher than the ends, as it
+    is on a dome, nor the beginning higher than the end, as in relaxation.  The middle half is used,
+    since ramps begin within the noise.
     """
     noise = within_scatter(reading_noise(values), top)
     level = np.full(top.shape, np.nan)
@@ -283,7 +283,7 @@ def _plateau(
         halves = np.median(on[quarter : on.size - quarter]), np.median(on[:half])
         bent.append(np.append(_means_of_parts(on), halves) - middle)
         level[row] = np.mean(on[quarter : on.size - quarter])
-        # readings of the ramps that lie within its noise are at its ends, and hide a decay
+        # readings of the ramps within its noise are at its ends, and hide a decay
         inside = np.flatnonzero(on >= middle - _LOW * noise)
         inner = on[inside[0] : inside[-1] + 1]
         decays.append(
@@ -298,18 +298,18 @@ def _plateau(
     mean, spread = np.mean(decays, axis=0), np.std(decays, axis=0) / np.sqrt(len(decays))
     ends = 1.5 * mean[[0, -1]] - 0.5 * mean[[1, -2]]
     most, least = (max(float((ends + way * spread[[0, -1]]).max()), 0.0) for way in (1, -1))
-    # of a cycle that begins or ends in its plateau little of it is left
+    # if a cycle begins or ends in its plateau, little of it is left
     return np.where(np.isfinite(level), level, top - np.nanmedian(top - level)), most, least
 
 
 def _led_to_corner(
     values: Floats, driven: Floats, begin: Integers, end: Integers, level: Floats
 ) -> Floats | None:
-    """Level to which each approach of a series leads where the driven channel comes to a rest.
+    """Level of a series extrapolated along each approach to the rest of the driven channel.
 
-    By a parabola over the last third of the way of the driven one to the ``level`` of its rest:
-    what relaxes is farthest at that corner, and the mean of noisy corners is blunt.  NaN of a few
-    readings.  None where the driven channel rounds its corners: there nothing leads to them.
+    A parabola is fitted over the last third of the way of the driven channel to the ``level`` of
+    its rest: a relaxing series is farthest at that corner, and the mean of noisy corners is blunt.
+    NaN for few readings.  None where the driven channel rounds its corners and gives no level.
     """
     found, rounded = np.full(begin.size, np.nan), []
     clear = _CLEAR * reading_noise(driven)
@@ -343,7 +343,7 @@ _FEWEST_TURNS = 5
 
 
 def _mean_of_rest(values: Floats, at: Integers, greatest: Floats, *, within: Floats) -> Floats:
-    """Mean of the greatest reading of a rest and the next one; the former where it is alone."""
+    """Mean of the greatest reading of a rest and the next one, or the greatest one if alone."""
     beside = np.fmax(values[np.maximum(at - 1, 0)], values[np.minimum(at + 1, values.size - 1)])
     return np.where(greatest - beside < within, (greatest + beside) / 2, greatest)
 
@@ -351,17 +351,17 @@ def _mean_of_rest(values: Floats, at: Integers, greatest: Floats, *, within: Flo
 _STEEP = 20.0  # noise of a reading, between the slow steps and the fast ones
 
 
-_UNEVEN = 2.0  # times the faster stroke, which the slower one of a saw lasts
+_UNEVEN = 2.0  # duration of the slower stroke of a saw over that of the faster one
 
 
 _OF_A_STEP = 0.05  # of the mean step of a branch
 
 
-_CLEAR = 3.0  # noise of a reading, and standard errors, that show a ramp, a rounding or a creep
+_CLEAR = 3.0  # noise of a reading, and standard errors: limit for a ramp, a rounding or a creep
 
 
 def _bow(values: Floats, at: Integers) -> Floats:
-    """By how much a parabola through a greatest reading and those beside it lies above it."""
+    """Height above the greatest reading of a parabola through it and its neighbours."""
     before, beside, after = (values[np.clip(at + k, 0, values.size - 1)] for k in (-1, 0, 1))
     bend, slope = 2 * beside - before - after, (after - before) / 2
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -369,14 +369,14 @@ def _bow(values: Floats, at: Integers) -> Floats:
 
 
 def _farther(values: Floats, one: Integers, other: Integers) -> Integers:
-    """Of two turns at either end of a rest, those at which a series is greater in the mean."""
+    """Turns at that end of each rest at which a series is greater on average."""
     apart = take_samples(values, one) - take_samples(values, other)
     known = apart[np.isfinite(apart)]
     return other if known.size and known.mean() < 0 else one
 
 
 def _places(values: Floats, low: Integers, high: Integers) -> Integers:
-    """Sample of the greatest value in each of some windows."""
+    """Sample of the greatest value in each window."""
     known = np.where(np.isfinite(values), values, -np.inf)
     return np.array([
         start + int(np.argmax(known[start : stop + 1]))
@@ -397,20 +397,20 @@ def take_noise_off_levels(
     of_corners: float,
     rests: tuple[Floats, Floats] | None,
 ) -> bool:
-    """Valleys of cycles that touch made one, and what noise adds to extremes taken off.
+    """Merge the valleys of touching cycles, and subtract the effect of noise from extremes.
 
-    ``measured`` has the rows of top, first and last valley, and of what a turn may miss, and is
-    changed.  A channel that is held at its turns is at the mean of what it reads there, which is
-    returned.  What answers one that ``rests``, by its readings and the rows of its levels, may be
-    farthest at the corners of that.  What may be corners and no noise is not taken off: the truth
-    is between both.
+    ``measured`` has the rows of top, first and last valley, and of the possible error of a turn,
+    and is changed.  A channel that is held at its turns is at the mean of its readings there; the
+    return value says so.  A series that responds to one that ``rests``, given by its readings and
+    the rows of its levels, may be farthest at the corners of that.  Where corners may be mistaken
+    for noise nothing is subtracted: the truth lies between.
     """
     top, first, last, missed = measured
     touch = np.flatnonzero(touching(cycles))
     both = last[touch - 1]
     if turn == "sharp":
         both = np.where(np.isfinite(both), both, first[touch])
-    else:  # a cycle that lacks readings has no valley, its neighbour has
+    else:  # a cycle that lacks readings has no valley, but its neighbour has
         both = way * np.fmin(way * first[touch], way * both)
     first[touch] = both
     last[touch - 1] = np.where(np.isfinite(last[touch - 1]), both, np.nan)
@@ -436,7 +436,7 @@ def take_noise_off_levels(
                 for lead, one in zip(leads, (upper, lower), strict=True)
             ]
             above = sum(max(one) for one in zip((upper[1], lower[1]), leads_to, strict=True))
-            # what answers relaxes: its mean is the lower end of what noise hides
+            # a responding series relaxes: its mean is the lower end of the range hidden by noise
             part = 0.0 if rests is None else 0.5
             out = [part * max(one) for one in zip((upper[2], lower[2]), leads_to, strict=True)]
             top[:], last[:] = way * (upper[0] + out[0]), -way * (lower[0] + out[1])
@@ -446,7 +446,7 @@ def take_noise_off_levels(
     noise = within_scatter(noise, top)
     leaves, apart = cycles.branch_first[:, 1], cycles.first[1:] - cycles.last[:-1]
     foot = cycles.first[touch]
-    if not touch.size:  # beside the first is an approach
+    if not touch.size:  # the first one has an approach beside it
         foot = _farther(-way * values, cycles.first, cycles.last)[1:]
     (of_peak, peak_falls), (of_valley, valley_falls) = (
         noise_in_extreme(values, turn, reach=reach + int(np.median(rest)), sign=sign, noise=noise)
@@ -456,7 +456,7 @@ def take_noise_off_levels(
         )
     )
     either = EITHER_WAY * (of_peak + of_valley) / 2
-    # what a corner may lose where the mean turn is smoothed
+    # possible loss of a corner where the mean turn is smoothed
     of_smoothing = EITHER_WAY * noise / 2
     if of_corners and 0 < noise < _LIKE_CORNERS * of_corners * np.nanmedian(np.abs(top - first)):
         np.hypot(missed, either, out=missed)
@@ -464,12 +464,12 @@ def take_noise_off_levels(
     top -= way * of_peak
     first += way * of_valley
     last += way * of_valley
-    # the mean of noisy corners is blunt, and what it says of the noise too much
+    # the mean of noisy corners is blunt, and overstates the effect of noise
     dwells = float(np.median(cycles.branch_first[:, 1] - peak)) > 1
     blunt = may_dwell and (dwells or max(peak_falls, valley_falls) > _FALLS * noise)
     for lead, level, sign in zip(leads, (top, last), (way, -way), strict=True):
         ahead = None if lead is None else lead - sign * level
-        # what creeps on in the rest is not farthest at its corner
+        # a series that creeps on in the rest is not farthest at its corner
         if ahead is not None and (more := float(np.nanmean(ahead))) > -2 * float(
             np.nanstd(ahead)
         ) / np.sqrt(np.isfinite(ahead).sum()):
@@ -490,9 +490,9 @@ def turns_of_wave(
     *,
     sticks: bool,
 ) -> list[Turn]:
-    """How the wave of each specimen turns; a sine has no corner, another wave what it shows.
+    """Kind of turn of each specimen; a sine has no corner, another wave by its record.
 
-    By the channel that answers the driven one: that is farthest at a corner of it.
+    Judged by the channel that responds to the driven one, since it is farthest at a corner of it.
     """
     peak = cycles.branch_last[:, 0]
     if waveform == "sinusoidal":
@@ -516,12 +516,12 @@ def turns_of_wave(
         kind_of_turns(way * answer, peak, noise=own, in_doubt=kind)
         for answer, own, way in zip(answers, noises, ways, strict=True)
     ]
-    # strain that sticks behind a corner of the load seems rounded there
+    # strain that sticks at a corner of the load appears rounded there
     return ["sharp" if one == kind or (sticks and one == "rounded") else "hidden" for one in found]
 
 
 def way_of_series(values: Floats, cycles: Cycles) -> int:
-    """1 of a series that is greater at the peaks of the cycles than at their valleys, else -1."""
+    """1 for a series that is greater at the peaks of the cycles than at their valleys, else -1."""
     ends = (take_samples(values, one) for one in (cycles.branch_last[:, 0], cycles.first))
     change = np.subtract(*ends)
     known = change[np.isfinite(change)]
@@ -529,10 +529,10 @@ def way_of_series(values: Floats, cycles: Cycles) -> int:
 
 
 def share_of_rise(time: Floats, cycles: Cycles, series: Floats | None = None) -> Floats:
-    """Share of the time of each cycle that its rise takes.
+    """Fraction of the time of each cycle taken by its rise.
 
-    Of a ``series`` that may rest at its turns, from its own extremes: what answers a machine that
-    dwells is farthest where it begins to dwell, or ends, and the machine turns anywhere between.
+    For a ``series`` that may rest at its turns, from its own extremes: the response to a machine
+    that dwells is farthest where the dwell begins or ends; the machine turns anywhere between.
     """
     begin, peak, end = (
         cycles.branch_first[:, 0], cycles.branch_last[:, 0], cycles.branch_last[:, 1]

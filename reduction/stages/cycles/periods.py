@@ -1,4 +1,4 @@
-"""How long cycles last, and how well that is known.
+"""Duration of cycles, and its uncertainty.
 
 References
 ----------
@@ -16,9 +16,9 @@ from reduction.record.measurement import Bools, Floats, Integers
 from reduction.record.samples import take_samples
 from reduction.stages.cycles.cycle_product import Cycles
 
-_FLANK = 8  # part of a branch, on either side of its middle, that gives its speed
+_FLANK = 8  # divisor of a branch: part on either side of its middle that gives its speed
 
-_READINGS = 9  # of a flank, whose mean is less noisy than one
+_READINGS = 9  # of a flank, averaged to reduce noise
 
 _STEEP = 0.25  # of the mean speed of a branch
 
@@ -30,7 +30,7 @@ _OF_SECOND = 6 * 0.4549  # variance of a second difference, and the median of ch
 
 
 def touching(cycles: Cycles) -> Bools:
-    """Which cycles begin where the one before them ends.
+    """Mark cycles that begin where the one before them ends.
 
     Parameters
     ----------
@@ -66,16 +66,16 @@ def spread_of_turns(turn: Floats, first: Integers, last: Integers, *, step: floa
     Parameters
     ----------
     turn : ndarray, shape (n_cycles,)
-        When each cycle begins. [s]
+        Beginning of each cycle. [s]
     first, last : ndarray of int, shape (n_cycles,)
-        Its first and last sample: second differences are those of cycles that touch. [1]
+        First and last samples: second differences are those of cycles that touch. [1]
     step : float
-        Resolution of a turn: time between samples where a turn is a sample. [s]
+        Resolution of a turn: time between samples if a turn is a sample. [s]
 
     Returns
     -------
     spread : float
-        Never below what the resolution leaves, the step over the root of 12. [s]
+        At least that of the resolution, the step over the root of 12. [s]
 
     Raises
     ------
@@ -84,7 +84,7 @@ def spread_of_turns(turn: Floats, first: Integers, last: Integers, *, step: floa
 
     Notes
     -----
-    Second differences: a period that changes slowly adds nothing, and one error is in three of
+    Second differences exclude a period that changes slowly, and one error is in three of
     them with the weights 1, -2, 1.  Source of the resolution: [1]_.
 
     Examples
@@ -103,16 +103,16 @@ def spread_of_turns(turn: Floats, first: Integers, last: Integers, *, step: floa
 
 
 def time_of_sample(duration: Floats, cycles: Cycles) -> Floats:
-    r"""Standard uncertainty of a time that is known to one sample, evenly spread.
+    r"""Standard uncertainty of a time that is known to one sample, uniformly distributed.
 
     .. math:: u(t) = \Delta t / \sqrt{12}
 
     Parameters
     ----------
     duration : ndarray, shape (n_cycles,)
-        Of each cycle. [s]
+        Duration of each cycle. [s]
     cycles : Cycles
-        Whose samples are counted.
+        Cycles whose samples are counted.
 
     Returns
     -------
@@ -148,25 +148,25 @@ def is_alone(cycles: Cycles, n_samples: int) -> bool:
 def periods_alone(
     time: Floats, driven: Floats, cycles: Cycles, *, is_sine: bool, noise: float
 ) -> tuple[Integers, Floats, Floats]:
-    r"""Period and spread of one end of the cycles that a gap of the log follows, one by one.
+    r"""Period, and spread of one end, of each cycle that is followed by a gap of the log.
 
     .. math:: x(t) = c + a \cos \omega t + b \sin \omega t
 
     Parameters
     ----------
     time, driven : ndarray, shape (n_samples,)
-        Of the record, and the channel that the machine moves. [s], [m] or [N]
+        Time, and the channel that the machine moves. [s], [m] or [N]
     cycles : Cycles
         From `reduction.stages.cycles.cycle_search`.
     is_sine : bool
-        Whether the wave is one: its period is fitted, with its phase. [-]
+        Whether the wave is a sine: its period is fitted, with its phase. [-]
     noise : float
         Standard deviation of one reading of the driven channel. [m] or [N]
 
     Returns
     -------
     place : ndarray of int, shape (n_alone,)
-        Which cycles have no other next to them. [1]
+        Cycles that do not adjoin another. [1]
     period, spread : ndarray, shape (n_alone,)
         [s]
 
@@ -177,13 +177,13 @@ def periods_alone(
 
     Notes
     -----
-    The last reading of a stored cycle is up to a sample before it ends, and the first up to one
-    behind its begin.  The levels of ramps say by how much one is farther off than the other: both
-    together are between that and as much less than two samples.
+    The last reading of a stored cycle is up to a sample before its end, the first up to one
+    after its beginning.  The levels of ramps show the difference d of the two distances: their sum
+    is between d and two samples less d.
 
     Examples
     --------
-    Ten seconds of 0.1 Hz, of which the last reading is at 9.5 s:
+    Ten seconds of 0.1 Hz, with the last reading at 9.5 s:
 
     >>> time = np.append(np.arange(20) * 0.5, 200.0)
     >>> one, pair = np.array([0]), np.array([[0, 10]])
@@ -202,7 +202,7 @@ def periods_alone(
         cycles.last - cycles.first
     )
     is_cut = take_samples(time, after) - take_samples(time, cycles.last) > _GAP * steps
-    # so is the last one of them, and one that is a whole log
+    # so is the last of them, and one that is a whole log
     is_cut |= (after == cycles.last) & (is_cut.any() | is_alone(cycles, time.size))
     place = np.flatnonzero(~touch & ~np.append(touch[1:], False) & is_cut)
     period, spread = np.empty((2, place.size))
@@ -215,7 +215,7 @@ def periods_alone(
             period[row], spread[row] = _fitted_period(at[known], level[known], duration)
             if abs(period[row] - duration - step / 2) < _OF_STEPS * step:
                 continue
-        back = level[-1] - level[0]  # what is left of the fall, or of the next rise
+        back = level[-1] - level[0]  # remainder of the fall, or of the next rise
         # the reading at the peak may be half a sample from it
         (near, stop) = (peak + 1, end) if back > 0 else (peak - 1, begin)
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -227,7 +227,7 @@ def periods_alone(
 
 
 def _fitted_period(at: Floats, level: Floats, period: float) -> tuple[float, float]:
-    """Period of a sine, near one that is given, and its standard uncertainty by what is left."""
+    """Period of a sine near a given one, and its standard uncertainty from the residuals."""
     own = np.inf
     for _ in range(_FITS):
         phase = 2 * np.pi * at / period
@@ -237,7 +237,7 @@ def _fitted_period(at: Floats, level: Floats, period: float) -> tuple[float, flo
         terms = np.column_stack([terms, of_rate])
         found, *_ = np.linalg.lstsq(terms, level)
         left = level - terms @ found
-        # what is left of a wave that is no pure sine goes on over a good part of the cycle
+        # residuals of a wave that is not a pure sine are correlated over a large part of the cycle
         alike = max(at.size / _PARTS, 1.0)
         variance = float(left @ left) / max(at.size - 4, 1) * alike
         own = np.sqrt(variance * np.linalg.pinv(terms.T @ terms)[3, 3])
@@ -246,13 +246,13 @@ def _fitted_period(at: Floats, level: Floats, period: float) -> tuple[float, flo
     return float(period), float(own)
 
 
-_GAP = 3.0  # steps between readings of a cycle, by which a wait is a gap of the log
+_GAP = 3.0  # steps between readings of a cycle: a longer wait is a gap of the log
 
-_OF_STEPS = 2.0  # from the middle of the sample that a stored cycle ends with
+_OF_STEPS = 2.0  # from the middle of the sample with which a stored cycle ends
 
 _FITS = 4
 
-_PARTS = 8  # of a cycle, over which what is left of a fit has one sign
+_PARTS = 8  # of a cycle: residuals of a fit have one sign over such a part
 
 
 def own_periods(
@@ -265,18 +265,18 @@ def own_periods(
     Parameters
     ----------
     time, driven : ndarray, shape (n_samples,)
-        Of the record, and the channel that the machine moves. [s], [m] or [N]
+        Time, and the channel that the machine moves. [s], [m] or [N]
     cycles : Cycles
         From `reduction.stages.cycles.cycle_search`.
     duration : ndarray, shape (n_cycles,)
-        From turn to turn, where flanks do not tell. [s]
+        From turn to turn, used where the flanks are unusable. [s]
     noise : float
         Standard deviation of one reading of the driven channel. [m] or [N]
 
     Returns
     -------
     period, spread : ndarray, shape (n_cycles,)
-        And the standard uncertainty of the time at one of its ends. [s]
+        With the standard uncertainty of the time at one of its ends. [s]
 
     Raises
     ------
@@ -285,13 +285,14 @@ def own_periods(
 
     Notes
     -----
-    A turn is known to a sample, and noise puts it beside ([1]_); the middle of a flank passes one
-    level within the noise over its speed.  A cycle has the mean of the time from its rise to the
-    next one and of that to its fall from the one before; the last of a row the latter.
+    A turn is known to a sample, and noise shifts it ([1]_); the middle of a flank passes a
+    level within the noise over its speed.  The period of a cycle is the mean of the time from its
+    rise to the next one and of that to its fall from the one before; for the last of a row the
+    latter only.
 
     Examples
     --------
-    Ramps of 10.4 samples: from turn to turn 21 or 20, from flank to flank 20.8.
+    Ramps of 10.4 samples; from turn to turn 21 or 20, from flank to flank 20.8:
 
     >>> time = np.arange(110.0)
     >>> wave = 1 - np.abs((2 * time / 20.8) % 2 - 1)
@@ -315,10 +316,10 @@ def own_periods(
     flanks = partial(_flank_to_flank, time, driven, noise)
 
     def between(column: int) -> tuple[Floats, Floats, Bools]:
-        """From each flank to the one of the cycle before."""
+        """From each flank to that of the cycle before."""
         begin, end = cycles.branch_first[:, column], cycles.branch_last[:, column]
         found, own, usable = flanks((begin + end) // 2, begin, end, touch)
-        if not usable.all():  # where a wave dwells, the middle of a branch may be no flank
+        if not usable.all():  # where a wave dwells, the middle of a branch may not be on a flank
             found, own, usable = flanks(_half_way(driven, begin, end), begin, end, touch)
         return found, own, usable
 
@@ -340,15 +341,15 @@ def own_periods(
     return period, np.maximum(spread, of_jitter)
 
 
-_OF_LAST = np.sqrt(5)  # a sum that ends with its fall alone, to one that ends with both flanks
+_OF_LAST = np.sqrt(5)  # ratio of a sum that ends with its fall only to one with both flanks
 
-_ALIKE = 0.02  # of a cycle with its rest, by which rests may differ and be a part of the wave
+_ALIKE = 0.02  # of a cycle with its rest: spread of rests that are a part of the wave
 
 
 def _last_as_long(time: Floats, driven: Floats, cycles: Cycles) -> Bools:
-    """Which cycles last, from rise to rise, as long as those that touch the next one.
+    """Mark cycles that last, from rise to rise, as long as those that touch the next one.
 
-    A dwell of about the shortest standstill is a rest behind some cycles, and a part of others.
+    A dwell near the shortest standstill counts as a rest after some cycles, as part of others.
     """
     begin, end = cycles.branch_first[:, 0], cycles.branch_last[:, 0]
     step = np.diff(take_samples(time, _half_way(driven, begin, end)))
@@ -360,11 +361,11 @@ def _last_as_long(time: Floats, driven: Floats, cycles: Cycles) -> Bools:
 
 
 def _follow(time: Floats, cycles: Cycles, duration: Floats) -> Bools:
-    """Which cycles touch the one before them, or come after a rest that all of them have."""
+    """Mark cycles that touch the one before, or follow a rest that all of them have."""
     rest = take_samples(time, cycles.first[1:]) - take_samples(time, cycles.last[:-1])
     usual = float(np.median(rest)) if rest.size else 0.0
     alike = np.abs(rest - usual) <= _ALIKE * (usual + float(np.median(duration)))
-    # a wait without readings is one of the log, in which other cycles may be
+    # a wait without readings is a gap of the log, which may contain other cycles
     n_steps = np.maximum(cycles.first[1:] - cycles.last[:-1], 1)
     alike &= rest / n_steps <= _GAP * float(np.median(duration / (cycles.last - cycles.first)))
     return np.asarray(touching(cycles) | np.concatenate([[False], alike]))
@@ -379,11 +380,11 @@ def _flank_to_flank(
     end: Integers,
     touch: Integers,
 ) -> tuple[Floats, Floats, Bools]:
-    """Time between the flanks of touching branches, spread of one time, and whether they are.
+    """Time between the flanks of touching branches, spread of one time, and whether usable.
 
-    At one level of both, about the middle of each; each half way up its own where the
-    ends of most lie apart by more than readings miss of a corner, as of amplitudes that change.
-    The mean of readings about the middle lies on the flank, with less of their noise and rounding.
+    Both flanks are taken at one level, about the middle of each; each at its own half way if the
+    ends of most differ by more than the error of a corner, as when amplitudes change.
+    The mean of readings about the middle lies on the flank, with less noise and rounding.
     """
     reach = np.maximum((end - begin) // _FLANK, 1)
     low, high = np.maximum(middle - reach, begin), np.minimum(middle + reach, end)
@@ -417,9 +418,9 @@ def _flank_to_flank(
                 tuple(half_way[one] - level[one] for one in (touch, touch - 1)),
             )
         )  # fmt: skip
-        # a corner is missed by up to half a step, so that half way is by up to a quarter
+        # a corner has an error of up to half a step, so half way has up to a quarter
         of_step = step / 4 / np.sqrt(3) / np.abs(speed[touch])
-        # one end that is unlike, as beside a hold, may be of a machine that rounds the others
+        # a single odd end, as beside a hold, may come from a machine that rounds the others
         of_way = np.abs(at_one_level - at_half_way) / np.sqrt(12)
         is_irregular = is_other.mean() > _IRREGULAR
         found = at_half_way if is_irregular else at_one_level
@@ -437,24 +438,24 @@ def _half_way(driven: Floats, begin: Integers, end: Integers) -> Integers:
     return found
 
 
-_REACH = 10  # cycles to either side, over which the period of a sine is taken as one
+_REACH = 10  # cycles to either side, over which the period of a sine is taken as constant
 
 _STEADY = 1e-3  # of the period, from one cycle to the next
 
-_PLACES = 40  # that are looked at, spread over the test
+_PLACES = 40  # that are examined, spread over the test
 
 _ODD = 0.05  # of the places
 
 
 def change_of_period(time: Floats, driven: Floats, cycles: Cycles) -> float:
-    r"""Change of the period from one cycle to the next, as a share of it, where it goes on.
+    r"""Relative change of the period from one cycle to the next, where it persists.
 
-    The median of what is found where it is beyond a thousandth and the sampling, as in a sweep of
-    frequency; 0 where that is, with one sign, in less than a twentieth of the places looked at.
+    The median of the changes above a thousandth and above the sampling, as in a frequency sweep;
+    0 where these, with one sign, are less than a twentieth of the places examined.
 
     Notes
     -----
-    Of the times :math:`t` at which a rise is half way up, ten cycles before a cycle and ten after
+    For times :math:`t` at which a rise is half way up, ten cycles before a cycle and ten after
     it (fewer in a short test): :math:`t_{k+m} - 2 t_k + t_{k-m} = m^2 \dot P`.  Each is known to
     a sample.
 
@@ -488,6 +489,6 @@ def change_of_period(time: Floats, driven: Floats, cycles: Cycles) -> float:
     change = (after - 2 * half_way + before) / (reach**2 * period)
     step = (take_samples(time, at) - take_samples(time, np.maximum(at - 1, 0))).max(axis=0)
     goes_on = np.abs(change) > _STEADY + 2 * step / (reach**2 * period)
-    # a cycle that waits is met from before and from behind, with either sign
+    # a cycle with a wait is met from before and from behind, with opposite signs
     share = abs(np.sum(np.sign(change[goes_on]))) / goes_on.size
     return float(np.median(change[goes_on])) if share > _ODD else 0.0

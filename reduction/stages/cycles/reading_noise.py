@@ -1,7 +1,7 @@
-"""Noise of the readings of a channel, and what the steps of its converter leave of it.
+"""Noise of the readings of a channel, and how much of it the steps of its converter leave.
 
-Third differences of a smooth series show its noise; those of a coarse converter show its steps
-instead, and noise is then read from the codes, and from the cycles, which repeat.
+Third differences of a smooth series show its noise, but those of a coarse converter show its
+steps; noise is then read from the codes, and from the cycles, which repeat.
 
 References
 ----------
@@ -22,9 +22,9 @@ from reduction.stages.cycles.cycle_product import Cycles
 
 _NOISE_SAMPLES = 65_536
 
-_FEWEST = 5  # turns, or readings of a branch, that show a scatter
+_FEWEST = 5  # turns, or readings of a branch, needed for a scatter
 
-_MOST_CYCLES, _MOST_READINGS = 100, 1 << 17  # that are looked at for it
+_MOST_CYCLES, _MOST_READINGS = 100, 1 << 17  # examined for it
 
 _CLEAR = 3.0  # standard errors, between the codes that noise fills and those that it leaves empty
 
@@ -37,8 +37,8 @@ def reading_noise(values: Floats) -> float:
     Parameters
     ----------
     values : ndarray, shape (n_samples,)
-        A series that is smooth but for noise; at most its first 65,536 samples
-        are used, so that reading in pieces changes nothing. [any]
+        A series that is smooth apart from noise; at most its first 65,536 samples
+        are used, so that reading in pieces gives the same result. [any]
 
     Returns
     -------
@@ -52,8 +52,8 @@ def reading_noise(values: Floats) -> float:
 
     Notes
     -----
-    A third difference of white noise has 1 + 9 + 9 + 1 = 20 times its variance ([1]_).  The
-    median ([2]_) makes the turns of a triangular test count for nothing.
+    A third difference of white noise has 1 + 9 + 9 + 1 = 20 times its variance ([1]_).  With
+    the median ([2]_) the turns of a triangular test have no effect.
 
     Examples
     --------
@@ -69,9 +69,9 @@ def reading_noise(values: Floats) -> float:
 
 
 def within_scatter(noise: float, top: Floats) -> float:
-    """Noise of a reading, no more than the scatter of the extremes from cycle to cycle allows.
+    """Noise of a reading, limited to what the scatter of extremes from cycle to cycle allows.
 
-    Third differences take the corners of a wave of some fifteen readings a cycle for noise.
+    With about fifteen readings a cycle, third differences take the corners of a wave for noise.
 
     Examples
     --------
@@ -88,14 +88,14 @@ _LEAST_OF_GREATEST = 0.2  # of the noise: half the scatter of the greatest of hu
 
 
 def noise_and_step(values: Floats, noise: float) -> tuple[float, float]:
-    r"""Noise of readings before they were rounded, and the step that they were rounded to.
+    r"""Noise of readings before they were rounded, and the step to which they were rounded.
 
     .. math:: \sigma^2 = s^2 - q^2 / 12
 
-    The median of third differences is itself a number of steps where these are coarse: there it is
-    their mean square that says what the noise is, unless the steps back contradict it: a slow ramp
-    in coarse steps has third differences without any noise.  The step is zero where noise of more
-    than a step leaves nothing of it.
+    Where the steps are coarse, the median of third differences is itself a number of steps; their
+    mean square then gives the noise, unless the backward steps contradict it: a slow ramp in
+    coarse steps has third differences without any noise.  The step is zero where noise of more
+    than a step hides it.
 
     Examples
     --------
@@ -110,7 +110,8 @@ def noise_and_step(values: Floats, noise: float) -> tuple[float, float]:
     codes = values[:_NOISE_SAMPLES] / step
     third = np.abs(np.diff(codes, n=3))
     third = third[np.isfinite(third) & (third < _FAR)]
-    # the corners of a wave are no noise: without the greatest fifth, as of a normal distribution
+    # the corners of a wave are not noise: leave out the greatest fifth, as for a normal
+    # distribution
     inner = np.sort(third)[: int(0.8 * third.size)]
     square = float(np.mean(inner**2)) / (20 * _OF_INNER) if inner.size else 0.0
     by_differences = float(np.sqrt(max(square - 1 / 12, 0.0)))
@@ -118,14 +119,14 @@ def noise_and_step(values: Floats, noise: float) -> tuple[float, float]:
 
 
 def _noise_of_codes(codes: Floats, most: float) -> float:
-    r"""Noise of a wave in codes of a converter, where its steps back contradict a greater one. [1].
+    r"""Noise of a wave in converter codes, where its backward steps contradict a greater one. [1].
 
     .. math:: b = \langle s\,\varphi(r / s) - r\,\Phi(-r / s) \rangle, \qquad s = \sqrt 2 \sigma
 
-    with b the mean number of steps against the way of the wave from one reading to the next, and r
-    what the wave goes in that time.  A distance holds as many edges of codes in the mean as it is
-    steps long, so b is the mean of the way back; a ramp without noise goes back nowhere.  ``most``
-    is the noise where as many are seen as it makes, within three standard deviations.
+    with b the mean number of steps against the direction of the wave from one reading to the next,
+    and r how far the wave moves in that time.  On average a distance holds as many code edges as
+    it is steps long, so b is the mean backward distance; a ramp without noise never goes back.
+    ``most`` is returned where the count fits that noise within three standard deviations.
 
     Examples
     --------
@@ -135,7 +136,7 @@ def _noise_of_codes(codes: Floats, most: float) -> float:
     [0.0, 0.2, 0.5]
     """
     steps, reach = np.diff(codes), 1
-    # what the wave goes, by readings so far apart that their noise is little of it
+    # motion of the wave, from readings so far apart that their noise is a small part of it
     while True:
         rate = (codes[2 * reach :] - codes[: -2 * reach]) / (2 * reach)
         fastest = float(np.nanquantile(np.abs(rate), _FAST)) if np.isfinite(rate).any() else 0.0
@@ -160,13 +161,13 @@ def _noise_of_codes(codes: Floats, most: float) -> float:
     return float(scipy.optimize.brentq(lambda noise: expected(noise) - back, least, most))
 
 
-_FAST, _STEPS_APART = 0.9, 4.0  # share of readings at less than that rate; steps between two
+_FAST, _STEPS_APART = 0.9, 4.0  # share of readings below that rate; steps between two readings
 
 
 def _codes_of_branches(values: Floats, cycles: Cycles, step: float) -> list[Floats]:
-    """Readings of the rise and of the fall of some cycles, one row each, in steps of a converter.
+    """Readings of the rises and falls of some cycles, one row each, in converter steps.
 
-    Noise puts a turn a reading early or late: each row begins where it is most like the others.
+    Noise makes a turn a reading early or late: each row begins where it is most like the others.
     """
     found = []
     for begin, end in zip(cycles.branch_first.T, cycles.branch_last.T, strict=True):
@@ -186,14 +187,14 @@ def _codes_of_branches(values: Floats, cycles: Cycles, step: float) -> list[Floa
 
 
 def scatter_over_cycles(values: Floats, cycles: Cycles, step: float) -> float:
-    r"""Scatter of one place of the wave over the cycles, before it was rounded. [any].
+    r"""Scatter over the cycles of one place of the wave, before rounding. [any].
 
     .. math:: \langle v \rangle \approx q \sigma / \sqrt{\pi}
               \quad (\sigma \ll q), \qquad \langle v \rangle \approx \sigma^2 + q^2 / 12
 
-    of the variance v of its codes, over all levels that a reading may have between two codes.
-    Noise makes it, or a log that is out of step with its wave, and either frees the mean of the
-    steps; a log in step has none of it, though third differences take its steps for noise.
+    averaging the variance v of its codes over all levels that a reading may have between codes.
+    Noise or a log out of step with its wave causes it, and either frees the mean from the steps;
+    a log in step has none, though third differences take its steps for noise.
 
     Examples
     --------
@@ -215,21 +216,21 @@ def scatter_over_cycles(values: Floats, cycles: Cycles, step: float) -> float:
     return step * float(linear if linear < _FEW_FLIP else np.sqrt(square - 1 / 12))
 
 
-_FEW_FLIP = 0.3  # steps of scatter, where both lines meet
+_FEW_FLIP = 0.3  # steps of scatter, where the two lines meet
 
 
 def rounding_of_branches(values: Floats, cycles: Cycles, step: float) -> float:
-    r"""Root mean square of the mean error that rounding leaves over a branch. [any].
+    r"""Root mean square of the mean error over a branch that rounding leaves. [any].
 
     .. math:: u = q \sqrt{\langle (\tfrac1n \sum_k \{o + x_k\})^2 \rangle}
 
-    with the distance {} of a number from the nearest whole one, readings x of the branch without
-    rounding, by a cubic through their codes, and any level o.  Where a branch goes by a whole
-    number of steps from one reading to the next, all its readings err alike.
+    with {} the distance of a number from the nearest whole one, x the readings of the branch
+    without rounding, from a cubic through their codes, and o any level.  Where a branch moves by a
+    whole number of steps from one reading to the next, all its readings have the same error.
 
     Examples
     --------
-    Ramps of 20 readings, of 5 steps a reading and of 5.37, from a level that any cycle has:
+    Ramps of 20 readings, of 5 and of 5.37 steps a reading, from a level that any cycle has:
 
     >>> first = np.arange(0, 200, 40)
     >>> ends = np.column_stack([first, first + 20])
@@ -254,4 +255,4 @@ def rounding_of_branches(values: Floats, cycles: Cycles, step: float) -> float:
 _COARSE, _FAR = 1.5, 12.0  # steps of a converter
 
 
-_OF_INNER = 0.4377  # of the mean square of normal values, that of the least four fifths of them
+_OF_INNER = 0.4377  # mean square of the least four fifths of normal values, as a share of the whole

@@ -1,15 +1,15 @@
-r"""Readings at the turns of a wave: what noise and the time between samples do to extremes.
+r"""Readings at the turns of a wave: effect of noise and sampling on extremes.
 
-The greatest of many noisy readings is greater than the greatest level.  By how much follows from
-the noise of a reading and from the shape of the turn, which the mean over many cycles shows,
+The greatest of many noisy readings exceeds the greatest level.  The excess follows from
+the noise of a reading and from the shape of the turn, given by the mean over many cycles,
 
 .. math::
 
     E \max_j (z_j - d_j) = \int x \sum_j \varphi(x + d_j) \prod_{i \ne j} \Phi(x + d_i) \, dx
 
-where :math:`d_j` is how far sample j lies below the turn, over the noise ([1]_).  A log that is
-slow against its ramps has little of that and misses the turn instead, by up to half a sample.  It
-lies between the readings and the point where the lines through two samples on either side cross.
+where :math:`d_j` is the distance of sample j below the turn, over the noise ([1]_).  A log that is
+slow compared with its ramps has little of this, but misses the turn by up to half a sample.  The
+turn lies between the readings and the crossing of the lines through two samples on either side.
 
 References
 ----------
@@ -36,23 +36,21 @@ _MOST_REACH = 600  # samples beside a turn
 
 _FARTHEST = 6.0  # standard deviations below a turn
 
-_SMOOTHED = 1.2  # noise over the step from sample to sample: width that rounds a turn little
+_SMOOTHED = 1.2  # noise over the step between samples: width that hardly rounds a turn
 
-_PASSES = (
-    3  # of laying turns on each other: a window beside its turn has one flank more than another
-)
+_PASSES = 3  # of aligning turns with each other: a window off its turn has unequal flanks
 
-_CLEAR = 3.0  # noise of a reading, by which a step from sample to sample shows where a turn is
+_CLEAR = 3.0  # times the noise of a reading: such steps between samples show the place of a turn
 
-STEEP = 10.0  # noise of a reading, by which the steps of one turn show a corner
+STEEP = 10.0  # times the noise of a reading: such steps of a single turn show a corner
 
-_ROUNDED = 0.2  # of that step, by which a turn lies below the lines beside it
+_ROUNDED = 0.2  # of that step: distance of a turn below the lines beside it
 
 _MOST_CORNERS = 0.8  # of the turns of a wave
 
 _BENDS = 3 * 6**0.5  # noise of a reading: three standard deviations of a second difference
 
-_BESIDE = 3  # samples on either side of a turn by which lines cross
+_BESIDE = 3  # samples on either side of a turn through which the crossing lines are drawn
 
 
 def _excess_of_greatest(below: ArrayLike) -> float:
@@ -68,7 +66,7 @@ def _excess_of_greatest(below: ArrayLike) -> float:
     Returns
     -------
     excess : float
-        In the same; 0 of none. [1]
+        In the same unit; 0 for no readings. [1]
 
     Raises
     ------
@@ -81,7 +79,7 @@ def _excess_of_greatest(below: ArrayLike) -> float:
 
     Examples
     --------
-    Of two readings of one level 1 / sqrt(pi) = 0.5642, of three 3 / (2 sqrt(pi)) = 0.8463:
+    For two readings of one level 1 / sqrt(pi) = 0.5642, for three 3 / (2 sqrt(pi)) = 0.8463:
 
     >>> print(round(_excess_of_greatest([0, 0]), 4), round(_excess_of_greatest([0, 0, 0]), 4))
     0.5642 0.8463
@@ -105,7 +103,7 @@ def noise_in_extreme(
     sign: int,
     noise: float,
 ) -> tuple[float, float]:
-    r"""How far noise lifts the extreme reading beside a turn, on average.
+    r"""Mean excess of the extreme reading near a turn due to noise.
 
     Parameters
     ----------
@@ -114,19 +112,19 @@ def noise_in_extreme(
     turn : ndarray of int, shape (n_turns,)
         Samples at which the wave turns. [1]
     reach : int
-        Samples on either side among which the extreme is sought. [1]
+        Samples on either side among which the extreme is searched. [1]
     sign : {1, -1}
-        1 of peaks, -1 of valleys. [1]
+        1 for peaks, -1 for valleys. [1]
     noise : float
         Standard deviation of one reading. [any]
 
     Returns
     -------
     excess : float
-        To be taken off a peak and added to a valley; 0 of fewer than five turns. [any]
+        To be subtracted from a peak and added to a valley; 0 for fewer than five turns. [any]
     fall : float
-        By which the shape falls from its top to the reading beside it, on the steeper side: of a
-        turn between two readings their mean is blunt, and the excess too great. [any]
+        Fall of the shape from its top to the next reading, on the steeper side; for a
+        turn between two readings the mean shape is blunt, and the excess too great. [any]
 
     Raises
     ------
@@ -136,12 +134,12 @@ def noise_in_extreme(
     Notes
     -----
     Source: [1]_, with the mean over the turns as their shape, smoothed over as many samples as
-    leave a sharp turn within a third of the noise.  Noise puts turns beside where they are, and
-    their mean would be blunt: they are laid on the middle of their flanks.
+    leave a sharp turn within a third of the noise.  Noise misplaces turns, and
+    their mean would be blunt: they are aligned by the middle of their flanks.
 
     Examples
     --------
-    Ramps of 2 N a sample with 3 N of noise: of 100 turns the greatest readings average to
+    Ramps of 2 N a sample with 3 N of noise; excess of the greatest readings of 100 turns:
 
     >>> ramp = np.concatenate([np.tile(np.r_[0:100, 100:0:-1], 100), [0]]) * 2.0
     >>> noisy = ramp + np.random.default_rng(1).normal(0, 3, ramp.size)
@@ -163,10 +161,10 @@ def noise_in_extreme(
         mean = levels.mean(axis=0)
         if not np.isfinite(mean).all():
             return 0.0, 0.0
-        # what chose the turns put them beside: the first moment of the window says where they are
+        # the turns were misplaced by noise: the first moment of the window corrects their position
         weight = levels - min(mean[0], mean[-1])
         total = weight.sum(axis=1)
-        # of a window that noise fills its moment says nothing
+        # in a window dominated by noise the moment has no information
         clear = total * reach > 2 * noise * np.sqrt((place**2).sum())
         if not clear.any():
             break
@@ -185,7 +183,7 @@ def noise_in_extreme(
     shape = np.convolve(padded, np.full(width, 1 / width), mode="valid")
     top = int(np.argmax(shape[1:-1])) + 1
     fall = float(shape[top] - min(shape[top - 1], shape[top + 1]))
-    # the greatest of a mean over some turns is itself too great
+    # the greatest of a mean over some turns is itself biased high
     own = noise / np.sqrt(some.size * width)
     highest = shape.max() - own * _excess_of_greatest((shape.max() - shape) / own)
     return noise * _excess_of_greatest((highest - shape) / noise), fall
@@ -215,7 +213,7 @@ def kind_of_turns(
     noise : float
         Standard deviation of one reading. [any]
     in_doubt : {"hidden", "sharp", "rounded"}
-        Kind where noise may be what rounds the turns, or does not: of the other channel, that of
+        Kind where noise alone may round the turns: for the other channel, the kind of
         the driven one, which moves both. [-]
 
     Returns
@@ -248,7 +246,7 @@ def kind_of_turns(
     rise, fall = level[:, 1] - level[:, 0], level[:, 3] - level[:, 4]
     step = np.median(np.minimum(rise, fall))
     rounded = np.median(np.minimum(level[:, 1] + rise, level[:, 3] + fall) - level[:, 2])
-    # of a median over turns, of two readings before less one before and one at the turn
+    # of a median over turns: two readings before less one before and one at the turn
     unknown = 1.25 * 6**0.5 * noise / some.size**0.5
     if not step > _CLEAR * noise:
         return "hidden"
@@ -269,7 +267,7 @@ def level_of_turn(values: Floats, turn: Integers, extreme: Floats, *, sign: int)
     extreme : ndarray, shape (n_turns,)
         Readings. [any]
     sign : {1, -1}
-        1 of peaks, -1 of valleys. [1]
+        1 for peaks, -1 for valleys. [1]
 
     Returns
     -------
@@ -283,7 +281,7 @@ def level_of_turn(values: Floats, turn: Integers, extreme: Floats, *, sign: int)
 
     Examples
     --------
-    A peak of 100 that lies 0.4 samples after the one that is logged:
+    A peak of 100, 0.4 samples after the logged one:
 
     >>> place = np.arange(-5, 6)
     >>> wave = np.minimum(100 + 10 * (place - 0.4), 100 - 20 * (place - 0.4))
@@ -306,11 +304,11 @@ def level_at_corner(
     own_noise: float = 0.0,
     steep: float = STEEP,
 ) -> Floats:
-    """Level to which the approach of a series goes on, to the corner of the channel that moves it.
+    """Level of a series extrapolated along its approach to the corner of the driving channel.
 
-    What relaxes within a sample after the corner leaves no line there: the readings after it say
-    nothing of the level, and those before it all.  An approach that clearly steepens, as of a hose
-    whose cords lock, goes on as a parabola.
+    Where the series relaxes within a sample after the corner, there is no line after it: only
+    the readings before it determine the level.  An approach that clearly steepens, as for a hose
+    whose cords lock, is extrapolated as a parabola.
 
     Parameters
     ----------
@@ -321,7 +319,7 @@ def level_at_corner(
     extreme_at : ndarray of int, shape (n_turns,)
         Samples of its extreme readings. [1]
     sign : {1, -1}
-        1 of peaks, -1 of valleys. [1]
+        1 for peaks, -1 for valleys. [1]
     noise : float
         Standard deviation of one reading of ``moved``. [any]
     rests : bool
@@ -334,7 +332,7 @@ def level_at_corner(
     Returns
     -------
     level : ndarray, shape (n_turns,)
-        NaN where ``moved`` has no corner beside it, or the series went on beyond it. [any]
+        NaN where ``moved`` has no corner nearby, or the series went on beyond it. [any]
 
     Raises
     ------
@@ -343,7 +341,7 @@ def level_at_corner(
 
     Examples
     --------
-    Held from 0.6 samples after the reading, and decayed before the next one:
+    Held from 0.6 samples after the reading, and relaxed before the next one:
 
     >>> place = np.arange(11)
     >>> drive = np.minimum(place - 5.6, 0)
@@ -372,7 +370,7 @@ def level_at_corner(
         on = np.where(offset < 0, 1 + offset, offset)
         return np.asarray(series[before] + (approach + bend * (1 + on) / 2) * on)
 
-    # what creeps while its channel rests is farthest where that leaves: the same, backward in time
+    # creep during a rest is greatest where the rest ends: the same, backward in time
     backward = moved.size - 1 - extreme_at
     beyond = np.where(
         np.isfinite(offset),
@@ -385,10 +383,10 @@ def level_at_corner(
 
 
 def level_beside_corner(values: Floats, moved: Floats, turn: Integers, *, sign: int) -> Floats:
-    """Level as far beyond the extreme reading as the channel that moves a series is beyond its own.
+    """Level at a corner, from the extreme reading and the motion of the driving channel.
 
-    By the slope of the step beside the turn that has no corner in it.  Of a series that stiffens
-    towards its turn on both branches the lines beside cross below the reading, and a parabola lags
+    The slope is that of the step beside the turn without the corner.  For a series that stiffens
+    towards its turn on both branches, the lines beside cross below the reading, and a parabola lags
     behind.
 
     Parameters
@@ -400,13 +398,13 @@ def level_beside_corner(values: Floats, moved: Floats, turn: Integers, *, sign: 
     turn : ndarray of int, shape (n_turns,)
         Samples at which the channel turns. [1]
     sign : {1, -1}
-        1 of peaks, -1 of valleys. [1]
+        1 for peaks, -1 for valleys. [1]
 
     Returns
     -------
     level : ndarray, shape (n_turns,)
-        The reading at the turn where the series does not stiffen, or a reading beside is farther,
-        as of a series that turns before or after. [any]
+        The reading at the turn where the series does not stiffen, or where a reading nearby is
+        farther, as in a series that turns before or after. [any]
 
     Raises
     ------
@@ -415,7 +413,7 @@ def level_beside_corner(values: Floats, moved: Floats, turn: Integers, *, sign: 
 
     Examples
     --------
-    A corner 0.4 samples before a reading, and a force that rises by a half with every step:
+    A corner 0.4 samples before a reading, and a force that grows by a half with every step:
 
     >>> drive = -np.abs(np.arange(11) - 4.6)
     >>> force = 100 * 1.5**drive
@@ -438,10 +436,10 @@ def level_beside_corner(values: Floats, moved: Floats, turn: Integers, *, sign: 
 
 
 def rests_at_turns(moved: Floats, extreme_at: Integers) -> bool:
-    """Whether a channel stays where it turns for more than one reading, at most of its extremes.
+    """Whether a channel rests for more than one reading at most of its extremes.
 
-    Then two readings are at one level, or the lines beside cross farther above the one that is
-    there than they do above the readings on either side of a turn of ramps.
+    Then two readings are at one level, or the lines beside cross farther above the extreme reading
+    than they do above the readings on either side of a turn of ramps.
 
     Examples
     --------
@@ -459,7 +457,7 @@ def rests_at_turns(moved: Floats, extreme_at: Integers) -> bool:
     rise, fall = steps[:, 0], -steps[:, -1]
     is_ramp = np.minimum(rise, fall) > _RESTS * np.abs(steps).max(axis=1)
     with np.errstate(divide="ignore", invalid="ignore"):
-        # of the lines through the outer readings, in steps from the second one
+        # crossing of the lines through the outer readings, in steps from the second one
         along = (level[:, -2] - level[:, 1] + 4 * fall) / (rise + fall)
         height = level[:, 1] + rise * along - level.max(axis=1)
         is_above = height > _ABOVE * rise * fall / (rise + fall)
@@ -470,36 +468,37 @@ def rests_at_turns(moved: Floats, extreme_at: Integers) -> bool:
 
 _RESTS = 0.05  # of the greatest step nearby
 
-_ABOVE = 1.1  # of the most by which lines cross above the readings beside a turn of ramps
+_ABOVE = 1.1  # of the greatest height at which lines cross above the readings at a turn of ramps
 
 
 def energy_beside_polygon(
     tension: Floats, strain: Floats, moved: Floats, *, noise: float
 ) -> tuple[Floats, Floats]:
-    r"""Area between the polygon of the readings and a loop, at corners of the machine and between.
+    r"""Area between the polygon of the readings and a loop, at machine corners and elsewhere.
 
     .. math:: \Delta H_i = \int_{i \to c \to c' \to j} T \, d\varepsilon
               - \tfrac12 (T_i + T_j)(\varepsilon_j - \varepsilon_i)
 
-    at a corner, with the line through the two readings before it gone on to c, and that through
-    the two after it gone back to c'.  Tension may fall at once from c to c', as friction does.
-    Elsewhere a third of what a polygon of every other reading lacks of this one: that is the next
-    order where the loop is smooth, and the mean over all places of a kink between two readings.
+    at a corner, with the line through the two readings before it extended to c, and that through
+    the two after it extended back to c'.  Tension may fall at once from c to c', as friction does.
+    Elsewhere it is a third of the difference between this polygon and one of every other reading:
+    the next order where the loop is smooth, and the mean over all places of a kink between two
+    readings.
 
     Parameters
     ----------
     tension, strain, moved : ndarray, shape (n_samples,)
-        Two series, and the one of them, or the third, that the machine moves. [N], [1], [any]
+        Two series, and the one of them, or a third, that the machine moves. [N], [1], [any]
     noise : float
         Standard deviation of one reading of ``moved``. [any]
 
     Returns
     -------
     at_corners : ndarray, shape (n_samples,)
-        What the polygon lacks between each reading and the next; 0 where there is no corner.
+        Area missing from the polygon between each reading and the next; 0 without a corner.
         [J m-1]
     between : ndarray, shape (n_samples,)
-        What it lacks about each reading; 0 beside a corner. [J m-1]
+        Area missing about each reading; 0 beside a corner. [J m-1]
 
     Raises
     ------
@@ -516,7 +515,7 @@ def energy_beside_polygon(
     >>> print(at_corners.round(4)[4:7], abs(between).max().round(9))
     [0.  0.2 0. ] 0.0
 
-    A circle of 12 readings, of which the polygon is 4.5 % too small:
+    A circle of 12 readings, whose polygon is 4.5 % too small:
 
     >>> turn = 2 * np.pi * np.arange(13) / 12
     >>> _, between = energy_beside_polygon(np.sin(turn), np.cos(turn), np.cos(turn), noise=0)
@@ -529,7 +528,8 @@ def energy_beside_polygon(
     to_force, to_strain = np.diff(tension), np.diff(strain)
     between[1:-1] = (to_force[:-1] * to_strain[1:] - to_force[1:] * to_strain[:-1]) / 12
     steps = np.diff(moved)
-    # the steps of a corner: two alike before it, the one that has it, two alike after it
+    # the steps of a corner: two equal ones before it, the one containing it, two equal ones after
+    # it
     second, before, own, after, third = (steps[k : steps.size - 4 + k] for k in range(5))
     fastest = np.maximum(np.abs(before), np.abs(after))
     unlike = np.maximum(np.abs(before - second), np.abs(after - third))
@@ -561,7 +561,7 @@ def energy_beside_polygon(
 def has_corners(
     moved: Floats, extreme_at: Integers, *, sign: int, noise: float, rests: bool
 ) -> bool:
-    """Whether a channel has a corner beside most of the extremes of the one that answers it."""
+    """Whether the driving channel has a corner near most of the extremes of the responding one."""
     arriving, leaving = (
         _offset_of_corner(series, at, sign=sign, noise=noise, rests=rests)
         for series, at in ((moved, extreme_at), (moved[::-1], moved.size - 1 - extreme_at))
@@ -578,9 +578,9 @@ def _offset_of_corner(
     rests: bool,
     steep: float = STEEP,
 ) -> Floats:
-    """Samples from an extreme to the corner beside it; NaN where there is none.
+    """Samples from an extreme to the corner near it; NaN where there is none.
 
-    Of a channel that ``rests`` where it turns, the corner is where its approach meets the rest.
+    For a channel that ``rests`` where it turns, the corner is where its approach meets the rest.
     """
     window = extreme_at[:, None] + np.arange(-_BESIDE, _BESIDE + 1)
     usable = (window[:, 0] >= 0) & (window[:, -1] < moved.size)
@@ -600,7 +600,7 @@ def _offset_of_corner(
         offset = last - _BESIDE + np.minimum(share, 1)
     else:
         rise, on = steps[:, 1], steps[:, 4]
-        # two steps alike before the corner and two after it, and a change of slope between them
+        # two equal steps before the corner and two after it, and a change of slope between them
         alike = np.maximum(np.abs(steps[:, 0] - rise), np.abs(steps[:, 5] - on))
         usable &= rise - on > 2 * _ROUNDED * rise
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -610,7 +610,7 @@ def _offset_of_corner(
 
 
 def missed_by_extreme(values: Floats, turn: Integers, extreme: Floats, *, sign: int) -> Floats:
-    """By how much the extreme reading may miss a turn that is rounded over a sample or two.
+    """Distance by which the extreme reading may miss a turn rounded over a sample or two.
 
     Parameters
     ----------
@@ -621,13 +621,13 @@ def missed_by_extreme(values: Floats, turn: Integers, extreme: Floats, *, sign: 
     extreme : ndarray, shape (n_turns,)
         Readings. [any]
     sign : {1, -1}
-        1 of peaks, -1 of valleys. [1]
+        1 for peaks, -1 for valleys. [1]
 
     Returns
     -------
     missed : ndarray, shape (n_turns,)
-        The greater of what a parabola through three readings has above them and of what the
-        steeper way to the crossing of the lines beside adds; at most the crossing, 0 where no
+        The greater of the height of a parabola through three readings above them and of the rise
+        along the steeper way to the crossing of the lines; at most the crossing, 0 where no
         lines cross. [any]
 
     Raises
@@ -637,12 +637,12 @@ def missed_by_extreme(values: Floats, turn: Integers, extreme: Floats, *, sign: 
 
     Notes
     -----
-    Where a rise is faster than the fall after it, a rounded turn lies after the corner of the two
-    lines, and a reading at the corner misses it: the parabola shows that.
+    Where a rise is faster than the following fall, a rounded turn lies after the corner of the two
+    lines, and a reading at the corner misses it: the parabola accounts for that.
 
     Examples
     --------
-    A parabola whose top is logged, and one that is logged a quarter of a sample beside it:
+    A parabola logged at its top, and one logged a quarter of a sample beside it:
 
     >>> place = np.arange(-5, 6)
     >>> for beside in (0.0, 0.25):
@@ -658,21 +658,21 @@ def missed_by_extreme(values: Floats, turn: Integers, extreme: Floats, *, sign: 
 
 
 def _crossing(values: Floats, turn: Integers, *, sign: int) -> tuple[Floats, ...]:
-    """Level at which the lines beside a turn cross, samples after the extreme, step on that side.
+    """Level where the lines at a turn cross, samples after the extreme, step on that side, bow.
 
-    The last one is by how much the parabola through the extreme and its neighbours is above it.
+    The last one is the height above it of the parabola through the extreme and its neighbours.
     NaN where no lines cross.
     """
     window = turn[:, None] + np.arange(-_BESIDE, _BESIDE + 1)
     usable = (window[:, 0] >= 0) & (window[:, -1] < values.size)
     level = sign * values[np.clip(window, 0, values.size - 1)]
-    # a channel that is late turns a sample after the driven one
+    # a channel that lags turns a sample after the driven one
     top = _BESIDE - 1 + level[:, _BESIDE - 1 : _BESIDE + 2].argmax(axis=1)
     row = np.arange(turn.size)
     before, after = level[row, top - 1], level[row, top + 1]
     rise, fall = before - level[row, top - 2], after - level[row, top + 2]
     with np.errstate(divide="ignore", invalid="ignore"):
-        # of the lines, counted from the sample at the turn
+        # crossing of the lines, counted from the sample at the turn
         offset = (after + fall - before - rise) / (rise + fall)
         crossing = before + rise * (1 + offset)
     usable &= (rise > 0) & (fall > 0) & (np.abs(offset) <= 1)

@@ -1,6 +1,6 @@
-r"""Prony series of a relaxation: how many terms the record supports, and what they are.
+r"""Prony series of a relaxation: number of terms that the record supports, and their values.
 
-**Prony series: the tension it gives, and what a finite ramp leaves of each term**:
+**Prony series: its tension, and the part of each term left by a finite ramp**:
 
 .. math:: T(t) = T_\infty + \sum_i T_i e^{-t/\tau_i}
 
@@ -29,13 +29,13 @@ SMALLEST_RATIO = 1e-12
 
 
 def _ramp_factor(relaxation_time: ArrayLike, *, ramp_duration: float) -> Floats:
-    r"""Share of a Prony term that is left at the end of a constant-rate ramp.
+    r"""Fraction of a Prony term left at the end of a constant-rate ramp.
 
     .. math:: \frac{1 - e^{-t_r/\tau}}{t_r/\tau}
 
     Notes
     -----
-    Time counts from the end of the ramp.  Counted from its start the factor reads
+    Time counts from the end of the ramp.  Counted from its start, the factor is
     :math:`(e^{t_r/\tau} - 1)/(t_r/\tau)`, the usual form ([1]_); the two differ by
     :math:`e^{t_r/\tau}`.
 
@@ -97,22 +97,22 @@ def terms_by_shape_of_ramp(
     ramp_duration: float,
     since_end: float,
 ) -> Floats:
-    """Terms after a step in length, the ramp as it was logged in place of one of constant rate.
+    """Terms after a step in length, by the ramp as logged instead of one of constant rate.
 
-    What the ramp would add without relaxing follows from what it added, by the terms themselves.
+    The tension that the ramp would add without relaxation follows from that added, by the terms.
 
     Parameters
     ----------
     added : array_like, shape (n_times,)
         Tension that the ramp had added at even times up to its end. [N]
     duration : float
-        Of the ramp. [s]
+        Duration of the ramp. [s]
     tension, relaxation_time : ndarray, shape (n_terms,)
-        By a ramp of constant rate. [N], [s]
+        Terms for a ramp of constant rate. [N], [s]
     long_time_tension : float
         [N]
     ramp_duration, since_end : float
-        Of that ramp, and how much later than the logged one it ends. [s]
+        Duration of that ramp, and the time by which it ends after the logged one. [s]
 
     Returns
     -------
@@ -126,7 +126,7 @@ def terms_by_shape_of_ramp(
 
     Examples
     --------
-    A ramp of constant rate of a term that relaxes as fast:
+    A constant-rate ramp of a term that relaxes as fast:
 
     >>> elastic = np.linspace(0.0, 400.0, 65)
     >>> t = np.linspace(0.0, 5.0, 65)
@@ -146,7 +146,7 @@ def terms_by_shape_of_ramp(
         push = (load - rest * elastic - states.sum()) / (rest + share @ gain)
         elastic += push
         states = states + share * gain * push
-    # of each term at the end of the ramp, over what a step to its length would have left
+    # of each term at the end of the ramp, over the remainder of a step to its length
     left = np.divide(states, share * elastic, out=np.ones_like(states), where=share > 0)
     at_end = tension * _ramp_factor(relaxation_time, ramp_duration=ramp_duration)
     return np.asarray(at_end * np.exp(since_end / relaxation_time) / left)
@@ -163,15 +163,15 @@ DECISIVE = 10.0
 LONGEST_TIME = 2.0
 
 LARGEST_SHARE = 0.5
-"""Uncertainty of a term, or of its time, as a share of it, beyond which there is no series. [1]"""
+"""Relative uncertainty of a term, or of its time, beyond which there is no series. [1]"""
 
 BLOCK_ERROR = 2e-4
 
 LARGEST_LOG = 50.0
 
 STILL_RELAXES = 3**-0.5
-"""Standard uncertainty of a long-time tension, as a share of what a decade of time takes at the end
-of the hold: slower terms, which the hold does not show, take up to that. [1]"""
+"""Standard uncertainty of a long-time tension, as a fraction of the loss per decade of time at the
+end of the hold: slower terms, which the hold does not show, take up to that. [1]"""
 
 
 @dataclass(frozen=True)
@@ -203,7 +203,7 @@ class PronyFit:
 def _starts(
     elapsed: Floats, tension: Floats, weights: Floats, grid: Floats, n_terms: int
 ) -> Floats:
-    """Best sets of times of a coarse grid, terms positive; found from one Gram matrix."""
+    """Best sets of times of a coarse grid with positive terms, from one Gram matrix."""
     root = np.sqrt(weights)[:, None]
     columns = np.column_stack([np.ones_like(elapsed), _exponentials(elapsed, grid)]) * root
     target = tension * root[:, 0]
@@ -211,7 +211,7 @@ def _starts(
     sets = np.array(list(combinations(range(1, grid.size + 1), n_terms)))
     index = np.column_stack([np.zeros(len(sets), dtype=np.intp), sets])
     small = gram[index[:, :, None], index[:, None, :]]
-    # A ridge far below the noise keeps neighbours of the grid apart.
+    # A ridge far below the noise separates neighbours of the grid.
     small = small + 1e-10 * np.trace(gram) / gram.shape[0] * np.eye(n_terms + 1)
     right = product[index]
     size = np.linalg.solve(small, right[..., None])[..., 0]
@@ -232,7 +232,7 @@ def _terms(number: int) -> str:
 def _unsupported(
     fit: SeparableFit, inflation: float, shortest: float, longest: float
 ) -> str | None:
-    """Why a fit may not be reported, or None."""
+    """Reason why a fit may not be reported, or None."""
     if not _is_positive(fit):
         return _DEGENERATE
     times, size = np.exp(fit.shape), fit.amplitude[1:]
@@ -273,38 +273,38 @@ def fit_prony(
     weights : array_like, shape (n_samples,), optional
         Inverse relative variances. [1]
     known_to : float, optional
-        Standard uncertainty of tension that is no noise: what a correction leaves. [N]
+        Standard uncertainty of tension that is not noise: the error left by a correction. [N]
 
     Returns
     -------
     fit : PronyFit
-        Terms as a step in length would have given them, shortest time first. [N], [s]
+        Terms for a step in length, shortest time first. [N], [s]
 
     Raises
     ------
     DataError
         If the series do not pair up, or the number of terms is below one.
     FitError
-        If no number of terms is supported; the message names the reason for each.
+        If no number of terms is supported; the message gives the reason for each.
 
     Notes
     -----
     Variable projection ([2]_) from the three best sets of a grid of 20 times.  The
     number of terms has the lowest Bayesian information criterion
-    :math:`n' \ln(S/n) + p \ln n'`, where :math:`n' = n (1 - r_1)/(1 + r_1)` counts
-    independent samples, with :math:`r_1` the correlation of neighbouring residuals of
-    the fit in which it is least; :math:`S/n` counts as at least 2e-4 of the range of
-    tension, squared, which is what block means leave out, and as at least ``known_to``
-    squared.  A fit is out where a term is negative, a time is more than twice the record or
-    not resolved at its start, or a term or its time is uncertain by more than half; and none
-    is reported where one that is out has a criterion lower by more than 10, for then the
-    record itself says that the shorter series is wrong.  Uncertainties are widened by the
+    :math:`n' \ln(S/n) + p \ln n'`, where :math:`n' = n (1 - r_1)/(1 + r_1)` is the number of
+    independent samples, with :math:`r_1` the correlation of neighbouring residuals in
+    the fit in which it is least; :math:`S/n` is at least 2e-4 of the range of
+    tension, squared, which is the error of block means, and at least ``known_to``
+    squared.  A fit is excluded if a term is negative, a time is more than twice the record or
+    not resolved at its start, or a term or its time is uncertain by more than half.  No series
+    is reported if an excluded one has a criterion lower by more than 10, for then the
+    record itself shows that the shorter series is wrong.  Uncertainties are widened by the
     correlation.
 
-    The long-time tension is what the series tends to, not an equilibrium: a longer hold
-    would show slower terms.  Where tension still falls at the end of the hold they are there, and
-    of what no record can say less is known than the fit pretends: the uncertainty of the
-    long-time tension carries what a decade more would take at the last rate (`STILL_RELAXES`).
+    The long-time tension is the limit of the series, not an equilibrium: a longer hold
+    would show slower terms.  Where tension still falls at the end of the hold, they exist, and
+    the fit understates the uncertainty due to terms that no record can show: the uncertainty of the
+    long-time tension includes the loss of one more decade at the last rate (`STILL_RELAXES`).
 
     Examples
     --------
@@ -340,8 +340,8 @@ def fit_prony(
             fits[n_terms] = fit_separable(basis, load, starts=starts, weights=weight)
         except FitError:
             refused.append(f"{_terms(n_terms)}: {_DEGENERATE}")
-    # terms that cancel each other are found, or not, by the last digits of the library that
-    # searches: they are no witness of how many values are independent
+    # whether terms that cancel each other are found depends on the last digits of the library
+    # that searches: they do not show how many values are independent
     inflation = min(
         (lag_one_inflation(fit.residual) for fit in fits.values() if _is_positive(fit)),
         default=1.0,
@@ -379,7 +379,7 @@ def fit_prony(
 
 
 def _reported(fit: SeparableFit, longest: float, ramp_duration: float, criterion: str) -> PronyFit:
-    """Amplitudes of a step, the ramp taken out, with uncertainties carried through."""
+    """Amplitudes for a step, corrected for the ramp, with propagated uncertainties."""
     order = np.argsort(fit.shape)
     n_terms = order.size
     log_times = fit.shape[order]

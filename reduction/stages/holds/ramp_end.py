@@ -1,8 +1,8 @@
-"""What is true of the end of a ramp: when it was between two samples, and the tension then.
+"""End of a ramp: its time between two samples, and the tension then.
 
-A mean over the first stretch of a hold is a tension that has relaxed.  The tension at the end of
-the ramp is that of a line through so many samples as follow one, and what the crosshead does
-afterwards is taken off by the stiffness of the ramp.
+A mean over the first stretch of a hold is a tension that has already relaxed.  The tension at the
+end of the ramp is that of a line through as many samples as follow one, and later motion of the
+crosshead is corrected by the stiffness of the ramp.
 
 References
 ----------
@@ -24,35 +24,35 @@ FEWEST_ON_LINE, MOST_ON_LINE = 3, 1 << 14
 
 _GROWTH = 1.4
 
-# standard uncertainties together: lines through the same first samples, of which many are tried,
-# differ by less, and one that stops at noise has the noise of a few samples
+# of the combined standard uncertainties: many lines through the same first samples are compared and
+# differ by less than this; a line that stops in noise has the noise of only a few samples
 _AGREEING = 2.0
 
-_LARGEST_SPREAD = 3.0  # of so many fewer samples in noise; more is a line across a ringing
+_LARGEST_SPREAD = 3.0  # ratio expected with fewer samples in noise; more is a line across ringing
 
 _STEPS_BACK = 3  # a third of the samples has an eighth of the bias of a parabola
 
 _STEPS_BEFORE = 5
 
 MOTION_KNOWN_TO = 0.5 / 3**0.5
-"""Standard uncertainty of what a motion in a hold is worth, as a share of it: a half either way.
+"""Standard uncertainty of the effect of a motion in a hold, as a fraction of it: a half either way.
 [1]"""
 
 
 def ramp_end_time(time: Floats, place: Floats, *, band: float) -> tuple[float, float]:
-    """When a ramp ends, between its last two samples, and the standard uncertainty of that.
+    """End of a ramp, between its last two samples, and its standard uncertainty.
 
     Parameters
     ----------
     time, place : ndarray, shape (n_samples,)
-        A ramp, its last sample at the end or after it. [s], [m]
+        A ramp, with its last sample at the end or after it. [s], [m]
     band : float
         Range that noise may span in it. [m]
 
     Returns
     -------
     end_time, standard_uncertainty : float
-        The last time where a step of the log is within the noise. [s], [s]
+        The last time if a step of the log is within the noise. [s], [s]
 
     Raises
     ------
@@ -61,16 +61,16 @@ def ramp_end_time(time: Floats, place: Floats, *, band: float) -> tuple[float, f
 
     Notes
     -----
-    No source: the last step of a ramp sampled at even steps is cut short where the ramp ends
+    No source: the last step of a ramp sampled at even steps is cut short if the ramp ends
     between two samples, or slows down within it.  A ramp that slows down has no corner, and is
-    over at the last sample: what its last fiftieth takes longer than at its mean rate is how far,
-    either way, it may have ended from there.  A step of the log that does not show the corner is
-    such a width, too; of a ramp within two steps, both of which are cut short, it ends before the
+    over at the last sample: the excess duration of its last fiftieth over that at its mean rate is
+    the range, either way, of its end.  A step of the log that does not show the corner is also
+    such a range; a ramp within two steps, both of which are cut short, ends before the
     last sample.
 
     Examples
     --------
-    The crosshead stands after half the last step.
+    The crosshead stands after half the last step:
 
     >>> end, known_to = ramp_end_time(np.arange(4.0), np.array([0.0, 1.0, 2.0, 2.5]), band=0.01)
     >>> print(end, round(known_to, 3))
@@ -78,7 +78,7 @@ def ramp_end_time(time: Floats, place: Floats, *, band: float) -> tuple[float, f
     """
     end = float(time[-1])
     step = float(time[-1] - time[-2]) if time.size > 1 else 0.0
-    # a ramp within a step or two: each is cut short, and says nothing of the rate
+    # in a ramp within a step or two each is cut short, and shows nothing of the rate
     if time.size <= FEWEST_STEPS:
         return end, step / 3**0.5
     left = np.abs(place - place[-1])
@@ -93,7 +93,7 @@ def ramp_end_time(time: Floats, place: Floats, *, band: float) -> tuple[float, f
     last = place[-1] - place[-2]
     is_hidden = abs(rate) * step <= band
     slows = np.sign(rate) * (rates[-1] - _SLOWS * rate) < 0  # of a median of zero: no
-    # without a corner, or where noise hides whether it has one, so long before or after
+    # without a corner, or if noise hides it, by that much before or after
     width = max(slowing, 0.0) * (2 if is_hidden or slows else 1)
     if is_hidden:
         width = max(width, step)
@@ -106,18 +106,18 @@ def ramp_end_time(time: Floats, place: Floats, *, band: float) -> tuple[float, f
 
 FEWEST_STEPS = 3  # samples
 
-_SLOWS = 0.8  # of the rate of the steps before, that the last whole one has
+_SLOWS = 0.8  # of the rate of the steps before: a slower last whole step
 
 
 def time_to_stop(time: Floats, place: Floats, *, held_at: float) -> float:
-    """How much longer a ramp that slows down moves after its last sample. [s].
+    """Time for which a ramp that slows down moves on after its last sample. [s].
 
-    Of an evenly slowing crosshead, by what it has left to go and its last speed; nil for one that
-    comes to its corner at the mean speed of the ramp, or runs back.
+    For uniform deceleration, from the remaining distance and the last speed; zero for one that
+    reaches its corner at the mean speed of the ramp, or runs back.
 
     Examples
     --------
-    Slowing evenly to a stand at 4 s, the last sample at 3 s.
+    Uniform deceleration to a stand at 4 s, with the last sample at 3 s:
 
     >>> t = np.arange(0.0, 3.1, 0.1)
     >>> x = np.where(t < 2, t, 4 - (4 - t) ** 2 / 4 - 1)
@@ -142,7 +142,7 @@ class _LevelAtEnd:
     value, standard_uncertainty, slope : float
         [unit], [unit], [unit / s]
     n_samples : int
-        How many are on the line. [1]
+        Number of samples on the line. [1]
     """
 
     value: float
@@ -154,7 +154,7 @@ class _LevelAtEnd:
 def level_at_end(
     since: Floats, values: Floats, *, noise: float, shortest: float = 0.0, step: float = 0.0
 ) -> _LevelAtEnd:
-    """A series at time zero, of the longest line through its first samples that it follows.
+    """Value of a series at time zero, by the longest line that its first samples follow.
 
     Parameters
     ----------
@@ -165,15 +165,15 @@ def level_at_end(
     noise : float
         Standard deviation of one sample. [unit of the series]
     shortest : float, optional
-        Time over which a machine may ring: the shortest line is as long. [s]
+        Time over which a machine may ring: least duration of the line. [s]
     step : float, optional
-        Of a converter, where noise does not spread readings over several of its codes.
+        Step of a converter, if noise does not spread readings over several of its codes.
         [unit of the series]
 
     Returns
     -------
     level : _LevelAtEnd
-        Of the mean where there are fewer than three samples. [unit of the series]
+        The mean if there are fewer than three samples. [unit of the series]
 
     Raises
     ------
@@ -183,15 +183,15 @@ def level_at_end(
     Notes
     -----
     Method of [1]_: lines through 3, 5, 7, 10, ... samples, each 1.4 times as long, until the
-    value at zero of one differs from that of any before by more than their standard
-    uncertainties together, twice.  Of the last before it and that of a third as many samples the
-    shorter is taken, less half of what they differ by, all of which is carried: of that its bias
-    is an eighth where a series bends evenly, and as much or more where the series bends most at
-    its beginning, as a relaxation over decades of time does.  A machine that rings scatters its
-    first samples more than their noise: the scatter about a line counts where it is greater.
-    Readings of one code are rounded alike: the rounding of a line is that of one reading, and of
-    as many as it passes codes, of which the end of a line has four times the variance of their
-    mean.
+    value at zero of one differs from that of any before by more than twice the sum of their
+    standard uncertainties.  Of the line before that and the one with a third as many samples, the
+    shorter is used, corrected by half of their difference, all of which counts as uncertainty.  Its
+    bias is an eighth of the difference if the curvature is uniform, and as much or more if it is
+    largest at the beginning, as in a relaxation over decades of time.  A machine that rings
+    scatters its first samples more than their noise: the scatter about a line is used if greater.
+    Readings of one code have equal rounding errors: the rounding error of a line is that of one
+    reading, or of as many as the codes it passes; the end of a line has four times the variance of
+    their mean.
 
     Examples
     --------
@@ -245,23 +245,23 @@ def level_at_end(
 def at_length_of_ramp_end(
     tension: Floats, motion: Floats, *, stiffness: float, lost_share: float
 ) -> Floats:
-    """Tension less what a motion after the ramp is worth.
+    """Tension less the effect of a motion after the ramp.
 
     Parameters
     ----------
     tension : ndarray, shape (n_samples,)
-        As read. [N]
+        Tension as read. [N]
     motion : ndarray, shape (n_samples,)
-        Of the crosshead since the end of the ramp, without its noise. [m]
+        Motion of the crosshead since the end of the ramp, without its noise. [m]
     stiffness : float
-        Of the end of the ramp. [N/m]
+        Stiffness at the end of the ramp. [N/m]
     lost_share : float
-        Share of tension that relaxes in the hold. [1]
+        Fraction of tension that relaxes in the hold. [1]
 
     Returns
     -------
     tension : ndarray, shape (n_samples,)
-        At the length of the end of the ramp. [N]
+        Tension at the length of the end of the ramp. [N]
 
     Raises
     ------
@@ -270,12 +270,12 @@ def at_length_of_ramp_end(
 
     Notes
     -----
-    First order: what the motion adds relaxes by up to the share that the ramp loses, and half
-    of that is taken.
+    First order: the tension added by the motion relaxes by up to the fraction that the ramp loses;
+    half of that is assumed.
 
     Examples
     --------
-    A hundredth of a stroke of 1 m that took 400 N, half of which relaxes.
+    A hundredth of a stroke of 1 m that took 400 N, half of which relaxes:
 
     >>> print(at_length_of_ramp_end(
     ...     np.array([203.0]), np.array([0.01]), stiffness=400.0, lost_share=0.5))

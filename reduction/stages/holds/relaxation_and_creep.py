@@ -1,15 +1,15 @@
 """Relaxation at constant length and creep at constant tension, a hold and a specimen at a time.
 
-When a hold begins and ends is found in `reduction.stages.standstills`; here are the ramp before
-it, its samples of one specimen, everything that speaks against a number from it, and the numbers
-where nothing does: drop, rate per decade and tension at stated times, or strain gained.
+The start and end of each hold are found in `reduction.stages.standstills`.  This module takes the
+ramp before a hold and the samples of one specimen, tests whether they support a result, and
+computes drop, rate per decade and tension at stated times, or strain gained.
 
 To first order a ramp acts as a step at the centre of the tension that it adds, whatever
-the law of relaxation; what is left falls with the square of ramp time over elapsed time.  The
-specimen relaxes during the ramp, too: rates count time from its centre and leave out the first
-three ramp times.
+the law of relaxation; the remaining error falls with the square of ramp time over elapsed time.
+The specimen also relaxes during the ramp: rates count time from its centre and leave out the
+first three ramp times.
 
-A night of samples becomes a few hundred numbers: means over blocks that grow with time.
+A night of samples is reduced to a few hundred means over blocks that grow with time.
 
 References
 ----------
@@ -84,12 +84,12 @@ class _Ramp:
     duration: float
     stiffness: float
     end_uncertainty: float = 0.0
-    # tension over that at its start, at even times up to its end; empty where it adds none. [N]
+    # tension above its value at the start, at even times up to the end; empty if none is added [N]
     added: Floats = field(default_factory=lambda: _EMPTY)
 
     @property
     def length(self) -> float:
-        """From its first sample to its end. [s]."""
+        """Duration from its first sample to its end. [s]."""
         return self.end_time - self.start_time
 
 
@@ -104,12 +104,12 @@ def _find_ramp(
 
     Notes
     -----
-    The rule of the half ramp ([1]_) is the case of tension rising evenly.  A tension that
-    stiffens with stretch puts the centre later than that.  Where the ramp does not add
+    The half-ramp rule ([1]_) is the case of tension that rises evenly.  A tension that
+    stiffens with stretch has a later centre.  Where the ramp does not add
     tension (unloading), the centre of position is taken.  Both moments are integrals of
-    the record, not of its differences, so noise does not enter them.  The ramp begins at
+    the record, not of its differences, so noise hardly affects them.  The ramp begins at
     the last sample within ``band`` of its far end, which is late by the time that the
-    crosshead takes for it.  It ends between two samples (`ramp_end_time`).
+    crosshead takes to cross the band.  It ends between two samples (`ramp_end_time`).
 
     Examples
     --------
@@ -125,7 +125,7 @@ def _find_ramp(
     way = last_motion(place, band)
     if way is None:
         return None
-    # The last sample within the band of the far end: a standstill there is no part of the ramp.
+    # The last sample within the band of the far end: a standstill there is not part of the ramp.
     first = last_sample(
         lambda part: way.sign * (place[part] - place[-1]) >= way.reach - band,
         way.first, place.size, place,
@@ -170,7 +170,7 @@ _RINGS = 0.02  # of the tension that a ramp adds
 
 
 def _begins_inside(position: ArrayLike, *, band: float) -> bool:
-    """Whether a series shows where its last motion began, so that nothing before it counts.
+    """Whether a series shows where its last motion began, so that earlier samples do not matter.
 
     Examples
     --------
@@ -211,12 +211,12 @@ class HoldResult:
     hold_start_time, hold_duration : float
         [s]
     hold_strain, hold_initial_tension, hold_final_tension : float
-        Mean strain [1]; tension at the start and at the end of the hold, each of a
+        Mean strain [1]; tension at the start and at the end of the hold, each from a
         line through a short stretch that ``made`` names. [N]
     relaxation_drop, relaxation_drop_standard_uncertainty : float
-        Share of the initial tension lost over the hold. [1]
+        Fraction of the initial tension lost over the hold. [1]
     rate_per_decade, rate_per_decade_standard_uncertainty : float
-        Share of tension (relaxation) or strain (creep) per decade of time. [1]
+        Fraction of tension (relaxation) or strain (creep) per decade of time. [1]
     times : ndarray, shape (n_times,)
         Times after the end of the ramp. [s]
     tension_at_time, strain_at_time : ndarray, shape (n_times,)
@@ -231,26 +231,26 @@ class HoldResult:
     refusals : tuple of Note
         Numbers that are missing, each with its reason.
     notes : tuple of Note
-        What else there is to know.
+        Further remarks on the result.
     made : tuple of str
-        Samples of the ends, how the finite ramp was treated: lines of the history.
+        History: samples used at each end, treatment of the finite ramp.
     ramp_centre_time : float
-        When the ramp acts as a step: zero of the time of the rate per decade; NaN where the
+        Time at which the ramp acts as a step: zero of time for the rate per decade; NaN where the
         record does not show the ramp. [s]
     ramp_end_time, ramp_duration : float
-        When the ramp ends, between two samples; duration of the constant-rate ramp that stands
-        for it in the Prony terms. [s]
+        End of the ramp, between two samples; duration of the equivalent constant-rate ramp used
+        for the Prony terms. [s]
     logged_peak_tension, ramp_end_tension : float
-        Greatest tension of the log beside the end of the ramp, and that of the Prony series at
-        it. [N]
+        Greatest logged tension near the end of the ramp; tension of the Prony series at the end
+        of the ramp. [N]
     hold_strain_standard_uncertainty : float
-        Of the mean (type A), as the next ones. [1]
+        Type A, of the mean, as are the next ones. [1]
     hold_initial_tension_standard_uncertainty, hold_final_tension_standard_uncertainty : float
         [N]
     tension_at_time_standard_uncertainty, strain_at_time_standard_uncertainty : ndarray
         Shape (n_times,), or empty. [N], [1]
     is_unloading : bool
-        Whether tension fell on the ramp that led to it.
+        Whether tension fell on the ramp that led to the hold.
     """
 
     specimen: str
@@ -291,12 +291,12 @@ class HoldResult:
 
     @property
     def refused(self) -> str:
-        """Which numbers it does not give, and why; empty where it gives all."""
+        """Numbers that it does not give, each with the reason; empty where it gives all."""
         return "; ".join(str(one) for one in self.refusals)
 
 
 def hold_numbers(holds: Sequence[HoldResult]) -> Integers:
-    """Number of each hold in its test, by time from 1; one for all specimens that stand.
+    """Number of each hold in its test, by time from 1; shared by all specimens in the machine.
 
     Parameters
     ----------
@@ -315,7 +315,7 @@ def hold_numbers(holds: Sequence[HoldResult]) -> Integers:
 
     Notes
     -----
-    Nothing is computed from a report here ([1]_ does not number its holds).
+    This numbering is not from the report: [1]_ does not number its holds.
 
     Examples
     --------
@@ -351,7 +351,7 @@ class _LogBlocks:
         """Relative inverse variance: the count, of which at most 64 are taken as independent.
 
         Slow drift of a transducer does not average out, so a block of a million samples
-        may not outweigh all others.
+        must not outweigh all others.
         """
         return self.count / (1 + (self.count - 1) / LARGEST_WEIGHT)
 
@@ -364,7 +364,7 @@ def logarithmic_blocks(
     Notes
     -----
     At 40 blocks a decade a block spans 6 % of its time: an exponential that decays within
-    it is off by at most 2e-4 of its size.
+    a block is wrong by at most 2e-4 of its size.
 
     Examples
     --------
@@ -386,7 +386,7 @@ def logarithmic_blocks(
     for part in sample_blocks(time.size, time, series):
         number = np.floor(np.log10(time[part] / begin) * per_decade).astype(np.intp)
         first = np.flatnonzero(np.diff(number, prepend=-1))
-        here = np.minimum(number[first], last)  # rounding of a logarithm may pass the last one
+        here = np.minimum(number[first], last)  # rounding of the logarithm may exceed the last one
         count = np.diff(first, append=number.size)
         np.add.at(sums[0], here, np.add.reduceat(time[part], first))
         np.add.at(sums[1], here, np.add.reduceat(series[part], first))
@@ -413,7 +413,7 @@ class _Rate:
 
 
 def _relaxation_drop(initial_tension: ArrayLike, final_tension: ArrayLike) -> Floats:
-    """Share of tension lost over a hold.
+    """Fraction of tension lost over a hold.
 
     Notes
     -----
@@ -455,8 +455,8 @@ def _rate_per_decade(blocks: _LogBlocks, *, ramp_duration: float) -> _Rate:
 
     Notes
     -----
-    After three ramp times what the finite ramp does to a logarithmic relaxation is below
-    half a percent of its rate (:math:`1/24 \cdot 1/9`).
+    After three ramp times the finite ramp changes the rate of a logarithmic relaxation by less
+    than half a percent (:math:`1/24 \cdot 1/9`).
 
     Examples
     --------
@@ -497,10 +497,10 @@ def _value_at_times(
 ) -> tuple[Floats, Floats]:
     """Series at stated times, each from a parabola through the samples within a tenth of it.
 
-    It is over the logarithm of time, on which a relaxation bends least.  What the series
-    changes by within the uncertainty of the time at which it begins [s] is part of its own, and so
-    is the step of a converter.  Between two readings of a slow log a series that bends one way
-    lies between their chord and the chord behind them, drawn on.
+    The parabola is over the logarithm of time, on which a relaxation bends least.  The uncertainty
+    holds the change of the series within the uncertainty of its start [s], and the step of the
+    converter.  Between two readings of a slow log, a series of one curvature lies between their
+    chord and the extrapolated chord behind them.
 
     Examples
     --------
@@ -536,7 +536,8 @@ def _value_at_times(
             continue
         found[index], slope, own = _on_curve(
             time[first:last], series[first:last], wanted, noise=noise,
-            # a power of time bends by more than the noise of thousands of readings leaves
+            # the curvature of a power of time exceeds the noise of the mean of thousands of
+            # readings
             n_terms=3 if last - first >= _FEWEST_OF_BEND else 2,
         )  # fmt: skip
         spread[index] = np.sqrt(own**2 + rounding**2 + (slope * begin_uncertainty) ** 2)
@@ -544,7 +545,7 @@ def _value_at_times(
     return found, spread
 
 
-_FEWEST_OF_BEND = 12  # samples of which a parabola is no worse than what it corrects
+_FEWEST_OF_BEND = 12  # samples from which on a parabola is no worse than the error it corrects
 
 
 def _on_curve(
@@ -552,7 +553,7 @@ def _on_curve(
 ) -> tuple[float, float, float]:
     """Value and rate of the regression of a series at a time, and the noise of the value.
 
-    Over the logarithm of time: a line of two terms, a parabola of three.
+    The regression is over the logarithm of time: a line for two terms, a parabola for three.
     """
     level = mean_of(series)
     power, product = np.zeros((n_terms, n_terms)), np.zeros(n_terms)
@@ -571,7 +572,7 @@ TENSION_TOLERANCE = 0.01
 
 
 def _tension_variation(time: ArrayLike, tension: ArrayLike) -> float:
-    """Largest departure of tension from its mean over a hold, as a share of the mean.
+    """Largest departure of tension from its mean over a hold, as a fraction of the mean.
 
     Examples
     --------
@@ -632,25 +633,26 @@ class Hold:
     time, position, tension, strain : ndarray, shape (n_samples,)
         Samples of the hold. [s], [m], [N], [1]
     start_time : float
-        End of the approach to it. [s]
+        End of the approach to the hold. [s]
     ramp : Ramp or None
         None where the record does not show it.
     position_tolerance : float
-        Range of position that was allowed inside the standstill. [m]
+        Range of position allowed inside the standstill. [m]
     slack_tension : float
         Tension at or below which the specimen is slack. [N]
     logged_peak, ramp_peak, earlier_peak : float
-        Greatest reading of tension beside the end of the ramp, of these until it ends, and in its
-        last half before these; NaN where the ramp does not add tension. [N]
+        Greatest reading of tension near the end of the ramp; the greatest of these before the
+        ramp ends; the greatest in the last half of the ramp, before these.  NaN where the ramp
+        does not add tension. [N]
     ramp_leads_to, ramp_leads_to_within : float
-        Tension to which the last readings before the end of the ramp lead, at the length where it
+        Tension, extrapolated from the last readings of the ramp to the length where it
         ends, and its noise; NaN where it is not known. [N]
     n_logged : int
-        How many samples the log has of it, those that are left out included. [1]
+        Number of samples in the log, including those that are left out. [1]
     on_tension : bool
-        Whether the machine keeps the tension, so that the length answers.
+        Whether the machine controls the tension, so that the length responds.
     refusals, notes : list of Note
-        Filled as the hold is reduced; ``made``, how, too.
+        Filled as the hold is reduced; so is ``made``, the history.
     """
 
     time: Floats
@@ -674,7 +676,7 @@ class Hold:
 
     @property
     def duration(self) -> float:
-        """From the first to the last sample. [s]."""
+        """Time from the first to the last sample. [s]."""
         return float(self.time[-1] - self.time[0]) if self.time.size else 0.0
 
     @cached_property
@@ -684,17 +686,17 @@ class Hold:
 
     @cached_property
     def tension_step(self) -> float:
-        """Step of the converter of tension; 0 where noise spreads its readings over codes. [N]."""
+        """Step of the converter of tension; 0 where noise spreads readings over codes. [N]."""
         return _step_of(self.tension)
 
     @cached_property
     def motion(self) -> _Motion:
-        """Of the crosshead since the end of the ramp, on blocks in the logarithm of time."""
+        """Motion of the crosshead since the end of the ramp, in blocks of the logarithm of time."""
         return _motion_of(self)
 
     @property
     def strain_uncertainty(self) -> float:
-        """Of its mean strain (type A); NaN with fewer than two readings. [1]."""
+        """Type A uncertainty of its mean strain; NaN with fewer than two readings. [1]."""
         (known,) = select_samples(lambda part: np.isfinite(self.strain[part]), self.strain)
         if known.size < 2:
             return float("nan")
@@ -702,7 +704,7 @@ class Hold:
 
     @property
     def ramp_end_time(self) -> float:
-        """When the ramp ends, or of the first sample where none is known. [s]."""
+        """End of the ramp, or the first sample where none is known. [s]."""
         return float(self.time[0]) if self.ramp is None else self.ramp.end_time
 
     @property
@@ -713,7 +715,7 @@ class Hold:
 
     @property
     def ramp_is_within_steps(self) -> bool:
-        """Whether the ramp takes two steps of the log at most: each is cut short."""
+        """Whether the ramp takes at most two steps of the log: each is cut short."""
         if self.ramp is None or self.time.size < 2:
             return False
         step = float(self.time[1] - self.time[0])
@@ -721,7 +723,7 @@ class Hold:
 
     @property
     def ramp_duration(self) -> float:
-        """Of the equivalent constant-rate ramp; 0 where none is known. [s]."""
+        """Duration of the equivalent constant-rate ramp; 0 where none is known. [s]."""
         return 0.0 if self.ramp is None else self.ramp.duration
 
 
@@ -729,7 +731,7 @@ class Hold:
 class _LateLoad:
     """Tension that goes on rising while the crosshead stands.
 
-    ``rise`` above the end of the ramp, ``peak`` that it comes to [N], ``delay`` until then [s].
+    ``rise`` above the end of the ramp, ``peak`` that it reaches [N], ``delay`` of the peak [s].
     """
 
     rise: float
@@ -757,14 +759,15 @@ def _hold_ends(hold: Hold) -> _Ends:
 
     Notes
     -----
-    The first is that of a line through so many samples as follow one (`level_at_end`); when the
-    ramp ended is known to a step of the log or to the noise of the position, at the rate of
-    the tension.  A log that peaks higher beside it may mean the tension to be as high.  The line
-    is no shorter than a twentieth of the ramp: what relaxes faster has done so within it, and a
-    machine rings.  Where the last readings of the ramp lead higher than that line, something may
-    have relaxed between two readings, and the tension lies between both.  The tension at the end is
-    that of a line over the logarithm of time through the last 5 % of the samples, at
-    least three: their mean is that of the middle of them.
+    The tension at the end of the ramp is that of a line through as many samples as follow one
+    (`level_at_end`).  The end of the ramp is known to a step of the log or to the noise of
+    position; the rate of the tension converts this into tension.  A higher peak in the log near
+    it means that the tension may be as high.  The line is no shorter than a twentieth of the ramp:
+    anything that relaxes faster has done so within it, and machines ring.  Where the last readings
+    of the ramp lead to a higher tension than that line, the specimen may have relaxed between two
+    readings, and the tension lies between both.  The tension at the end of the hold is from a line
+    over the logarithm of time through the last 5 % of the samples, at least three: their mean would
+    be the tension in the middle of them.
 
     Examples
     --------
@@ -787,7 +790,7 @@ def _hold_ends(hold: Hold) -> _Ends:
     )
     u_initial = first.standard_uncertainty
     if hold.ramp is not None:
-        # on its way down the tension is known by when, on its way up by where, it is read
+        # falling tension is uncertain through the time, rising tension through the position
         u_initial = float(np.hypot(u_initial, first.slope * hold.ramp.end_uncertainty))
         if np.isfinite(hold.ramp.stiffness):
             u_initial = float(
@@ -799,11 +802,11 @@ def _hold_ends(hold: Hold) -> _Ends:
     if late is not None:
         u_initial = float(np.hypot(u_initial, _LATE_MISSES * late.rise))
     above = hold.logged_peak - SIGNIFICANT * hold.tension_noise - first.value
-    # it has not settled at once: the tension is somewhere between the two
+    # the tension did not settle at once: it lies somewhere between the two
     if SIGNIFICANT * u_initial < above < LARGEST_DISAGREEMENT * first.value:
         u_initial = float(np.hypot(u_initial, above / np.sqrt(3)))
     led_to = hold.ramp_leads_to - first.value
-    # of a piece that has broken the ramp says nothing
+    # the ramp says nothing about a piece that has broken
     if SIGNIFICANT * hold.tension_noise < led_to < first.value:
         u_initial = float(np.hypot(u_initial, led_to / np.sqrt(3)))
     initial = first.value
@@ -821,7 +824,7 @@ def _ends_of(
     n_final: int,
     late: _LateLoad | None = None,
 ) -> _Ends:
-    """Tension at both ends and what is lost between them, from the two and their uncertainties."""
+    """Both end tensions, and the loss between them with its uncertainty."""
     drop = float(_relaxation_drop(initial, final))
     uncertainty = float(np.hypot(u_final, (1 - drop) * u_initial) / initial)
     known = uncertainty if drop == drop else np.nan
@@ -829,10 +832,10 @@ def _ends_of(
 
 
 def _with_ramp(hold: Hold, initial: float, uncertainty: float) -> tuple[float, float]:
-    """Tension at the end of a ramp that a hold leads back to, and the ramp leads to: of both.
+    """Tension at the end of a ramp, from the hold extrapolated back and the ramp extrapolated on.
 
-    A line through a few noisy readings of what relaxes fast may lead above all that was logged.
-    Where the ramp leads to less, within what is known of both, each has the weight of its own.
+    A line through a few noisy readings of a fast relaxation may exceed everything logged.
+    Where the ramp leads to less, within the uncertainty of both, they are weighted by variance.
     """
     ahead, own = hold.ramp_leads_to, hold.ramp_leads_to_within
     if not SIGNIFICANT * float(np.hypot(own, uncertainty)) > initial - ahead > 0:
@@ -843,10 +846,10 @@ def _with_ramp(hold: Hold, initial: float, uncertainty: float) -> tuple[float, f
 
 
 def _lost_in_a_decade(hold: Hold) -> float:
-    """Tension that is lost while the time since the ramp grows tenfold, from the first step on.
+    """Tension lost while the time since the ramp grows tenfold, from the first step on.
 
-    A ramp within a step or two of the log may have ended anywhere in the last: of what relaxed
-    until the first reading nothing is in the log, and that may be as much as in the decade behind.
+    A ramp within a step or two of the log may have ended anywhere in the last step.  Relaxation
+    before the first reading is not in the log; it may equal that of the decade after it.
     """
     since = shifted(hold.time, hold.ramp_end_time)
     begin = int(np.searchsorted(since, 0.0, side="right"))
@@ -859,7 +862,7 @@ def _lost_in_a_decade(hold: Hold) -> float:
 
 
 def _at_last(hold: Hold, n_samples: int) -> tuple[float, float]:
-    """Tension at the last sample, of a line over the logarithm of time through the last ones."""
+    """Tension at the last sample, from a line over the logarithm of time through the last ones."""
     series = hold.tension[-n_samples:]
     mean, spread = end_mean(hold.tension, n_samples=n_samples, at_end=True)
     since = hold.time[-n_samples:] - hold.ramp_end_time
@@ -870,11 +873,11 @@ def _at_last(hold: Hold, n_samples: int) -> tuple[float, float]:
 
 
 def _late_load(hold: Hold, initial: float) -> _LateLoad | None:
-    """What the load gains after the end of its ramp, within its time; None where it does not.
+    """Rise of the load after the end of its ramp, within one ramp time; None where there is none.
 
-    A specimen at one length relaxes.  Where its tension rises by more than the crosshead still
-    moves it by, and by more than a ramp adds in the time by which its end is uncertain, the load
-    comes late.  Means over a tenth of a decade, so that no noise is a rise.
+    A specimen at constant length relaxes.  The load is late if it rises by more than the remaining
+    motion of the crosshead explains, and by more than a ramp adds within the uncertainty of its
+    end.  Means over a tenth of a decade are used, so that noise is not taken for a rise.
     """
     if hold.ramp is None or hold.on_tension or not np.isfinite(hold.logged_peak):
         return None
@@ -893,7 +896,7 @@ def _late_load(hold: Hold, initial: float) -> _LateLoad | None:
     end_known_to = initial * hold.ramp.end_uncertainty / hold.ramp.length
     # both levels may be rounded by half a step of the converter, away from each other
     told = SIGNIFICANT * float(np.hypot(hold.tension_noise, end_known_to)) + hold.tension_step
-    # the first reading of all is no rise: a line through what relaxes fast ends below it
+    # a maximum in the first block is no rise: a line through a fast relaxation ends below it
     if at == 0 or not rise > max(told, _LATE_LEAST * initial):
         return None
     return _LateLoad(rise, float(blocks.value[at]), float(blocks.elapsed[at]))
@@ -902,10 +905,10 @@ def _late_load(hold: Hold, initial: float) -> _LateLoad | None:
 def _past_jerk(hold: Hold, ends: _Ends) -> tuple[Hold, _Ends]:
     """The hold after the swing of a crosshead that stops with a jerk, and its ends.
 
-    Mass between specimen and load cell goes on when the crosshead stops: the load dips below what
-    it was on the ramp, comes back and swings.  A load that lags was never higher before.  The
-    tension at the end of the ramp is that to which the ramp leads, known to the difference from
-    that to which the hold leads back after the swing.
+    Mass between specimen and load cell keeps moving when the crosshead stops: the load dips below
+    its value on the ramp, comes back and swings.  A load that lags was never higher before.  The
+    tension at the end of the ramp is extrapolated from the ramp; its uncertainty is the difference
+    from the tension that the hold after the swing leads back to.
 
     Examples
     --------
@@ -934,7 +937,7 @@ def _past_jerk(hold: Hold, ends: _Ends) -> tuple[Hold, _Ends]:
         ramp_leads_to=np.nan,
     )
     after = _hold_ends(kept)
-    # readings a moment apart lead anywhere
+    # an extrapolation of readings a moment apart is worthless
     is_led = 1 <= hold.ramp_leads_to / hold.ramp_peak < 1 + LARGEST_DISAGREEMENT
     initial = hold.ramp_leads_to if is_led else hold.ramp_peak
     unsure = np.hypot(after.initial_uncertainty, (initial - after.initial) / np.sqrt(3))
@@ -956,9 +959,9 @@ _SWINGS = 4.0  # times from the stop to the first peak after it: two swings
 
 _LATE_LEAST = 0.003  # of the tension: a ramp rounds its corner
 
-_LATE_MOST = 0.02  # of the tension: beyond it the end of the ramp is not in the log
+_LATE_MOST = 0.02  # of the tension: above this the end of the ramp is not in the log
 
-_LATE_MISSES = 2.0  # times the rise that the log shows: while it rises, the specimen relaxes
+_LATE_MISSES = 2.0  # times the rise in the log: the specimen relaxes while the load rises
 
 
 def _noise_of(series: Floats) -> float:
@@ -974,11 +977,11 @@ def _step_of(series: Floats) -> float:
 
 @dataclass(frozen=True)
 class _Motion:
-    """What the crosshead does after the end of its ramp.
+    """Motion of the crosshead after the end of its ramp.
 
     ``time`` and ``distance``, shape (n_blocks,), are block means [s], [m]; ``greatest`` the
-    greatest of them, signed, zero where none is told from noise; ``known_to`` the standard
-    uncertainty of the position that they count from, zero where noise explains it [m].
+    greatest of them, signed, zero where none differs significantly from noise; ``known_to`` the
+    standard uncertainty of the position that they count from, zero where noise explains it [m].
     """
 
     time: Floats
@@ -989,7 +992,7 @@ class _Motion:
 
 def _motion_of(hold: Hold) -> _Motion:
     """Motion of the crosshead since the end of the ramp, on blocks in the logarithm of time."""
-    # of few readings the noise is known to a few over the root of their number
+    # from few readings the noise is known to a few over the root of their number
     noise = _noise_of(hold.position) * (1 + 3 / np.sqrt(hold.position.size))
     since = shifted(hold.time, hold.ramp_end_time)
     begin = level_at_end(since, hold.position, noise=noise, step=_step_of(hold.position))
@@ -998,7 +1001,7 @@ def _motion_of(hold: Hold) -> _Motion:
         return _Motion(np.empty(0), np.empty(0), 0.0, 0.0)
     blocks = logarithmic_blocks(since[later:], hold.position[later:], per_decade=10)
     quantum = sample_noise(hold.position)[1]
-    # of a crosshead that stands the beginning is known to its noise
+    # for a crosshead that stands, the initial position is known to its noise
     own = min(begin.standard_uncertainty, _NOISE_OF_BEGIN * noise)
     spread = np.hypot(
         np.hypot(noise / np.sqrt(blocks.count), own),
@@ -1012,17 +1015,17 @@ def _motion_of(hold: Hold) -> _Motion:
     )  # fmt: skip
 
 
-_NOISE_OF_BEGIN = 3.0  # at most: of a line through three readings
+_NOISE_OF_BEGIN = 3.0  # at most, for a line through three readings
 
-_MOTION_TOLD = 5.0  # standard uncertainties: some fifty blocks are looked at
+_MOTION_TOLD = 5.0  # standard uncertainties: some fifty blocks are tested
 
-_MOTION_WORTH = 0.005  # of the tension that is lost: less changes no number
+_MOTION_WORTH = 0.005  # of the tension lost: less changes no number
 
-_MOTION_LARGE = 0.1  # of the tension that is lost: less is a machine that settles after its ramp
+_MOTION_LARGE = 0.1  # of the tension lost: less is a machine that settles after its ramp
 
 
 def _at_one_length(hold: Hold, ends: _Ends) -> tuple[Hold, float]:
-    """The hold at the length of the end of its ramp, and what is not known of that. [N]."""
+    """The hold corrected to the length at the end of its ramp, and the uncertainty left. [N]."""
     motion = hold.motion
     stiffness = np.nan if hold.ramp is None else hold.ramp.stiffness
     worth = stiffness * motion.greatest
@@ -1034,22 +1037,22 @@ def _at_one_length(hold: Hold, ends: _Ends) -> tuple[Hold, float]:
     lost = min(max(ends.drop, 0.0), 1.0)
     share = abs(worth) / abs(ends.initial - ends.final)
     found = note("hold-settles", motion=motion.greatest, worth=worth, share=share)
-    # the intervals hold half of it
+    # the intervals cover half of it
     hold.notes.append(replace(found, severity="note") if share < _MOTION_LARGE else found)
     kept = at_length_of_ramp_end(hold.tension, distance, stiffness=stiffness, lost_share=lost)
     return replace(hold, tension=kept), float(np.hypot(MOTION_KNOWN_TO * abs(worth), of_begin))
 
 
 def _step_reason(hold: Hold, ends: _Ends) -> Note | None:
-    """Name a step of tension inside the hold, where there is one that could change a number.
+    """Name a step of tension inside the hold that is large enough to change a number.
 
-    A crosshead that is moved by a code of its encoder makes one that the interval holds.
+    A crosshead that moves by one code of its encoder makes a step that the interval covers.
     """
     if hold.time.size < FEWEST_SAMPLES or not median_step_reaches(
         hold.time, 3, _longest_step(hold.time)
     ):
         return None
-    # where a log thins out the rate a sample changes, and that is no step
+    # where a log thins out, the change per sample changes, which is not a step
     early, late = np.diff(hold.time[:9]), np.diff(hold.time[-9:])
     if not 1 / 3 < np.median(early) / np.median(late) < 3:
         return None
@@ -1079,9 +1082,9 @@ def _longest_step(time: Floats) -> float:
 
 
 def _motion_reason(hold: Hold, ends: _Ends) -> Note | None:
-    """Name a motion of the crosshead of which too much is not known to take it off.
+    """Name a motion of the crosshead that is too uncertain to be corrected.
 
-    It may be off by a tenth of the drop; without a ramp nothing says what it is worth.
+    Its error may be a tenth of the drop; without a ramp its effect on tension is unknown.
     """
     motion = hold.motion.greatest
     if hold.ramp is None or not np.isfinite(hold.ramp.stiffness):
@@ -1096,9 +1099,9 @@ def _motion_reason(hold: Hold, ends: _Ends) -> Note | None:
 
 
 def _start_reason(hold: Hold, ends: _Ends) -> Note | None:
-    """Name a peak of the log, before the end of the ramp, that the tension there does not reach.
+    """Name a logged peak before the end of the ramp that exceeds the tension found there.
 
-    A peak beside the end is within what is known of the tension there, unless that is too little.
+    A peak near the end is covered by the uncertainty of that tension, unless this is too small.
     """
     noise = hold.tension_noise
     spread = np.hypot(ends.initial_uncertainty, START_KNOWN_TO * ends.initial)
@@ -1113,7 +1116,7 @@ def _start_reason(hold: Hold, ends: _Ends) -> Note | None:
 
 
 def _late_reason(ends: _Ends) -> Note | None:
-    """Name a load that rises too far after its ramp for the tension at the end of it."""
+    """Name a load that rises after its ramp by too much for the tension at its end to be known."""
     if ends.late is None or not ends.late.rise > _LATE_MOST * ends.initial:
         return None
     return _late_note(ends.late, is_refused=True)
@@ -1127,23 +1130,23 @@ def _late_note(late: _LateLoad, *, is_refused: bool) -> Note:
 
 
 LARGEST_DISAGREEMENT = 0.1
-"""Share by which a log may peak above the tension that its hold leads back to. [1]"""
+"""Fraction by which a log may peak above the tension that its hold leads back to. [1]"""
 
 START_KNOWN_TO = 0.005
-"""Standard uncertainty of a tension at the end of a ramp beyond its noise, as a share: the ramp
+"""Standard uncertainty of a tension at the end of a ramp beyond its noise, as a fraction: the ramp
 rounds its corner. [1]"""
 
 
 def _reasons_against(hold: Hold, ends: _Ends, settings: HoldSettings) -> list[Note]:
-    """Everything that speaks against relaxation numbers from a hold.
+    """All reasons against relaxation numbers from a hold.
 
     Notes
     -----
     Too short; too few samples; a load that comes late; a slack specimen; tension that rises by
-    more than three standard uncertainties; a crosshead that moves by so much that what is not
-    known of it is more than a tenth of the drop (by the stiffness of the ramp); a log that peaks
+    more than three standard uncertainties; a crosshead whose motion, by the stiffness of the ramp,
+    leaves an uncertainty above a tenth of the drop; a log that peaks
     above the tension found at the end of the ramp; a step of tension that relaxation does not
-    explain (`find_steps`, false alarm 0.1 %), of more than 0.5 % of what is lost and half the
+    explain (`find_steps`, false alarm 0.1 %), above 0.5 % of the loss and half the
     standard uncertainty of the drop.
 
     Examples
@@ -1163,7 +1166,7 @@ def _reasons_against(hold: Hold, ends: _Ends, settings: HoldSettings) -> list[No
             note("hold-too-few-samples", n_samples=hold.time.size, needed=FEWEST_SAMPLES)
         )
     late = _late_reason(ends)
-    if late is not None:  # the end of the ramp is not in the log: nothing else is told from it
+    if late is not None:  # the end of the ramp is not in the log: the other tests say nothing
         return [*reasons, late]
     if not ends.final > hold.slack_tension or not ends.drop_uncertainty < 1 / SIGNIFICANT:
         reasons.append(note("hold-slack", tension=ends.final, slack_tension=hold.slack_tension))
@@ -1176,7 +1179,7 @@ def _reasons_against(hold: Hold, ends: _Ends, settings: HoldSettings) -> list[No
 
 _LOOKED_BACK = 1 << 16
 
-"""Samples before a hold in which its ramp is looked for at first: many cycles may lie between two
+"""Samples before a hold in which its ramp is first looked for: many cycles may lie between two
 holds."""
 
 
@@ -1189,7 +1192,7 @@ def _finite_times(part: slice, time: Floats, *series: Floats) -> Floats:
 
 
 def _is_finite_and_later(time: Floats, *series: Floats, after: float = -np.inf) -> Bools:
-    """Which samples have finite values and a time that is later than all before."""
+    """Mark samples with finite values and a time later than all before."""
     is_finite_and_later, latest = empty_like(time, dtype=bool), after
     for part in sample_blocks(time.size, time, *series, is_finite_and_later):
         known = _finite_times(part, time, *series)
@@ -1208,7 +1211,7 @@ def _latest(time: Floats, *series: Floats) -> float:
 
 
 def _ramp_before(time: Floats, moved: Floats, answer: Floats, *, band: float) -> _Ramp | None:
-    """The ramp that ends with the last sample, out of as much as shows where it began."""
+    """The ramp that ends with the last sample, found in as many samples as show where it began."""
     n_looked = 0
     while n_looked < time.size:
         n_looked = min(max(2 * n_looked, _LOOKED_BACK), time.size)
@@ -1224,9 +1227,9 @@ def _ramp_before(time: Floats, moved: Floats, answer: Floats, *, band: float) ->
     return _find_ramp(*before, band=band) if before[0].size > 2 else None
 
 
-_SETTLES = 0.5  # of the way between two holds: a last motion of less is a controller that settles
+_SETTLES = 0.5  # of the way between two holds: a shorter last motion is a controller that settles
 
-_SETTLING_RAMPS = 3.0  # longer than so many ramps no controller takes: the machine cycled
+_SETTLING_RAMPS = 3.0  # ramp times: no controller takes longer to settle, so the machine cycled
 
 
 def _without_settling(
@@ -1239,7 +1242,7 @@ def _without_settling(
     left: float,
     level: float,
 ) -> _Ramp:
-    """The ramp that led to the level of a hold at first, where the controller overshot it."""
+    """The ramp that first reached the level of a hold, where the controller overshot it."""
     begins = moved[np.searchsorted(time, ramp.start_time)]
     if not abs(level - begins) < _SETTLES * abs(level - left):
         return ramp
@@ -1255,7 +1258,7 @@ def _without_settling(
 def _with_time_to_stop(
     ramp: _Ramp, time: Floats, position: Floats, first: int, held_at: float
 ) -> _Ramp:
-    """A ramp that may have ended at any time while its crosshead came to its stand."""
+    """A ramp that may have ended at any time while its crosshead came to rest."""
     own = slice(int(np.searchsorted(time[: first + 1], ramp.start_time)), first + 1)
     known = np.flatnonzero(_is_finite_and_later(time[own], position[own])) + own.start
     left = time_to_stop(time[known], position[known], held_at=held_at)
@@ -1274,11 +1277,11 @@ def select_hold(
 
     Notes
     -----
-    The ramp is looked for from the middle of the standstill before, or the start of the record.
+    The ramp is searched from the middle of the standstill before, or the start of the record.
 
     Examples
     --------
-    A rise of 5 m in 5 s, of which one sample of the hold is missing.
+    A rise of 5 m in 5 s; one sample of the hold is missing.
 
     >>> t = np.arange(0.0, 40.0)
     >>> x = np.clip(t - 10, 0, 5)
@@ -1294,7 +1297,7 @@ def select_hold(
     first, last = int(standstills.first[index]), int(standstills.last[index])
     # the first samples of the standstill before may lie below it, where a ramp ended between two
     begin = int(standstills.first[index - 1] + standstills.last[index - 1]) // 2 if index else 0
-    # under load control the machine moves the tension, and the length answers
+    # under load control the machine moves the tension, and the length responds
     moved, answer, band = position, tension, standstills.position_tolerance
     if standstills.tension_tolerance is not None:
         moved, answer, band = tension, position, standstills.tension_tolerance
@@ -1349,9 +1352,9 @@ def select_hold(
 def _before_way_out(time: Floats, tension: Floats) -> int:
     """How many samples of a hold come before the tension leaves with the crosshead.
 
-    Noise of the position hides how the next ramp begins.  Where the last reading is off the line
-    over the logarithm of time through those before by more than their noise, the hold ends with
-    the last one that is within it, or on the other side.  What goes on for longer is the
+    Noise of the position hides the start of the next ramp.  Where the last reading deviates by
+    more than the noise from the line over the logarithm of time through those before, the hold ends
+    with the last reading that is within the noise, or on the other side.  A longer deviation is the
     specimen's own.
 
     Examples
@@ -1387,25 +1390,25 @@ _ROUNDED = 1e-9
 def _ramp_leads_to(
     time: Floats, position: Floats, tension: Floats, ramp: _Ramp, first: int, held_at: float
 ) -> tuple[float, float]:
-    """Tension to which the last readings before the end of a ramp lead, where it ends; noise."""
+    """Tension extrapolated from the last readings of a ramp to its end, and the noise of it."""
     begin = int(np.searchsorted(time[: first + 1], ramp.start_time))
     end = int(np.searchsorted(time[: first + 1], ramp.end_time))
     known = np.flatnonzero(np.isfinite(position[begin:end] + tension[begin:end])) + begin
     if known.size < _FEWEST_ON_RAMP:
         return float("nan"), float("nan")
     load, place = tension[known[-_FEWEST_ON_RAMP:]], position[known[-_FEWEST_ON_RAMP:]]
-    # readings that noise sets apart as far as the ramp does lead nowhere
+    # readings no farther apart than their noise cannot be extrapolated
     noise = reading_noise(position[first : first + known.size])
     if not np.abs(np.diff(place)).min() > SIGNIFICANT * noise:
         return float("nan"), float("nan")
     earlier, slope = np.diff(load) / np.diff(place)
     ahead = held_at - place[-1]
-    # of a curve that bends more than noise does, the line lies below
+    # where the curvature exceeds noise, the line lies below the curve
     bend = (slope - earlier) / (place[-1] - place[0])
     if abs(bend) * (place[-1] - place[-2]) ** 2 < _BENDS * reading_noise(tension[begin:end]):
         bend = 0.0
     leads_to = float(load[-1] + slope * ahead + bend * ahead * (held_at - place[-2]))
-    # of a line through two readings; what is drawn on may bend, and be cut short
+    # noise of a line through two readings; the extrapolation may curve, and be cut short
     reach = ahead / (place[-1] - place[-2])
     noise = reading_noise(tension[first : first + known.size]) * float(np.hypot(1 + reach, reach))
     return leads_to, float(np.hypot(noise, (leads_to - load[-1]) / np.sqrt(3)))
@@ -1413,7 +1416,7 @@ def _ramp_leads_to(
 
 _BENDS = 3.0  # noise of a reading
 
-_FEWEST_ON_RAMP = 3  # readings, of which the first may not be on it
+_FEWEST_ON_RAMP = 3  # readings; the first may lie before the ramp
 
 
 def _logged_peaks(
@@ -1421,7 +1424,7 @@ def _logged_peaks(
 ) -> tuple[float, float, float]:
     """Greatest reading of tension long before the end of a ramp, just before it, and beside it.
 
-    Beside it is within a twentieth of the ramp and five samples; NaN where it adds no tension.
+    Beside means within a twentieth of the ramp or five samples; NaN where it adds no tension.
     """
     beside = _BESIDE * ramp.length
     clock = time[: last + 1]
@@ -1442,7 +1445,7 @@ def _logged_peaks(
 
 
 def _greatest(values: Floats) -> float:
-    """Greatest value, NaN of none."""
+    """Greatest value, or NaN if there is none."""
     return float(np.max(values)) if values.size else float("nan")
 
 
@@ -1450,10 +1453,10 @@ _BESIDE, _SAMPLES_BESIDE = 0.05, 5
 
 
 def _rate(hold: Hold, ends: _Ends, *, known_to: float) -> _Rate | None:
-    """Share of tension lost per decade, or None with a refusal.
+    """Fraction of tension lost per decade, or None with a refusal.
 
-    What a motion is worth relaxes as the rest does, but is taken off as it is: the rate is known to
-    that share of it, twice what is not known of the motion.
+    The tension due to a motion relaxes as the rest does, but is subtracted unrelaxed.  The rate is
+    uncertain by that fraction, twice the uncertainty of the motion.
     """
     if hold.ramp is None:
         hold.refusals.append(note("rate-without-ramp"))
@@ -1521,7 +1524,7 @@ def _at_ramp_end(hold: Hold, fit: PronyFit) -> float:
 
 
 def _equivalent_end(hold: Hold) -> float:
-    """When the constant-rate ramp of the same centre and spread ends: half its duration later."""
+    """End of the constant-rate ramp of the same centre and spread: half its duration later."""
     if hold.ramp is None:
         return float(hold.time[0])
     return max(hold.ramp_end_time, hold.ramp.centre_time + hold.ramp.duration / 2)
@@ -1570,9 +1573,9 @@ def _describe(hold: Hold, rate: _Rate | None, *, follows_hold: bool) -> None:
 def _with_delay(
     hold: Hold, found: tuple[Floats, Floats], times: Floats, delay: float
 ) -> tuple[Floats, Floats]:
-    """Tension at stated times, with what it loses in the time by which the load may be late.
+    """Tension at stated times, with its loss during the possible delay of the load.
 
-    None before that: the load has not come yet.
+    No value is given before that: the load has not arrived yet.
     """
     value, spread = (np.where(times > delay, one, np.nan) for one in found)
     later, _ = _value_at_times(shifted(hold.time, hold.ramp_end_time), hold.tension, times + delay)
@@ -1581,16 +1584,16 @@ def _with_delay(
 
 
 def _with_motion(read: _Ends, kept: _Ends, unknown: float) -> _Ends:
-    """Ends as they are read, with the drop at one length and what is not known of that."""
+    """Ends as they are read, with the drop at constant length and its uncertainty."""
     known_to = max(kept.drop_uncertainty, read.drop_uncertainty)
     spread = float(np.hypot(known_to, unknown / read.initial))
     return replace(read, drop=kept.drop, drop_uncertainty=spread)
 
 
 def _less_known(fit: PronyFit, unknown: float) -> PronyFit:
-    """A series with what is not known of a motion in the hold, in all that it tends to and loses.
+    """A series widened by the uncertainty of a motion during the hold, in all its tensions.
 
-    The motion goes on within the times of the terms, so it is shared out by their size.
+    The motion goes on within the times of the terms, so it is divided among them by their size.
     """
     share = fit.tension / fit.tension.sum()
     return replace(
@@ -1603,10 +1606,10 @@ def _less_known(fit: PronyFit, unknown: float) -> PronyFit:
 
 
 def _with_shape_of_ramp(fit: PronyFit, hold: Hold) -> PronyFit | None:
-    """A series whose terms are known to what the shape of the ramp makes of them, or a refusal.
+    """A series with the uncertainty of its terms by the shape of the ramp, or a refusal.
 
-    The ramp of constant rate that stands for it has the centre and the spread of the tension that
-    was logged, which relaxed during the ramp.
+    The equivalent constant-rate ramp has the centre and the spread of the logged tension,
+    which relaxed during the ramp.
     """
     ramp = hold.ramp
     if ramp is None or not ramp.added.size:
@@ -1785,10 +1788,10 @@ def reduce_holds(
     Notes
     -----
     Source: WHOI-2005-10, sec. 4.1 and Figure 24 ([3]_), which calls relaxation "creep".
-    The zero of time for rates is the centre of what the ramp adds, tension or, where the
-    machine keeps the tension, length; for
-    ``times`` it is the first sample of the hold; the Prony terms are corrected for the
-    ramp exactly as far as it has a constant rate.  Uncertainties are type A.  Cost grows
+    The zero of time for rates is the centre of the added tension or, where the
+    machine controls the tension, of the added length; for
+    ``times`` it is the first sample of the hold.  The Prony terms are corrected for the
+    ramp exactly if it has a constant rate.  Uncertainties are type A.  Cost grows
     with the samples of the holds: series are fitted on 40 block means a decade of time.
 
     Examples

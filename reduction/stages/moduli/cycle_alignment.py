@@ -1,8 +1,8 @@
-"""Cycles of a test laid over each other by their mean strain.
+"""Alignment of the cycles of a test by their mean strain.
 
-A rope in load control creeps: each cycle is that of the one before, further along the strain axis.
-The mean tension at one strain is then of other cycles at every strain, and its slope is that of no
-cycle.
+A rope in load control creeps: each cycle repeats the one before, further along the strain axis.
+The mean tension at one strain then comes from different cycles at every strain, and its slope is
+not that of any cycle.
 
 References
 ----------
@@ -23,11 +23,11 @@ from reduction.stages.moduli.modulus_product import ModulusCurves
 
 _NEGLIGIBLE = 0.1  # of the standard uncertainty of the mean
 
-_ALONG = 0.5  # of the shifts, that mean tension may explain
+_ALONG = 0.5  # of the shifts: part that mean tension may explain
 
 
 def strain_shifts(mean_strain: Floats, *, break_in_cycles: int = 0) -> tuple[Floats, Floats]:
-    r"""How far each cycle lies along the strain axis from the mean of all of them.
+    r"""Distance of each cycle along the strain axis from the mean of all of them.
 
     .. math:: s_i = \bar\varepsilon_i - \varepsilon_0, \qquad
               \varepsilon_0 = \frac{1}{n} \sum_i \bar\varepsilon_i
@@ -37,14 +37,14 @@ def strain_shifts(mean_strain: Floats, *, break_in_cycles: int = 0) -> tuple[Flo
     mean_strain : ndarray, shape (n_specimens, n_cycles)
         Mean strain of each cycle; NaN where a cycle has none. [1]
     break_in_cycles : int
-        First cycles, which are in no mean and not in the reference. [1]
+        First cycles, which are excluded from all means and from the reference. [1]
 
     Returns
     -------
     shift : ndarray, shape (n_specimens, n_cycles)
-        Of a cycle without a mean strain that of its neighbours, by straight lines. [1]
+        For a cycle without a mean strain, interpolated between its neighbours. [1]
     reference : ndarray, shape (n_specimens,)
-        The mean strain that the cycles are laid on; NaN where no cycle has one. [1]
+        Mean strain to which the cycles are aligned; NaN if no cycle has one. [1]
 
     Raises
     ------
@@ -53,8 +53,8 @@ def strain_shifts(mean_strain: Floats, *, break_in_cycles: int = 0) -> tuple[Flo
 
     Notes
     -----
-    With the mean over the same cycles as reference the curve stays amid the strains of the
-    test: it is neither that of the first cycle nor that of the last.
+    With the mean over the same cycles as reference, the curve stays in the middle of the strains of
+    the test: it is neither that of the first cycle nor that of the last.
 
     Examples
     --------
@@ -82,7 +82,7 @@ def strain_shifts(mean_strain: Floats, *, break_in_cycles: int = 0) -> tuple[Flo
 
 
 def time_with_hidden(time: Floats, number: Integers) -> Floats:
-    """Begin of each cycle, later by the cycles before it that were counted and not stored.
+    """Beginning of each cycle, delayed by earlier cycles that were counted and not stored.
 
     A machine that stores one cycle in hundreds may write a time that counts its rows.
 
@@ -100,36 +100,36 @@ def time_with_hidden(time: Floats, number: Integers) -> Floats:
     return np.asarray(time[0] + np.append(0.0, np.cumsum(lasts)))
 
 
-_JUMP = 5.0  # over what the mean changes by in the same time between the cycles beside it
+_JUMP = 5.0  # times the change of the mean in the same time between neighbouring cycles
 
-_BESIDE_JUMP = 10  # changes on each side: the creep of the first cycles may be more than a slip
+_BESIDE_JUMP = 10  # changes on each side: the creep of the first cycles may exceed a slip
 
 _JUMP_SEEN = 0.02  # of the amplitude
 
-_AROUND_JUMP = 2  # changes before it, and after it, at the least
+_AROUND_JUMP = 2  # least number of changes before it, and after it
 
 
 def jump_of_mean(
     time: Floats, mean: Floats, other: Floats, slope: Floats, amplitude: Floats
 ) -> tuple[int, float] | None:
-    """A step of the mean of one channel between two cycles, which the other does not follow.
+    """Find a step in the mean of one channel between two cycles, which the other does not follow.
 
     Parameters
     ----------
     time : ndarray, shape (n_cycles,)
-        At which each cycle begins. [s]
+        Beginning of each cycle. [s]
     mean, other : ndarray, shape (n_cycles,)
-        Mean strain and mean tension of each cycle, or the other way about. [1], [N]
+        Mean strain and mean tension of each cycle, or the reverse. [1], [N]
     slope : ndarray, shape (n_cycles,)
-        Of the other channel over this one. [N]
+        Slope of the other channel over this one. [N]
     amplitude : ndarray, shape (n_cycles,)
-        Of this channel. [1]
+        Amplitude of this channel. [1]
 
     Returns
     -------
     jump : tuple of int and float, or None
         Number of the last cycle before it, from 1, and its size; None where creep or relaxation
-        may be all there is. [1]
+        may explain everything. [1]
 
     Raises
     ------
@@ -138,9 +138,9 @@ def jump_of_mean(
 
     Notes
     -----
-    What creeps or relaxes changes fastest at first and slower and slower, also in a pause between
-    blocks of cycles; a jump stands out of the changes in the same time on both sides.  One inside
-    a cycle is in two changes, of which both are taken.
+    Creep and relaxation are fastest at first and slow down, even in a pause between
+    blocks of cycles; a jump exceeds the changes in the same time on both sides.  A jump inside
+    a cycle is in two changes, and both are taken.
 
     Examples
     --------
@@ -174,7 +174,7 @@ def jump_of_mean(
 
 
 def _one_jump(place: int, change: Floats, lasts: Floats, rate: Floats) -> tuple[int, int, float]:
-    """First and last change of a jump, and the most that one beside it may be. [1]."""
+    """First and last change of a jump, and the largest expected change beside it. [1]."""
     sides = rate[[place - 1, place + 1]]
     is_split = sides.max() > rate[place] / _JUMP
     first = place - 1 if is_split and sides[0] > sides[1] else place
@@ -189,33 +189,33 @@ def _one_jump(place: int, change: Floats, lasts: Floats, rate: Floats) -> tuple[
 def is_shift_of_curve(
     shift: Floats, mean_tension: Floats, spring_constant: Floats
 ) -> NDArray[np.bool_]:
-    r"""Whether the curve itself lies further along from cycle to cycle, as it does in creep.
+    r"""Whether the curve itself shifts from cycle to cycle, as it does in creep.
 
     .. math:: \mathrm{rms}(\bar T_i - \bar T) / K < \mathrm{rms}(s_i) / 2
 
     Parameters
     ----------
     shift : ndarray, shape (n_specimens, n_cycles)
-        From `strain_shifts`; those in the mean. [1]
+        From `strain_shifts`, for the cycles in the mean. [1]
     mean_tension, spring_constant : ndarray, same shape
         Mean tension of each cycle, and its apparent spring constant; NaN where missing. [N]
 
     Returns
     -------
     is_shift : ndarray of bool, shape (n_specimens,)
-        False where the mean tension goes with the strain, or falls while the crosshead keeps
-        the strain: such cycles lie where they were measured. [1]
+        False where the mean tension follows the strain, or falls while the crosshead keeps
+        the strain: such cycles belong where they were measured. [1]
 
     Raises
     ------
     ValueError
-        If the arrays do not have one shape.
+        If the arrays differ in shape.
 
     Notes
     -----
-    In load control the machine brings the same tensions back, and a specimen that creeps has
-    them at more strain.  In position control tension relaxes, and what strain changes, as
-    splices give, it changes along the curve of the specimen: to shift such cycles would move
+    In load control the machine returns to the same tensions, and a specimen that creeps reaches
+    them at larger strain.  In position control tension relaxes, and changes of strain, as
+    splices give way, follow the curve of the specimen: shifting such cycles would move
     them off it.
 
     Examples
@@ -241,16 +241,16 @@ def is_shift_of_curve(
 def alignment_moves(
     curves: ModulusCurves, shift: Floats, half_range: Floats, reference: Floats, *, area: Floats
 ) -> NDArray[np.bool_]:
-    r"""Whether aligned cycles would have another mean than cycles as they lie.
+    r"""Whether aligned cycles would have a different mean from cycles as measured.
 
     .. math:: \Delta T = T' (\bar s_b - \bar s) + T'' \overline{s^2} / 2
 
     Parameters
     ----------
     curves : ModulusCurves
-        Over the cycles as they lie. [SI]
+        Over the cycles as measured. [SI]
     shift, half_range : ndarray, shape (n_specimens, n_cycles)
-        From `strain_shifts`, and half the range of strain of each cycle; those in the mean. [1]
+        From `strain_shifts`, and half the range of strain of each cycle; for those in the mean. [1]
     reference : ndarray, shape (n_specimens,)
         From `strain_shifts`. [1]
     area : ndarray, shape (n_specimens,)
@@ -260,23 +260,23 @@ def alignment_moves(
     -------
     moves : ndarray of bool, shape (n_specimens,)
         True where the mean tension of some bin would move by a tenth of its standard uncertainty
-        or more, where the cycles lie further apart than a bin is wide, so that bins at the ends
-        belong to some of them, and where the cycles as they lie have no mean. [1]
+        or more; where the cycles are further apart than a bin is wide, so that bins at the ends
+        belong to some of them; and where the cycles as measured have no mean. [1]
 
     Raises
     ------
     ValueError
-        If the arrays do not have a row a specimen.
+        If the arrays do not have one row per specimen.
 
     Notes
     -----
-    A cycle that lies further along by :math:`s` has, at one strain, the tension less
-    :math:`T' s`.  Over the cycles that reach a bin that is :math:`\bar s_b`, which is not zero
-    where some do not reach it; the second term is what a bend makes of cycles on both sides.
+    A cycle that is further along by :math:`s` has, at a given strain, a tension lower by
+    :math:`T' s`.  Over the cycles that reach a bin the mean is :math:`\bar s_b`, which is not zero
+    where some do not reach it; the second term is the effect of curvature on cycles on both sides.
 
     Examples
     --------
-    Four cycles of a straight line, 1000 N per unit strain, of which the first two lie lower.
+    Four cycles of a straight line, 1000 N per unit strain, the first two lower:
 
     >>> x = np.arange(0.0, 1.0, 0.1) + 0.05
     >>> load = np.broadcast_to(1000 * x, (1, 2, 10))
@@ -335,25 +335,25 @@ def aligned_strain(strain: Floats, shift: Floats, cycle_number: NDArray[np.int32
     Parameters
     ----------
     strain : ndarray, shape (n_specimens, n_samples)
-        As measured. [1]
+        Strain as measured. [1]
     shift : ndarray, shape (n_specimens, n_cycles)
-        From `strain_shifts`; zero where nothing is to be shifted. [1]
+        From `strain_shifts`; zero where there is no shift. [1]
     cycle_number : ndarray of int32, shape (n_samples,)
-        From 1; samples outside cycles, 0, stay as they are. [1]
+        From 1; samples outside cycles, 0, are not changed. [1]
 
     Returns
     -------
     aligned : ndarray, shape (n_specimens, n_samples)
-        Beside ``strain``, in memory or on disk. [1]
+        Stored like ``strain``, in memory or on disk. [1]
 
     Raises
     ------
     IndexError
-        If a sample is of a cycle that has no shift.
+        If a sample belongs to a cycle that has no shift.
 
     Notes
     -----
-    A constant is taken off within a cycle, so that no slope and no loop changes.
+    A constant is subtracted within a cycle, so that no slope and no loop changes.
 
     Examples
     --------

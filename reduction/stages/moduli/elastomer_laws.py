@@ -1,7 +1,7 @@
 r"""Hyperelastic laws fitted to a first loading: neo-Hookean, Mooney-Rivlin, Yeoh, Ogden.
 
 **Nominal stress of incompressible hyperelastic laws in three homogeneous deformations.** Every law
-here is linear in its moduli; only the exponents of Ogden's are not.  With the stretch ratio
+here is linear in its moduli; only the exponents in Ogden's law are not.  With the stretch ratio
 :math:`\lambda` along the pull, the principal stretches are
 
 - uniaxial: :math:`\lambda, \lambda^{-1/2}, \lambda^{-1/2}`;
@@ -198,7 +198,7 @@ DEFORMATIONS: tuple[Deformation, ...] = ("uniaxial", "equibiaxial", "pure-shear"
 def even_grid(
     strain: ArrayLike, stress: ArrayLike, *, n_points: int = GRID_POINTS
 ) -> tuple[Floats, Floats]:
-    """Means over even strain intervals, so that every strain counts alike in a fit.
+    """Means over even strain intervals, so that all strains have equal weight in a fit.
 
     Examples
     --------
@@ -264,7 +264,7 @@ def _is_stable(*, law: Law, parameters: dict[str, float], strain_high: float) ->
 
     Notes
     -----
-    Drucker's postulate ([4]_) on the three paths a test can follow, on 200 points each;
+    Drucker's postulate ([4]_) on the three paths a test can follow, with 200 points each;
     it does not prove stability on others.  A fit to uniaxial data alone often fails it.
 
     Examples
@@ -329,8 +329,8 @@ def fit_elastomers(
     Returns
     -------
     fits : tuple of ElastomerFit
-        One a law, in the order of `LAWS`; where a law cannot be fitted its numbers are
-        NaN and its notes say why.
+        One per law, in the order of `LAWS`; where a law cannot be fitted its numbers are
+        NaN and its notes give the reason.
 
     Raises
     ------
@@ -340,17 +340,17 @@ def fit_elastomers(
     Notes
     -----
     Least squares of stress on means over 200 even strain intervals, so that a hold or a
-    slow stretch of the pull does not count for more; all moduli free of sign.  The
-    standard uncertainty is from the residuals, widened by their correlation, since what
-    is left over is mostly the law and not noise (type A).  AICc ranks the laws:
+    slow stretch of the pull has no extra weight; all moduli may have either sign.  The
+    standard uncertainty is from the residuals, widened by their correlation, since
+    residuals are mostly due to the law and not to noise (type A).  AICc ranks the laws:
     :math:`n \ln(S/n) + 2p + 2p(p+1)/(n-p-1)`, p counting the variance; with correlated
     residuals it favours the longer law.  Two Ogden terms may fit equally well with very
-    different parameters ([5]_); the best of 15 starts is reported, and of several as good the one
-    with the smallest exponents: a steep term of exponent a and one of exponent -2a with the
-    opposite modulus give nearly the same uniaxial curve.  Terms stand in the order of their
+    different parameters ([5]_); the best of 15 starts is reported, or of several equally good ones
+    that with the smallest exponents: a steep term of exponent a and one of exponent -2a with the
+    opposite modulus give nearly the same uniaxial curve.  Terms are in the order of their
     exponents.
 
-    A law fitted to one deformation says little of another, and nothing beyond its range.
+    A law fitted to one deformation is a poor guide to another, and no guide beyond its range.
 
     Examples
     --------

@@ -3,8 +3,8 @@
 **Tangent modulus on the first rise of a record to its greatest strain.** Rubber is stiffer the
 first time it is stretched, and again after a hold; neither belongs in a mean over cycles.
 
-**Nominal stress at a stated elongation on a first loading: M100 and the like.** The rubber trade
-calls this stress "modulus" (M100, M300).  It is a stress, never mixed with a modulus here: on a
+**Nominal stress at a stated elongation on a first loading, such as M100.** The rubber trade
+calls this stress "modulus" (M100, M300).  Here it is a stress, never mixed with a modulus: on a
 curve through the origin it is the secant modulus times the strain.
 
 References
@@ -50,11 +50,11 @@ from reduction.stages.standstills import Standstills, estimate_noise
 
 _BAND = 0.01  # of the rise: a sample this far below the greatest strain so far has unloaded
 
-_NEIGHBOURS = 25  # on each side, to tell the usual step from a spike
+_NEIGHBOURS = 25  # on each side, to distinguish the usual step from a spike
 
 _SPIKE_STEPS = 6  # usual steps above both neighbours
 
-_CACHED = 16_384  # samples worked on at a time, so that they stay in the cache
+_CACHED = 16_384  # samples processed at a time, so that they stay in the cache
 
 _WIDEST = 0.25  # of the rise: a log so slow that its window is wider gives no curve
 
@@ -62,7 +62,7 @@ _BINS = 200  # of the rise, the finest grid
 
 
 def _without_single_spikes(strain: Floats, low: int, high: int) -> Floats:
-    """Median of each sample of a part and its neighbours; the ends of the record as they are."""
+    """Median of each sample of a part and its neighbours; the ends of the record unchanged."""
     first = max(low, 1)
     stop = max(min(high, strain.size - 1), first)
     before, here, after = (
@@ -78,7 +78,7 @@ def _without_single_spikes(strain: Floats, low: int, high: int) -> Floats:
 
 
 def _end_of_rise(strain: Floats, start: float) -> int:
-    """First sample near the greatest strain, spikes left out; block by block in the cache."""
+    """First sample near the greatest strain, without spikes; block by block in the cache."""
     left_out: list[int] = []
 
     def part(low: int, high: int) -> Floats:
@@ -111,7 +111,7 @@ def _end_of_rise(strain: Floats, start: float) -> int:
 
 
 class _Rise:
-    """Samples of the rising pieces of one specimen, and the number of the piece of each, from 0."""
+    """Samples of the rising pieces of one specimen, with the number of their piece, from 0."""
 
     def __init__(self) -> None:
         """Begin without a piece."""
@@ -121,8 +121,8 @@ class _Rise:
         self.reached = -np.inf
 
     def add(self, samples: Integers, level: Floats) -> None:
-        """Take the part of a piece that is higher than all before it."""
-        # not the way down from its top, nor the way up to where the one before it ended
+        """Take the part of a piece that is higher than everything before it."""
+        # without the way down from its top, and the way up to the end of the piece before
         up = slice(0, int(np.argmax(level)) + 1 if level.size else 0)
         kept = level[up] >= self.reached
         if kept.any():
@@ -132,32 +132,32 @@ class _Rise:
 
     @property
     def sample(self) -> Integers:
-        """In order of time."""
+        """Samples in order of time."""
         return np.concatenate([samples for samples, _ in self._found])
 
     @property
     def piece(self) -> Integers:
-        """One a sample."""
+        """Number of the piece, one per sample."""
         return np.concatenate([numbers for _, numbers in self._found])
 
 
 _CALM = 0.001  # of the rise: a tenth of the band
 
-_LEAST_OF_RISE = 100  # means that are left of it
+_LEAST_OF_RISE = 100  # means that remain of it
 
 
 def _calmed(
     strain: Floats, tension: Floats, is_still: Callable[[slice], Bools] | None
 ) -> tuple[Floats, Floats, Callable[[slice], Bools] | None]:
-    """Means of consecutive samples where noise of strain is more than the rise can be told with.
+    """Means of consecutive samples, where noise of strain is too large to detect the rise.
 
-    A window about a noisy strain holds samples of places beside it, and the greatest strain so far
-    is that of the noisiest: the curve is pulled in at its ends.  Means over time of both channels
-    are not.
+    A window about a noisy strain holds samples from places beside it, and the greatest strain so
+    far is that of the noisiest sample: the curve is distorted at its ends.  Means of both channels
+    over time avoid that.
     """
     low, high = finite_extremes(strain)
     rise = high - low
-    # of a series without readings the range is not finite
+    # the range of a series without readings is not finite
     noise = estimate_noise(strain)[0] if rise > 0 and strain.size > 2 * _LEAST_OF_RISE else 0.0
     if not noise > _CALM * rise:
         return strain, tension, is_still
@@ -191,14 +191,14 @@ def _rise_of(strain: Floats, tension: Floats, is_still: Callable[[slice], Bools]
     blocks = sample_blocks(end, strain)
     top = max(np.fmax.reduce(_without_single_spikes(strain, p.start, p.stop)) for p in blocks)
     band = _BAND * (top - float(strain[first]))
-    samples, level = np.empty(0, dtype=np.int64), np.empty(0)  # of a piece that goes on
+    samples, level = np.empty(0, dtype=np.int64), np.empty(0)  # of an unfinished piece
     highest = np.array([-np.inf])
     for part in sample_blocks(end, strain, tension):
         smooth = _without_single_spikes(strain, part.start, part.stop)
         highest = np.fmax.accumulate(np.concatenate([highest[-1:], smooth]))
         floor = highest[1:] - band
         still = np.zeros(smooth.size, dtype=bool) if is_still is None else is_still(part)
-        # comparisons with NaN are false: a missing sample rises nowhere, and breaks nothing
+        # comparisons with NaN are false: a missing sample never rises, and interrupts nothing
         is_spike = np.abs(strain[part] - smooth) > band
         rises = (smooth >= floor) & ~still & ~is_spike & np.isfinite(tension[part])
         breaks = np.cumsum(still | (smooth < floor))
@@ -227,7 +227,7 @@ def _grid_of_rise(rises: list[Floats], settings: ModulusSettings) -> StrainGrid 
     width = settings.strain_bin_width or round_number(max((high - low) / _BINS, wanted / 5))
     window = settings.window or max(5 * width, wanted)
     if window > _WIDEST * (high - low):
-        return None  # the curve would be the window, not the rubber
+        return None  # the curve would show the window, not the rubber
     return StrainGrid.spanning(
         low, high, width=width, half_window=bins_each_side(window, width), cycles_pooled=1
     )
@@ -256,9 +256,9 @@ def _fit_rise(
 def _inflation(
     strain: Floats, tension: Floats, rise: _Rise, fits: LocalFits, grid: StrainGrid
 ) -> float:
-    """Factor of the variances by the correlation of neighbouring residuals, each over its scatter.
+    """Factor on the variances for the correlation of neighbouring residuals, each over its scatter.
 
-    A filter, or hum that the log reads at its own beat, moves neighbours alike.
+    A filter, or hum aliased by the sampling, correlates neighbours.
     """
     bins = np.clip(((strain - grid.low) / grid.width).astype(np.intp), 0, grid.n_bins - 1)
     off = tension - fits.tension[rise.piece, bins]
@@ -291,10 +291,10 @@ def first_loading_curves(
     area : array_like, shape (n_specimens,)
         Cross-sectional area at zero tension. [m2]
     settings : ModulusSettings
-        Bins, window and fewest samples; None is found from the rise. [1]
+        Bins, window and fewest samples; None is determined from the rise. [1]
     standstills : Standstills, optional
-        Holds and rests of the record, which are left out; without them a hold is
-        taken for slow loading. [SI]
+        Holds and rests of the record, which are left out; without them a hold counts
+        as slow loading. [SI]
 
     Returns
     -------
@@ -309,14 +309,14 @@ def first_loading_curves(
 
     Notes
     -----
-    A sample belongs to the rise while no earlier strain was higher by more than 1 %
-    of the rise: an unloading on the way, and the reloading up to where it left, are
-    left out. A standstill or an unloading ends a piece, and no window reaches from one
+    A sample belongs to the rise if no earlier strain was higher by more than 1 %
+    of the rise: an unloading on the way, and the reloading up to where it began, are
+    left out. A standstill or an unloading ends a piece, and no window extends from one
     piece into the next: tension drops in a hold, and the stiff recovery after it would
-    be read as modulus. The curve has a gap there, a quarter window to each side; after
+    appear as modulus. The curve has a gap there, a quarter window to each side; after
     a hold it is the modulus of relaxed rubber for a few percent of strain.
 
-    Whether it is the specimen's first loading, its history says: earlier tests soften
+    The history of the specimen shows whether it is its first loading: earlier tests soften
     it up to the strain they reached ([2]_).
 
     The uncertainty is that of the regression (type A); minimum and maximum are the
@@ -325,7 +325,7 @@ def first_loading_curves(
 
     Examples
     --------
-    A pull that stops half-way and unloads a little; 1000 N per unit strain, 1 cm2.
+    A pull that stops half-way and unloads a little; 1000 N per unit strain, 1 cm2:
 
     >>> import numpy as np
     >>> up, back = np.linspace(0.0, 1.0, 200), np.linspace(1.0, 0.8, 40)
@@ -356,7 +356,7 @@ def first_loading_curves(
             stretches[row], load_of_rise, rise, grid=grid, minimum_count=settings.minimum_count
         )
         weight = np.ones(fits.slope.shape[0])
-        # by piece: the step of modulus at a hold is not a bend
+        # by piece, since the step of modulus at a hold is not curvature
         blur, gain = window_blur(fits.slope, half_window=grid.half_window)
         slopes = RunningStatistics.of(
             fits.slope - blur, gain**2 * fits.slope_variance, weight=weight
@@ -392,14 +392,14 @@ def first_loading_curves(
     )
 
 
-# samples before the level that make the line, and the strain that it may span
+# samples before the level through which the line is drawn, and the strain that it may span
 _SAMPLES = 12
 
 _SPAN = 0.1
 
 _FEWEST = 4
 
-_BESIDE = 0.01  # of strain, by which a hold may lie on the other side of the level
+_BESIDE = 0.01  # of strain: distance within which a hold may be on the other side of the level
 
 
 def stress_at_strain(
@@ -417,7 +417,7 @@ def stress_at_strain(
     Parameters
     ----------
     strain : array_like, shape (n_samples,)
-        Of one specimen; NaN where missing. [1]
+        Strain of one specimen; NaN where missing. [1]
     tension : array_like, shape (n_samples,)
         NaN where missing. [N]
     area : float
@@ -425,15 +425,14 @@ def stress_at_strain(
     levels : sequence of float
         Elongations; 1.0 is 100 %. [1]
     is_still : callable, optional
-        Of a slice:
-        Samples in a hold or rest, whose tension relaxes; they are left out. [1]
+        For a slice: samples in a hold or rest, whose tension relaxes; they are left out. [1]
 
     Returns
     -------
     stress, stress_standard_uncertainty : ndarray, shape (n_levels,)
         NaN where a level is not reached, or not measured. [Pa]
     reasons : tuple of str, length n_levels
-        Why a level within the range of the record has no number; empty elsewhere. [text]
+        Reason why a level within the range of the record has no number; empty elsewhere. [text]
 
     Raises
     ------
@@ -442,11 +441,11 @@ def stress_at_strain(
 
     Notes
     -----
-    A line through the samples just before the level, twelve at most and within 10 % of
-    strain, read at the level: what comes after (a hold, the turn) does not enter.  The
+    A line through the samples just before the level, at most twelve and within 10 % of
+    strain, is evaluated at the level: what follows (a hold, the turn) has no effect.  The
     uncertainty is that of the line there (type A).  Where the nearest hold is within 1 % of strain
-    of the level, the level may have been passed on its other side: half of the tension that was
-    lost in it is added.
+    of the level, the level may have been passed on the other side of it: half of the tension lost
+    in the hold is added.
 
     Examples
     --------
@@ -515,7 +514,7 @@ def _lost_beside(
 
 
 def _last_of(known: Callable[[slice], Bools], stop: int) -> Integers:
-    """The last samples before one that are known, as many as make the line."""
+    """The last known samples before a given one, as many as the line needs."""
     found: list[int] = []
     while len(found) < _SAMPLES:
         at = last_sample(known, 0, found[-1] if found else stop)

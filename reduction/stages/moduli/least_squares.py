@@ -1,7 +1,7 @@
 r"""Least squares for models that are linear in all but a few parameters.
 
-The linear parameters are solved for inside (variable projection, [1]_), so the search runs
-over the few others alone, from all starts at once:
+The linear parameters are solved for internally (variable projection, [1]_), so that the search is
+only over the few others, from all starts at once:
 
 .. math::
 
@@ -9,8 +9,8 @@ over the few others alone, from all starts at once:
     J_j = -(I - \Phi \Phi^+) \, \frac{\partial \Phi}{\partial \theta_j} \, a,
     \qquad a = \Phi^+ y
 
-The Jacobian is Kaufman's ([2]_): it leaves out a term whose product with r is zero, so that the
-gradient is exact.  Steps over all parameters together follow the search to its last digits and
+The Jacobian is Kaufman's ([2]_): it omits a term whose product with r is zero, so that the
+gradient is exact.  Steps over all parameters together refine the result to its last digits and
 give the covariance.  Checked on NIST StRD problems (see Notes of `fit_separable`).
 
 References
@@ -38,19 +38,19 @@ from reduction.record.errors import DataError, FitError
 from reduction.record.measurement import Bools, Floats, read_only_arrays
 
 Basis = Callable[[Floats], tuple[Floats, Floats]]
-"""From shapes to columns, and to what each of the last columns changes by with its own shape."""
+"""From shapes to columns, and the derivative of each of the last columns by its own shape."""
 
 NEAR = 1e-7
-"""Steps of the search, relative to the shapes, at which it ends."""
+"""Relative step of the shapes at which the search ends."""
 
 ALIKE = 1e-9
-"""Sums of squares that differ by less, relatively, count as one."""
+"""Relative difference of sums of squares below which they count as equal."""
 
 _ENOUGH = 1e-11
-"""Share of the sum of squares that a step without damping ought to gain, below which it ends."""
+"""Fraction of the sum of squares: the search ends if an undamped step should gain less."""
 
 _DEPENDENT = 1e-9
-"""Part of a column of length one that those before it leave, below which it may depend on them."""
+"""Part of a unit column left by those before it, below which it may depend on them."""
 
 FIRST_DAMPING = 1e-3
 
@@ -90,12 +90,12 @@ class SeparableFit:
 
     @property
     def standard_uncertainty(self) -> Floats:
-        """Of the amplitudes, then of the shapes."""
+        """Standard uncertainties of the amplitudes, then of the shapes."""
         return np.asarray(np.sqrt(np.diag(self.covariance)), dtype=np.float64)
 
 
 def lag_one_inflation(residual: ArrayLike) -> float:
-    """Factor by which correlated residuals make every variance of a fit larger.
+    """Factor by which correlated residuals increase every variance of a fit.
 
     .. math:: (1 + r_1) / (1 - r_1)
 
@@ -118,8 +118,8 @@ def lag_one_inflation(residual: ArrayLike) -> float:
 
     Notes
     -----
-    First-order autoregressive noise; the correlation is held below 0.95.  A model that
-    does not fit leaves correlated residuals too, so lack of fit widens the uncertainty.
+    Assumes first-order autoregressive noise; the correlation is limited to 0.95.  A model that
+    does not fit also leaves correlated residuals, so lack of fit widens the uncertainty.
 
     Examples
     --------
@@ -143,7 +143,7 @@ def _solve(columns: Floats, target: Floats) -> Floats:
 
 
 def _covariance(jacobian: Floats, parameters: Floats, variance: float) -> Floats:
-    """Inverse normal matrix by QR on scaled columns, which keeps the digits."""
+    """Inverse normal matrix by QR on scaled columns, which preserves the digits."""
     scale = np.linalg.norm(jacobian, axis=0)
     effect = scale * np.abs(parameters)
     idle = effect <= 1e-12 * effect.max()
@@ -171,8 +171,8 @@ def _polished(
     """Gauss-Newton steps while they get shorter; parameters, with residuals and Jacobian there.
 
     A trust region stops where the sum of squares no longer changes, at half the digits of
-    the parameters; these steps follow its gradient to the last ones, so that the answer
-    does not depend on the way that led there.
+    the parameters; these steps follow its gradient to the last digits, so that the result
+    does not depend on the path of the search.
     """
     residual, jacobian = evaluate(parameters)
     scale = np.linalg.norm(jacobian, axis=0)
@@ -181,7 +181,7 @@ def _polished(
         step = -_solve(jacobian, residual)
         length = float(np.linalg.norm(step * scale))
         trial, bent = evaluate(parameters + step)
-        # Not where the search had only run aground: there a step leads anywhere.
+        # Not where the search only got stuck: there a step may lead anywhere.
         if not (length < shortest and trial @ trial <= (residual @ residual) * (1 + 1e-9)):
             break
         parameters, shortest, residual, jacobian = parameters + step, length, trial, bent
@@ -189,7 +189,7 @@ def _polished(
 
 
 class _Projected(NamedTuple):
-    """What is left at each set of shapes when the amplitudes are solved for."""
+    """Residuals at each set of shapes, with the amplitudes solved for."""
 
     squares: Floats
     """Sum of squared residuals; infinite where the model is not finite. (n_sets,)"""
@@ -200,7 +200,7 @@ class _Projected(NamedTuple):
 
 
 def _projected(columns: Floats, slopes: Floats, target: Floats) -> _Projected:
-    """Amplitudes solved for by least squares, of least length where columns depend on others."""
+    """Amplitudes by least squares, of least norm where columns are dependent."""
     scale = np.sqrt(np.einsum("snc,snc->sc", columns, columns))
     finite: Bools = np.isfinite(scale).all(axis=1) & np.isfinite(slopes).all(axis=(1, 2))
     if not finite.all():
@@ -233,7 +233,7 @@ def _projected(columns: Floats, slopes: Floats, target: Floats) -> _Projected:
 
 
 def _damped_step(at: _Projected, damping: Floats) -> tuple[Floats, Floats]:
-    """Step of Levenberg and Marquardt from each set of shapes, and what it ought to gain."""
+    """Step of Levenberg and Marquardt from each set of shapes, and its predicted gain."""
     curvature = np.diagonal(at.normal, axis1=1, axis2=2)
     scale = np.sqrt(np.where(curvature > 0, curvature, 1.0))
     even = at.normal / (scale[:, :, None] * scale[:, None, :])
@@ -245,10 +245,10 @@ def _damped_step(at: _Projected, damping: Floats) -> tuple[Floats, Floats]:
 
 
 def _search(basis: Basis, target: Floats, starts: Floats) -> tuple[Floats, Floats]:
-    """Where the search from each start ends, and the sum of squares there.
+    """End point of the search from each start, and the sum of squares there.
 
-    Levenberg and Marquardt, each start with a damping of its own that follows how well the last
-    step was foreseen ([4]_).
+    Levenberg and Marquardt; each start has its own damping, adapted to how well the last
+    step was predicted ([4]_).
     """
     shapes = starts.copy()
     found = _projected(*basis(shapes), target)
@@ -264,10 +264,10 @@ def _search(basis: Basis, target: Floats, starts: Floats) -> tuple[Floats, Float
         gain = here.squares - there.squares
         better = gain > 0
         length = np.sqrt((step * step).sum(axis=1))
-        # shorter than its digits count, or a gain below those of the sum
+        # the step is below the required precision, or the gain below that of the sum
         ends = length <= NEAR * (NEAR + np.sqrt((shapes[at] ** 2).sum(axis=1)))
         ends |= expected <= _DIGITS * here.squares
-        # the steps over all parameters that follow find the rest of what the sum can lose
+        # later steps over all parameters find the remaining reduction of the sum
         ends |= (expected <= _ENOUGH * here.squares) & (damping[at] < 1.0)
         moved = at[better]
         shapes[moved] += step[better]
@@ -283,7 +283,7 @@ def _search(basis: Basis, target: Floats, starts: Floats) -> tuple[Floats, Float
     return shapes, found.squares
 
 
-# A search may stray to where the model overflows; its values tell it so.
+# A search may stray to where the model overflows, which its values show.
 @np.errstate(over="ignore", invalid="ignore", divide="ignore")
 def fit_separable(
     basis: Basis,
@@ -304,12 +304,12 @@ def fit_separable(
         column, and these columns stand last, in the order of the shapes; the slope is the
         derivative of the column by its shape. [1]
     values : array_like, shape (n_samples,)
-        What is fitted. [any unit]
+        Values to fit. [any unit]
     starts : array_like, shape (n_starts, n_shapes)
-        Shapes to start from; the best result counts, of several as good the one with the smallest
-        shapes. [any unit]
+        Starting shapes; the best result is used, or of several equally good ones that with the
+        smallest shapes. [any unit]
     weights : array_like, shape (n_samples,), optional
-        Inverse relative variances; equal where not given. [1]
+        Inverse relative variances; equal by default. [1]
 
     Returns
     -------
@@ -322,11 +322,11 @@ def fit_separable(
         If a value is not finite, or there are not more samples than parameters.
     FitError
         If the model is not finite at any start, a parameter has no effect, or parameters cannot
-        be told apart.
+        be distinguished.
 
     Notes
     -----
-    Variable projection [1]_ with the Jacobian of [2]_ to a relative step of 1e-10, from every start
+    Variable projection [1]_ with the Jacobian of [2]_ to a relative step of 1e-10, from all starts
     at once; then Gauss-Newton steps over all parameters of the best.  MGH17, BoxBOD and Misra1a of
     [3]_: certified parameters and standard deviations to 9 digits or more.
 

@@ -1,7 +1,7 @@
 """Sums of strain and tension by strain bin, and the local regression of the tangent modulus.
 
-**Sums of strain and tension by curve and strain bin, and the local regression they give.** All that
-a moving regression needs of the samples is nine sums in each bin. They are taken once over the
+**Sums of strain and tension by curve and strain bin, and the local regression from them.** A
+moving regression needs nine sums of the samples in each bin. They are computed once from the
 samples; any window is a sum of neighbouring bins, and sums of two pieces of a record add up.
 
 References
@@ -31,7 +31,7 @@ from reduction.stages.cycles.cycle_product import Cycles
 from reduction.stages.moduli.tangent_window import StrainGrid
 
 # Large enough that threads do not wait for the interpreter between the steps of a block;
-# twice as large, and the system hands out fresh memory for every step, which costs more.
+# at twice this size the system allocates fresh memory for every step, which costs more.
 _BLOCK_SAMPLES = 1 << 17
 
 _BLOCK_CELLS = 1 << 16
@@ -47,7 +47,7 @@ def select_cycles(n_cycles: int, *, longest: int) -> Integers:
     n_cycles : int
         Cycles of the test. [1]
     longest : int
-        Longest test of which every cycle is kept. [1]
+        Longest test for which every cycle is kept. [1]
 
     Returns
     -------
@@ -88,7 +88,7 @@ class CycleGroups:
     def of(cls, n_cycles: int, break_in_cycles: int, pooled: int) -> CycleGroups:
         """Groups of the cycles after break-in, and of the break-in cycles apart."""
         # The last group takes the remainder: a group of fewer cycles than the
-        # others would be a curve of fewer samples than a window needs.
+        # others would give a curve of fewer samples than a window needs.
         n_after = max((n_cycles - break_in_cycles) // pooled, 1)
         after = break_in_cycles + pooled * np.arange(n_after)
         before = np.arange(0, break_in_cycles, pooled)
@@ -127,12 +127,12 @@ def sums_by_cell(cell: Integers, n_cells: int) -> scipy.sparse.csc_array:
     Raises
     ------
     ValueError
-        If there are more cells or samples than 32 bits count.
+        If there are more cells or samples than 32 bits can count.
 
     Notes
     -----
-    One column a sample, stored by columns ([2]_).  The sums are those of `numpy.bincount`,
-    added in the same order, in about the same time; but bincount keeps the interpreter's
+    One column per sample, stored by columns ([2]_).  The sums are those of `numpy.bincount`,
+    added in the same order, in about the same time; but bincount holds the interpreter's
     lock, and blocks would wait for each other.
 
     Examples
@@ -151,20 +151,20 @@ def sums_by_cell(cell: Integers, n_cells: int) -> scipy.sparse.csc_array:
 @dataclass(frozen=True)
 @read_only_arrays
 class RunningStatistics:
-    """Statistics over the curves seen so far, NaN left out; arrays of one shape.
+    """Statistics over the curves so far, without NaN; arrays of one shape.
 
     Parameters
     ----------
     count : ndarray
-        Values in the mean, weighted: a curve pooled from m cycles counts m. [1]
+        Values in the mean, weighted: a curve pooled from m cycles counts m times. [1]
     n_curves : ndarray
         Curves in the mean. [1]
     mean, squares, minimum, maximum : ndarray
         Mean, sum of squared deviations from it, least and greatest. [SI]
     variance : ndarray
-        Sum of the variances that came with the values. [SI]
+        Sum of the variances supplied with the values. [SI]
     bends, n_bends : ndarray
-        Sum of squared distances of a value from the middle of those of the curves before and after
+        Sum of squared differences between each curve and the mean of the curves before and after
         it, and their number. [SI], [1]
     head, tail : ndarray, shape (up to 3, ...)
         Values of the first three curves and of the last three. [SI]
@@ -226,7 +226,7 @@ class RunningStatistics:
         )
 
     def value(self) -> Floats:
-        """Mean; NaN where nothing was seen."""
+        """Mean; NaN where there is no value."""
         return np.where(self.n_curves > 0, self.mean, np.nan)
 
     def scatter(self) -> Floats:
@@ -235,10 +235,10 @@ class RunningStatistics:
         return np.sqrt(self.squares / freedom)
 
     def standard_uncertainty(self) -> Floats:
-        """Type A of the mean, without a trend: `variance_of_a_cycle`; of one curve, its own."""
+        """Type A of the mean without a trend (`variance_of_a_cycle`); for one curve, its own."""
         n_curves = np.maximum(self.n_curves, 1)
         own = self.variance / n_curves
-        # the first and the last one stand off a line through the two beside them by twice the bend
+        # the first and last curve deviate from the line through the next two by twice the bend
         (head, n_head), (tail, n_tail) = _bends(self.head), _bends(self.tail)
         many = variance_of_a_cycle(
             self.scatter() ** 2, bends=self.bends + head + tail,
@@ -247,11 +247,11 @@ class RunningStatistics:
         return np.sqrt(np.where(self.n_curves == 1, own, many / n_curves))
 
     def lowest(self) -> Floats:
-        """Minimum; NaN where nothing was seen."""
+        """Minimum; NaN where there is no value."""
         return np.where(self.n_curves > 0, self.minimum, np.nan)
 
     def highest(self) -> Floats:
-        """Maximum; NaN where nothing was seen."""
+        """Maximum; NaN where there is no value."""
         return np.where(self.n_curves > 0, self.maximum, np.nan)
 
 
@@ -262,15 +262,15 @@ def _bends(values: Floats) -> tuple[Floats, Floats]:
     return (np.where(known, bend, 0.0) ** 2).sum(axis=0), known.sum(axis=0).astype(np.float64)
 
 
-_FEWEST_BENDS = 5  # of three cycles between the first and the last
+_FEWEST_BENDS = 5  # three cycles between the first and the last, and both ends
 
-_TREND = 4.0  # times the variance that it has without its trend
+_TREND = 4.0  # least ratio of the variances with and without the trend
 
-_OF_A_BEND = 1.5  # variance of a value less the middle of two others, over that of one
+_OF_A_BEND = 1.5  # variance of a value minus the mean of two others, over that of one value
 
 
 def variance_of_a_cycle(variance: Floats, *, bends: Floats, n_bends: Floats, own: Floats) -> Floats:
-    r"""Variance of one cycle of several whose mean is taken, without a trend over them.
+    r"""Variance of one of several cycles about their trend.
 
     .. math:: s^2 = \frac{2}{3 n} \left(b_2^2 + b_{n-1}^2 + \sum_{i = 2}^{n - 1} b_i^2\right),
               \qquad b_i = x_i - \frac{x_{i-1} + x_{i+1}}{2}
@@ -280,24 +280,24 @@ def variance_of_a_cycle(variance: Floats, *, bends: Floats, n_bends: Floats, own
     variance : ndarray
         About their mean, n - 1 degrees of freedom. [SI]
     bends, n_bends : ndarray
-        What is in the brackets of the formula, and how many terms it has. [SI], [1]
+        Sum in the brackets of the formula, and its number of terms. [SI], [1]
     own : ndarray
-        Mean variance that the cycles came with; NaN where they have none. [SI]
+        Mean of the variances of the cycles themselves; NaN where they have none. [SI]
 
     Returns
     -------
     variance : ndarray
-        That about the mean, unless a trend makes up more than three quarters of it. [SI]
+        Variance about the mean, unless a trend accounts for more than three quarters of it. [SI]
 
     Notes
     -----
-    Stiffness that falls over the cycles as the specimen softens or warms up is no scatter: the mean
-    of these cycles is as well known as they are.  Differences of neighbours leave it out [1]_, and
-    second ones leave most of a decay out that is as fast as a cycle or two.  The first and the last
-    cycle have a neighbour on one side alone: each is off the line through the two beside it by
-    twice their bend, with four times its variance, and counts as one more.  A single cycle that is
-    unlike the others is no trend: of the variance about the mean that it makes, these differences
-    have all, or a third where it is the first or the last.
+    A stiffness that falls over the cycles because the specimen softens or warms up is not scatter:
+    the mean of these cycles is known as well as the cycles are.  Differences between neighbours
+    remove a trend [1]_, and second differences remove most of a decay over one or two cycles as
+    well.  The first and last cycle have a neighbour on one side only: each deviates from the line
+    through the next two by twice their bend, with four times its variance, and counts as one more
+    term.  A single unusual cycle is not a trend: the second differences contain all of the variance
+    that it causes, or a third of it if it is the first or the last.
 
     References
     ----------
@@ -321,12 +321,12 @@ def variance_of_a_cycle(variance: Floats, *, bends: Floats, n_bends: Floats, own
 
 _N_SUMS = 9
 
-_LEVEL_STEPS = 4  # each takes what is left of the levels down to a small share
+_LEVEL_STEPS = 4  # each reduces the error of the levels to a small fraction
 
-# Shares of what samples spread evenly over the window would give.
+# Fractions of the values for samples spread evenly over the window.
 _LEAST_SPREAD = 0.25  # of the second moment: less is a cluster, which has no slope
 
-_LEAST_BEND = 0.05  # of the bending moment: less cannot tell a bend, a straight line is fitted
+_LEAST_BEND = 0.05  # of the bending moment: with less, a straight line is fitted
 
 _FURTHEST_CENTRE = 0.125  # of the window: mean strain of the samples off the bin centre
 
@@ -340,12 +340,12 @@ class BranchMoments:
     ----------
     sums : ndarray, shape (9, n_curves, n_bins + 2 half_window)
         1, x, x2, x3, x4, y, xy, x2y, y2, where x is strain from the middle of the
-        grid in bins and y is tension less ``tension_reference``; half a window of
-        empty bins stands at each side. [1], [N], [N2]
+        grid in bins and y is tension less ``tension_reference``; with half a window of
+        empty bins on each side. [1], [N], [N2]
     grid : StrainGrid
         The bins. [1]
     tension_reference : float
-        Subtracted from tension, so that squares keep their digits. [N]
+        Subtracted from tension to preserve the digits of squares. [N]
     """
 
     sums: Floats
@@ -368,17 +368,17 @@ class BranchMoments:
     def pooled(self, n_branches: int) -> BranchMoments:
         """Moments of each branch over all its curves, each put on the level of the mean curve.
 
-        Curves come branch by branch within a cycle.  From cycle to cycle tension falls, and not
-        every cycle has a sample in every bin: without its own level taken off, that fall would
-        be a slope.  Nor do the samples of a bin lie at one strain: where it holds few, the slope
-        across it is no level.
+        Curves come branch by branch within a cycle.  Tension falls from cycle to cycle, and not
+        every cycle has a sample in every bin: if the level of a cycle were not removed, that fall
+        would appear as a slope.  Nor are the samples of a bin at one strain: where there are few,
+        the slope across the bin must not count as level.
         """
         sums = self.sums.reshape(_N_SUMS, -1, n_branches, self.sums.shape[-1])
         count, strain, tension = sums[0], sums[1], sums[5]
         n_samples = np.maximum(count.sum(axis=0), 1)
         tension = tension - (strain - count * (strain.sum(axis=0) / n_samples)) * self._slope(sums)
         level = np.zeros((*count.shape[:2], 1))
-        for _ in range(_LEVEL_STEPS):  # the mean of a bin stands on the levels of its curves
+        for _ in range(_LEVEL_STEPS):  # the mean of a bin depends on the levels of its curves
             mean = (tension - count * level).sum(axis=0) / n_samples
             level = (tension - count * mean).sum(axis=-1, keepdims=True)
             level = level / np.maximum(count.sum(axis=-1, keepdims=True), 1)
@@ -388,7 +388,7 @@ class BranchMoments:
         return BranchMoments(pooled, self.grid, self.tension_reference)
 
     def _slope(self, sums: Floats) -> Floats:
-        """Slope of all curves of a branch together at each bin, at the ends that of the nearest."""
+        """Slope of all curves of a branch together at each bin; the nearest one at the ends."""
         together = BranchMoments(sums.sum(axis=1), self.grid, self.tension_reference)
         slope = fit_windows(together, minimum_count=3).slope * self.grid.width
         beside = self.grid.half_window
@@ -400,7 +400,7 @@ class BranchMoments:
         return padded
 
     def in_windows(self, half_window: int) -> BranchMoments:
-        """Return the same moments for a window that is no wider."""
+        """Return the same moments for a window that is not wider."""
         beside = self.grid.half_window - half_window
         inner = slice(beside, self.sums.shape[-1] - beside)
         grid = replace(self.grid, half_window=half_window)
@@ -418,7 +418,7 @@ class LocalFits:
     """Local regression at every bin centre; arrays have shape (n_curves, n_bins).
 
     ``slope`` [N] and ``tension`` [N] are NaN where the samples do not support
-    them; the variances [N2] are NaN also where the branch has no degree of freedom.
+    them; the variances [N2] are also NaN where the branch has no degree of freedom.
     """
 
     slope: Floats
@@ -452,19 +452,19 @@ def accumulate_moments(
     grid : StrainGrid
         The bins. [1]
     tension_reference : float
-        A tension of the branch; any will do, equal for pieces that are added. [N]
+        A tension of the branch; any value, but equal for pieces that are added. [N]
 
     Returns
     -------
     moments : BranchMoments
         Sums of each curve and bin. [SI]
     n_outside : int
-        Samples of a curve with strain and tension, but with strain off the grid. [1]
+        Samples of a curve with strain and tension, but with strain outside the grid. [1]
 
     Raises
     ------
     DataError
-        Not by this function; the sum of two `BranchMoments` of unlike grids raises it.
+        Not by this function, but by the sum of two `BranchMoments` of different grids.
 
     Notes
     -----
@@ -485,7 +485,7 @@ def accumulate_moments(
     y = tension - tension_reference
     n_padded = grid.n_bins + 2 * grid.half_window
     n_cells = n_curves * n_padded
-    # comparisons with NaN are false, and what a NaN is cast to counts nowhere
+    # comparisons with NaN are false, and the value to which a NaN is cast is not used
     inside = (position >= 0) & (position < grid.n_bins) & np.isfinite(y) & (curve >= 0)
     with np.errstate(invalid="ignore"):
         cell = position.astype(np.int32)
@@ -495,7 +495,7 @@ def accumulate_moments(
     if not inside.all():
         known = (curve >= 0) & np.isfinite(position) & np.isfinite(y)
         n_outside = int(np.count_nonzero(known) - np.count_nonzero(inside))
-        cell[~inside] = n_cells  # one more, which is cut off: cheaper than to take samples out
+        cell[~inside] = n_cells  # an extra cell, cut off later: cheaper than removing samples
 
     x = position
     x -= grid.n_bins / 2
@@ -514,7 +514,7 @@ def _window_sums(sums: Floats, n_window: int) -> Floats:
     n_out = sums.shape[-1] - n_window + 1
     windows = np.empty((*sums.shape[:-1], n_out))
     for of_curves, window in zip(sums, windows, strict=True):
-        # curves end to end are one long row; windows over the end of a curve are left out
+        # curves end to end are one long row; windows across the end of a curve are left out
         total = run = of_curves.ravel()
         covered = width = 1
         while covered < n_window:
@@ -525,19 +525,19 @@ def _window_sums(sums: Floats, n_window: int) -> Floats:
     return windows
 
 
-_ALONE = 12  # degrees of freedom of a window that knows its own scatter
+_ALONE = 12  # degrees of freedom from which a window uses its own scatter
 
-_OTHER_SCATTER = 3.0  # of a variance with twelve degrees of freedom: once in sixty by chance
+_OTHER_SCATTER = 3.0  # ratio of variances with twelve degrees of freedom: 1 in 60 by chance
 
 
 def _variance_near(squares: Floats, freedom: Floats, *, n_window: int) -> Floats:
-    """Residual variance of so many windows around each one as have twelve degrees of freedom.
+    """Residual variance of as many windows around each one as have twelve degrees of freedom.
 
-    NaN where there are not so many.
+    NaN where there are not enough.
 
     Examples
     --------
-    Windows of one bin with three degrees of freedom each, half of them with a tenth of the noise.
+    Windows of one bin with three degrees of freedom each, half of them with a tenth of the noise:
 
     >>> squares = np.repeat([0.03, 3.0], 10)[None]
     >>> print(_variance_near(squares, np.full((1, 20), 3.0), n_window=1)[0, [0, 5, 9, 15]].round(2))
@@ -567,8 +567,8 @@ def fit_windows(moments: BranchMoments, *, minimum_count: int, is_alone: bool = 
 
         b + c\,\bigl(2 (x_c - \bar x) - S_3 / S_2\bigr),\quad b = S_{uy} / S_2
 
-    where :math:`c` is the regression on the part of :math:`u^2` that the straight
-    line leaves.
+    where :math:`c` is the regression on the part of :math:`u^2` that is orthogonal to the straight
+    line.
 
     Parameters
     ----------
@@ -577,13 +577,13 @@ def fit_windows(moments: BranchMoments, *, minimum_count: int, is_alone: bool = 
     minimum_count : int
         Fewest samples in a window that give a slope. [1]
     is_alone : bool
-        Of curves that no other repeats. [1]
+        For curves that are not repeated by others. [1]
 
     Returns
     -------
     fits : LocalFits
-        Slope per unit strain and tension at the bin centres, with the variances that
-        the residuals give. [SI]
+        Slope per unit strain and tension at the bin centres, with variances from
+        the residuals. [SI]
 
     Raises
     ------
@@ -592,28 +592,28 @@ def fit_windows(moments: BranchMoments, *, minimum_count: int, is_alone: bool = 
 
     Notes
     -----
-    Samples spread evenly about the centre make the bend drop out: the slope is that
+    With samples spread evenly about the centre the curvature drops out: the slope is that
     of a straight line ([4]_ has the same for equal spacing), with the bias
-    :math:`E'' W^2 / 40` for a window of width :math:`W`. The bend matters where
-    samples are few or the branch ends: a straight line has the slope of the mean
-    strain of its samples, not of the bin centre, which in a test logged in step
-    with its period is the same error in every cycle.
+    :math:`E'' W^2 / 40` for a window of width :math:`W`. The curvature matters where
+    samples are few or the branch ends: a straight line has the slope at the mean
+    strain of its samples, not at the bin centre, and in a test logged in step
+    with its period this error is the same in every cycle.
 
     NaN where fewer than ``minimum_count`` samples are in the window, where they
     cluster (their variance is below a quarter of an even spread), or where their
-    mean lies further than an eighth of the window from the bin centre, as it does
-    at the end of a branch. Residual variance is pooled over the windows of a curve, or, with
-    ``is_alone``, that of each window where it has twelve degrees of freedom, else that of the
-    windows around it that have, where it is another by a factor of three: a knee or a break
-    elsewhere on a single curve says nothing of it.
+    mean is further than an eighth of the window from the bin centre, as
+    at the end of a branch. Residual variance is pooled over the windows of a curve.  With
+    ``is_alone``, it is that of each window with twelve degrees of freedom, else that of the
+    windows around it with as many, where that differs by a factor of three: a knee or a break
+    elsewhere on a single curve does not affect it.
 
-    Strain noise does not flatten the slope where samples lie closer than the noise,
-    since the window is cut on the strain that was read; where they lie further
-    apart it does, by noise variance over the variance of strain in the window.
+    Strain noise does not flatten the slope where the spacing of samples is below the noise,
+    since the window is cut on the strain that was read; where the spacing is larger
+    it does, by noise variance over the variance of strain in the window.
 
     Examples
     --------
-    A straight line comes back, 1000 N per unit strain.
+    A straight line is reproduced, 1000 N per unit strain:
 
     >>> import numpy as np
     >>> strain = np.linspace(0.0, 1.0, 201)
@@ -683,19 +683,19 @@ def curve_at(
 ) -> Floats:
     """Values of a curve between its bins, by straight lines; nothing is extrapolated.
 
-    What is read at a strain anywhere, in a look-up, a budget, a table or a ratio, is read by this.
+    All readings at a given strain, in a look-up, a budget, a table or a ratio, use this function.
 
     Parameters
     ----------
     strain : array_like, shape (n,)
-        Where the curve is wanted. [1]
+        Strains at which the curve is wanted. [1]
     strain_bin : array_like, shape (n_bins,)
         Bin centres, or other points of an axis, increasing. [1]
     values : array_like, shape (n_bins,)
         The curve, NaN where not supported. [SI]
     spacing : float or None
-        Distance of neighbouring bins; a gap wider than half as much again is not
-        bridged. None where any gap is. [1]
+        Distance of neighbouring bins; a gap wider than 1.5 times this is not
+        bridged. None if any gap is bridged. [1]
 
     Returns
     -------
@@ -705,7 +705,7 @@ def curve_at(
     Raises
     ------
     DataError
-        If the curve does not have a value a bin.
+        If the curve does not have one value per bin.
 
     Examples
     --------

@@ -1,8 +1,8 @@
 """Closed-cycle identity and tension level of each cycle.
 
-**Tension level of each cycle: the whole loop against the mean loop, as one number.** The peak of a
-sampled cycle is a poor witness: at 20 samples a cycle the sample nearest the turn may miss it.
-Every sample of a cycle is compared with the mean branch at its own position.
+**Tension level of each cycle: the whole loop compared with the mean loop, as one number.** The
+peak of a sampled cycle is unreliable: at 20 samples a cycle the sample nearest the turn may miss
+it.  Every sample of a cycle is compared with the mean branch at its own position.
 
 References
 ----------
@@ -30,7 +30,7 @@ from reduction.stages.moduli.local_regression import sums_by_cell
 from reduction.stages.moduli.modulus_product import CycleIdentity
 from reduction.stages.moduli.tangent_modulus import pair_specimens
 
-_MOST_PIECES = 4  # of a stroke: more follow its curvature better, with more noise
+_MOST_PIECES = 4  # of a stroke: more follow its curvature better, but with more noise
 
 _PIECE_SAMPLES = 6
 
@@ -38,20 +38,20 @@ _FEWEST_SAMPLES = 3  # in a piece
 
 _FEWEST_OF_BEND = 4  # in a piece
 
-_POWERS = 5  # of the place in a piece in the sums, and three of them times the tension
+_POWERS = 5  # powers of the place in a piece that are summed; three of them also times tension
 
 _SIGNIFICANT = 3.0  # standard errors
 
 _WORTH_A_NOTE = 0.005
 
-_LEAST_SPREAD = 0.5  # of the variance that samples spread evenly over a piece have
+_LEAST_SPREAD = 0.5  # of the variance of samples spread evenly over a piece
 
-_LEAST_ROOM = 0.1  # of what places and their squares would have that say nothing of each other
+_LEAST_ROOM = 0.1  # of the determinant that uncorrelated places and squares would have
 
-_TIE = 1e-9  # of a piece: rounding decides no side
+_TIE = 1e-9  # of a piece: rounding must not decide between two pieces
 
 
-_PART = 1 << 18  # samples of a longer block of which sums are taken together
+_PART = 1 << 18  # samples of a long block that are summed together
 
 
 def _tension_change(
@@ -90,14 +90,14 @@ def _tension_change(
         u *= per_stroke[own].take(branch, mode="clip")
         at = n_pieces * u + _TIE
         # noise carries samples past the reversals: they belong to the end pieces
-        with np.errstate(invalid="ignore"):  # what a NaN is cast to counts nowhere
+        with np.errstate(invalid="ignore"):  # the value to which a NaN is cast is not used
             piece = np.clip(at.astype(np.int32), 0, n_pieces - 1)
         cell = branch * n_pieces + piece
         n_cells = n_branches * n_pieces
         used = (branch >= 0) & (branch < n_branches) & (side > 0) & np.isfinite(u) & np.isfinite(y)
-        cell[~used] = n_cells  # one more, which is cut off
-        # a sample between two pieces ends both, lest a record in step with the cycles divide its
-        # branches, of which one begins where the other ends, differently
+        cell[~used] = n_cells  # an extra cell, cut off later
+        # a sample between two pieces counts in both; otherwise a record in step with the cycles
+        # would divide its two branches differently, as one begins where the other ends
         tied = np.flatnonzero(used & (piece > 0) & (at - piece < 2 * _TIE))
         total = np.zeros((_POWERS + 3, n_cells))
         within = at - piece - 0.5
@@ -113,7 +113,7 @@ def _tension_change(
 
 
 def _to_sum(within: Floats, load: Floats) -> Iterator[Floats]:
-    """Powers of the place in a piece, and their products with the tension."""
+    """Powers of the place in a piece, and their products with tension."""
     power = np.ones_like(within)
     for order in range(_POWERS):
         yield power
@@ -131,9 +131,9 @@ def _add_shared_reversals(
     *,
     reference: float,
 ) -> Floats:
-    """Sums by branch and piece with each reversal in both branches that it ends.
+    """Sums by branch and piece, with each reversal in both branches that it ends.
 
-    A reversal is labelled once.
+    A reversal has only one label.
     """
     own = np.arange(2 * block.start, 2 * block.stop).reshape(-1, 2)
     for reversal, place, piece_there in (
@@ -153,9 +153,9 @@ def _add_shared_reversals(
 def _mean_slope(sums: Floats) -> Floats:
     """Mean over the pieces of each branch of the slope of tension on u, shape (2, n_cycles, 2).
 
-    Of lines, and of parabolas where a piece has the readings for them: the slope of a line through
-    readings that lie unevenly in a piece of a curve that bends is not that of its chord, and
-    readings in step with the cycles lie alike in all of them.
+    By lines, and by parabolas where a piece has enough readings: the slope of a line through
+    readings that are uneven in a piece of a curve is not that of its chord, and
+    readings in step with the cycles are equally uneven in all of them.
     """
     n, y, v, vy, vv, vvy, v3, v4 = sums
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -171,7 +171,7 @@ def _mean_slope(sums: Floats) -> Floats:
 
 
 def _mean_over_cycles(residual: Floats) -> tuple[Floats, Floats]:
-    """Mean of each row and its standard error, NaN where fewer than two cycles have one."""
+    """Mean of each row and its standard error, NaN where fewer than two cycles have a value."""
     known = np.isfinite(residual)
     count = known.sum(axis=1)
     filled = np.where(known, residual, 0.0)
@@ -199,10 +199,10 @@ def _is_in_step(first: Integers) -> bool:
 
 
 def _opens(strain: Floats, tension: Floats, cycles: Cycles) -> float:
-    """By how much rises lie above falls at both turns, by the lines through two readings inside.
+    """Height of rises above falls at both turns, by the lines through two readings inside.
 
-    Less than nothing where tension is logged late, more where it falls at a turn; NaN where no
-    turn has readings on both of its sides, as of a load cell that saturates there.
+    Negative where tension is logged late, positive where it falls at a turn; NaN if no turn has
+    readings on both sides, for instance if the load cell saturates there.
 
     Examples
     --------
@@ -254,7 +254,7 @@ def check_identity(
     lag: Sequence[float] = (),
     control: Control = "position",
 ) -> CycleIdentity:
-    r"""Difference of the stroke-mean moduli beside the tension lost, on every cycle.
+    r"""Difference of the stroke-mean moduli compared with the tension lost, for every cycle.
 
     .. math::
 
@@ -271,18 +271,18 @@ def check_identity(
     cycles : Cycles
         Cycles and branches; whole branches are used, ends included. [SI]
     names : tuple of str, length n_specimens, optional
-        What the notes call the specimens; else they are counted from 1.
+        Names of the specimens in notes; by default they are numbered from 1.
     time : array_like, shape (n_samples,), optional
         Seconds since the start; needed where a lag is stated. [s]
     lag : sequence of float, length n_specimens, optional
-        Standard uncertainty of the lag between the two channels; none is stated otherwise. [s]
+        Standard uncertainty of the lag between the two channels; by default none is stated. [s]
     control : {"position", "load"}, optional
-        Which channel the machine drives.
+        Channel that the machine drives.
 
     Returns
     -------
     identity : CycleIdentity
-        Both sides [Pa] and what is left between them over the mean modulus of the two
+        Both sides [Pa] and their residual over the mean modulus of the two
         branches [1]; shape (n_specimens, n_cycles). [SI]
 
     Raises
@@ -293,47 +293,48 @@ def check_identity(
     Notes
     -----
     Derivation: along a branch, :math:`A \int E\,d\varepsilon` is the change of tension.
-    From first to last sample of the cycle the ascending branch adds, the descending one
-    takes away, and what does not come back is lost. ``tension_loss_modulus`` is
+    From first to last sample of the cycle the ascending branch adds tension, the descending one
+    takes it away, and the difference is lost. ``tension_loss_modulus`` is
     positive where tension is lost, so that the sum of both sides is zero: a relaxing
     specimen has the *lower* stroke mean ascending. Of the two descriptions in sec. 4.1
     of [1]_, curves that cross can be true; a modulus "higher with increasing elongation"
     throughout cannot.
 
     *A check, not a tautology.* The left side is a mean of slopes, of lines or of parabolas, over up
-    to four equal pieces of each stroke, the right side is two samples; they share the record and
-    nothing else. It fails where strain and tension are mispaired, a branch is
+    to four equal pieces of each stroke; the right side is two samples.  They share the record and
+    nothing else. The identity fails where strain and tension are mispaired, a branch is
     mislabelled, or tension changes while strain does not.
 
-    *What is left.* Noise of standard deviation :math:`\sigma` gives a residual of about
+    *Residual.* Noise of standard deviation :math:`\sigma` gives a residual of about
     :math:`\sigma B \sqrt{24 / n} / (A \bar E \Delta\varepsilon)` for B pieces and n samples a
     branch: 1 % on tests of 60 lbf range with 0.26 lbf of noise at 48 samples. Within a
     piece of width w a line and the chord differ by :math:`E'' w^2 / 60`, and by more where the
-    readings lie unevenly in it; a parabola and the chord by less, but for a kink. Of both those
-    are taken that leave less of the mean. What tension falls in a dwell at the peak is taken off.
+    readings are uneven in it; a parabola and the chord by less, except at a kink. Of the two, the
+    one with the smaller mean residual is taken. The fall of tension in a dwell at the peak is
+    subtracted.
 
-    *Judged.* The mean over the cycles with its standard error (their scatter; two cycles or
-    more): a note where it is beyond three standard errors and 0.5 %, of B pieces
-    :math:`16 / B^2` times as much.  What relaxes after a turn fills a share of a stroke that goes
-    inversely with the time it lasts, and cancels between strokes that last equally long: the
-    bound goes with the ratio of their readings.  A curve that bends within a piece, as a hose does
-    where its cords pick up and a braid after a turn, leaves more with fewer pieces, and other
-    things by lines and by parabolas: what half as many change, or half the difference, is taken
-    off.  A lag acts at the turn alone, in any piece.  So does a
-    turn between two readings, which cycles out of step with the clock have at all places and those
-    in step at one: of these the branches without the readings at their turns are judged, and a lag
-    of less than a reading cannot be told.  Under a driven load, strain goes on behind a turn of the
-    tension, where slopes over strain have no branch: above zero, as that makes it, the strain that
-    a cycle gains has to differ from the compliances of its branches as well.  Tension logged late
-    makes it negative on a curve that stiffens: by some 0.7 to 1.1 % for a two-hundredth of
-    the period.
+    *Judgement.* The mean over the cycles is compared with its standard error (their scatter; two
+    cycles or more): a note where it exceeds three standard errors and 0.5 %, for B pieces
+    :math:`16 / B^2` times as much.  Relaxation after a turn takes a fraction of a stroke that is
+    inversely proportional to its duration, and cancels between strokes of equal duration: the
+    bound scales with the ratio of their readings.  A curve that bends within a piece, as a hose
+    does where its cords pick up and a braid after a turn, leaves more with fewer pieces, and
+    differs between lines and parabolas: the change with half as many pieces, or half the
+    difference, is subtracted.  A lag acts only at the turn, in any piece.  So does a
+    turn between two readings, which varies in cycles out of step with the clock and is constant in
+    those in step: these are judged without the readings at the turns of the branches, and a lag
+    of less than a reading cannot be detected.  Under a driven load, strain goes on after a turn of
+    the tension, where slopes over strain have no branch.  A positive residual, as this causes,
+    therefore counts only if the strain gained in a cycle also differs from the compliances of its
+    branches.  Tension logged late makes the residual negative on a curve that stiffens: by some
+    0.7 to 1.1 % for a two-hundredth of the period.
 
     NaN for a cycle in which a piece has fewer than 3 samples or samples in less than
     about two thirds of it, or whose first or last sample is missing.
 
     Examples
     --------
-    A cycle of 1000 N per unit strain up and 1100 down loses 100 N on 1 cm2.
+    A cycle of 1000 N per unit strain up and 1100 down loses 100 N on 1 cm2:
 
     >>> import numpy as np
     >>> stroke = np.linspace(1.0, 2.0, 201)
@@ -370,7 +371,7 @@ def check_identity(
         change, stroke = _tension_change(over[row], load, cycles=of, n_pieces=pieces)
         per_stroke = 1 / (areas[row] * np.abs(stroke).mean(axis=1))
         lost = take_samples(load, of.first) - take_samples(load, of.last)
-        # what relaxes while the machine rests at its peak is on no branch
+        # relaxation while the machine rests at its peak is on no branch
         peak, leaves = of.branch_last[:, 0], of.branch_first[:, 1]
         at_rest = take_samples(load, peak) - take_samples(load, leaves)
         lost = lost - np.where(leaves > peak + 1, at_rest, 0.0)
@@ -384,11 +385,11 @@ def check_identity(
         return _mean_over_cycles((sides[0] + sides[1]) / sides[2])
 
     def change_by(row: int, sides: Floats) -> float:
-        """What other sides than those of the row change its mean residual by. [1]."""
+        """Change of the mean residual when other sides than those of the row are used. [1]."""
         return float(np.nan_to_num(abs(mean_of(sides)[0][way[row]] - mean[row])))
 
     def of_lag(row: int) -> float:
-        """What twice the stated lag would add to the mean residual. [1]."""
+        """Change of the mean residual by twice the stated lag. [1]."""
         if time is None or not any(lag):
             return 0.0
         since = np.asarray(time, dtype=np.float64)
@@ -396,9 +397,9 @@ def check_identity(
         return change_by(row, sides_of(row, late))
 
     def of_bend(row: int) -> float:
-        """What half as many pieces would change, or half of the other way. [1].
+        """Change by half as many pieces, or half the difference between lines and parabolas. [1].
 
-        Of the bend of the curve lines and parabolas in the pieces leave no more.
+        The error of lines and parabolas from curvature within the pieces is not larger.
         """
         if n_pieces < _MOST_PIECES:
             return other_way[row] / 2
@@ -406,14 +407,14 @@ def check_identity(
         return max(other_way[row] / 2, by_pieces)
 
     def without_turns(row: int) -> float:
-        """Mean residual without the readings at the turns, where all of them lie alike. [1]."""
+        """Mean residual without the readings at the turns, if all cycles are in step. [1]."""
         if not _is_in_step(cycles.first) or _opens(strains[row], tensions[row], cycles) < 0:
             return np.nan
         inside, _ = mean_of(sides_of(row, tensions[row], of=_inside_turns(cycles)))
         return float(inside[way[row]])
 
     def of_strain(row: int) -> float:
-        """Mean residual of the strain that cycles gain, less of lines and of parabolas. [1]."""
+        """Mean residual of the strain gained in cycles, the lesser of lines and parabolas. [1]."""
         by_both, _ = mean_of(sides_of(row, strains[row], over=tensions))
         return float(np.abs(by_both).min())
 
@@ -423,7 +424,7 @@ def check_identity(
         for row in range(areas.size):
             sides = sides_of(row, tensions[row])
             both, _ = mean_of(sides)
-            # what is wrong with a record shows in both, where readings lie in one of them
+            # a fault of a record shows in both, an uneven sampling in one of them
             way[row] = int(abs(both[1]) < abs(both[0]))
             other_way[row] = float(np.nan_to_num(abs(both[1] - both[0])))
             difference[row], loss[row], modulus[row] = sides[:, way[row]]
@@ -433,11 +434,11 @@ def check_identity(
     for row, (name, one, spread) in enumerate(zip(names, mean, error, strict=True)):
         least = max(_SIGNIFICANT * spread, worth_a_note)
         if abs(one) > least and abs(one) > (most := least + of_bend(row)):
-            # what creeps goes on behind a turn of the load; a late load is on the other side
+            # creep continues after a turn of the load; a late load has the other sign
             if control == "load" and 0 < one and of_strain(row) <= most:
                 continue
             explained = of_lag(row)
-            # intervals hold the stated lag already, and what it leaves is not worth a warning
+            # intervals include the stated lag already; its residual is not worth a warning
             is_of_lag = explained > 0 and abs(one) <= explained + least
             is_of_turns = not is_of_lag and np.sign(one) * without_turns(row) <= most
             found = note(
@@ -468,9 +469,9 @@ _MOST_READ = 1 << 18  # samples of the mean branch
 
 
 def _reference_branch(position: Floats, tension: Floats) -> tuple[Floats, Floats, Floats]:
-    """Mean branch on a grid of position: position, tension, slope; bins without samples left out.
+    """Mean branch on a grid of position: position, tension, slope; without empty bins.
 
-    The grid leaves out the two outer fiftieths of the stroke, where the turn is.
+    The grid leaves out the outer fiftieth of the stroke at each end, where the turn is.
     """
     low, high = np.quantile(position, [0.02, 0.98])
     index = np.clip(((position - low) / (high - low) * N_BINS).astype(np.intp), 0, N_BINS - 1)
@@ -479,7 +480,7 @@ def _reference_branch(position: Floats, tension: Floats) -> tuple[Floats, Floats
     sums = np.stack(
         [count, np.bincount(index, position, N_BINS), np.bincount(index, tension, N_BINS)]
     )[:, filled]
-    # Cycles in step with the clock repeat a few positions; one that lies on an edge would
+    # Cycles in step with the clock repeat a few positions; one that is on an edge would
     # fall into both bins beside it, and the slope between those is noise.
     apart = np.diff(sums[1] / sums[0], prepend=-np.inf) > (high - low) / N_BINS / 4
     count, position, tension = np.add.reduceat(sums, np.flatnonzero(apart), axis=1)
@@ -495,7 +496,7 @@ def cycle_tension_level(
     branch: Integers,
     n_cycles: int,
 ) -> tuple[Floats, Floats]:
-    r"""Tension level of each cycle: the whole loop against the mean loop, as one number.
+    r"""Tension level of each cycle: the whole loop compared with the mean loop, as one number.
 
     .. math:: \Delta T_c = g_{top} \sum_{i \in c} g_i (T_i - \bar T(x_i)) / \sum_{i \in c} g_i^2
 
@@ -530,14 +531,14 @@ def cycle_tension_level(
 
     Notes
     -----
-    About 64 samples a cycle are used, evenly picked, whatever the rate, and of those some
-    hundred thousand for the mean branch.  On a generated
+    About 64 samples a cycle are used, evenly picked, whatever the rate, and some
+    hundred thousand of those for the mean branch.  On a generated
     log of 20 samples a cycle the level has a third of the noise of the peak (0.09 against
     0.26 lbf), and it does not beat with the phase of the samples.
 
     Examples
     --------
-    A specimen of 10 N/m that has let out 0.1 m after the second cycle.
+    A specimen of 10 N/m that has let out 0.1 m after the second cycle:
 
     >>> x = np.tile([1.0, 2, 3, 4, 5, 6, 5, 4, 3, 2], 4)
     >>> cycle = np.repeat([1, 2, 3, 4], 10)
@@ -590,7 +591,7 @@ def cycle_tension_level(
                     continue
                 x, y, cycle = position[keep], load[keep], number[keep] - 1
                 g = np.interp(x, grid, gradient)
-                # Beyond the grid the branch is the straight line of its end.
+                # Beyond the grid the branch is extended by the straight line of its end.
                 over = x - np.clip(x, grid[0], grid[-1])
                 shift = y - np.interp(x, grid, mean) - g * over
                 low = int(cycle.min())

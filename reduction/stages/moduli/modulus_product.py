@@ -1,7 +1,7 @@
 """What the modulus stage returns.
 
-Tension stands beside every modulus: a modulus alone leaves tension unknown by a
-constant.  Axis order is (specimen, ..., branch, bin); branch 0 ascends, 1 descends.
+Tension stands beside every modulus, because a modulus alone leaves tension unknown by a
+constant.  Axis order is (specimen, ..., branch, bin); branch 0 ascends, branch 1 descends.
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ class ModulusCurves:
     Parameters
     ----------
     strain_bin : ndarray, shape (n_bins,)
-        Bin centres, one grid for the specimens of the test. [1]
+        Bin centres, one grid for all specimens of the test. [1]
     strain_bin_bounds : ndarray, shape (n_bins, 2)
         Edges. [1]
     window : float
         Width of the widest regression window. [1]
     tangent_modulus, tangent_modulus_standard_uncertainty : ndarray, shape (n_specimens, 2, n_bins)
-        Mean over the cycles, trimmed branches; NaN where not supported. [Pa]
+        Mean over the cycles, trimmed branches; NaN where there is no support. [Pa]
     tangent_modulus_count : ndarray of int, same shape
         Cycles in the mean. [1]
     tangent_modulus_minimum, tangent_modulus_maximum : ndarray, same shape
@@ -36,22 +36,23 @@ class ModulusCurves:
     tangent_modulus_scatter : ndarray, same shape
         Standard deviation over the cycles. [Pa]
     tangent_modulus_untrimmed, tangent_modulus_untrimmed_standard_uncertainty : ndarray, same shape
-        The same with the ends. [Pa]
+        The same with the branch ends included. [Pa]
     branch_tension, branch_tension_standard_uncertainty : ndarray, same shape
-        Mean tension of the branch at the bin centre. [N]
+        Mean tension of the branch at each bin centre. [N]
     branch_tension_count : ndarray of int, same shape, or None
-        Cycles in the means with the ends; None of a single rise. [1]
+        Cycles in the means with the ends; None for a single rise. [1]
     selected_cycle : ndarray of int, shape (n_selected,)
         Numbers of the cycles whose curves are kept.
     tangent_modulus_by_cycle, tangent_modulus_by_cycle_standard_uncertainty : ndarray
         Shape (n_specimens, n_selected, 2, n_bins). [Pa]
     alignment_strain : ndarray, shape (n_specimens,), or None
-        Mean strain that the cycles were laid on before the mean was taken; NaN of a specimen
-        whose cycles are as they lie, None of a single rise. [1]
+        Mean strain to which the cycles were aligned before averaging; NaN for a specimen
+        whose cycles were not moved, None for a single rise. [1]
     made : tuple of str
-        How they were made, with numbers that stand nowhere else: lines of the history.
+        How they were made, with numbers given nowhere else: lines of the history.
     tangent_modulus_window_uncertainty : ndarray, shape (n_specimens, 2, n_bins), or None
-        Standard uncertainty of the modulus by what the window blurs; None of a single rise. [Pa]
+        Standard uncertainty of the modulus from blurring by the window; None for a single rise.
+        [Pa]
     """
 
     strain_bin: Floats
@@ -83,8 +84,8 @@ class Segments:
     """Piecewise-linear moduli, the form of Tables 5 and 6 of WHOI-2005-10.
 
     Every array has shape (n_specimens, 2, n_segments), NaN where a branch has
-    fewer segments.  Tensions at both ends are those of the mean branch, the modulus is its chord.
-    ``segment_misfit`` is the rms distance of the branch from the chord [N],
+    fewer segments.  Tensions at both ends are those of the mean branch, and the modulus is its
+    chord.  ``segment_misfit`` is the rms distance of the branch from the chord [N];
     ``criterion`` says how the number of segments was chosen.
     """
 
@@ -106,7 +107,7 @@ class EndModuli:
     """Moduli from the ends of the branches, each with its standard uncertainty (noise). [Pa].
 
     ``secant_modulus`` is stress over strain at the peak of a cycle, shape (n_specimens,
-    n_cycles); ``chord_modulus`` the slope from end to end of a branch, shape
+    n_cycles); ``chord_modulus`` is the slope from end to end of a branch, shape
     (n_specimens, n_cycles, 2).
     """
 
@@ -119,13 +120,13 @@ class EndModuli:
 @dataclass(frozen=True)
 @read_only_arrays
 class CycleIdentity:
-    """Closed-cycle identity, checked on every cycle; arrays (n_specimens, n_cycles).
+    """Closed-cycle identity, checked on every cycle; arrays have shape (n_specimens, n_cycles).
 
     ``mean_identity_residual`` is the mean over the cycles, shape (n_specimens,), with its
-    standard error from their scatter; ``notes`` say where it is more than noise.
+    standard error from their scatter; ``notes`` say where it exceeds noise.
 
-    Stroke-mean modulus ascending minus descending is minus the tension lost over
-    the cycle, over area and strain stroke: what is lost was given back on the way down
+    Stroke-mean modulus ascending minus descending equals minus the tension lost over
+    the cycle, divided by area and strain stroke: what is lost was given back on the way down
     and not taken up again.
     """
 
@@ -142,7 +143,7 @@ class CycleIdentity:
 class AmplitudeSummary:
     """Dynamic quantities of a test at its frequency, means and amplitudes.
 
-    One value a specimen, shape (n_specimens,), mean over the cycles after break-in,
+    One value per specimen, shape (n_specimens,): the mean over the cycles after break-in,
     each with its standard uncertainty in ``uncertainty``.
     """
 
@@ -188,7 +189,7 @@ class PeakTrend:
 @dataclass(frozen=True)
 @read_only_arrays
 class Slips:
-    """Steps of peak tension that steady creep does not explain, one row a step.
+    """Steps of peak tension that steady creep does not explain, one row per step.
 
     Parameters
     ----------
@@ -203,7 +204,7 @@ class Slips:
     slip_length, slip_length_standard_uncertainty : ndarray, shape (n_slips,)
         Splice length let out, from the step and the slope of tension on position. [m]
     creep_per_cycle : ndarray, shape (n_specimens,)
-        Steady drift of peak tension in the last half of the test, steps taken out. [N]
+        Steady drift of peak tension in the last half of the test, with steps removed. [N]
     made : tuple of str
         Why slips were not looked for: a line of the history.
     """
@@ -224,10 +225,10 @@ class Slips:
 @dataclass(frozen=True)
 @read_only_arrays
 class Ratio:
-    """Ratio of two specimens' (or two tests') modulus on one strain axis.
+    """Ratio of the moduli of two specimens (or two tests) on one strain axis.
 
-    Arrays have shape (2, n_bins); the interval holds 95 %, by the ``degrees_of_freedom`` of the
-    standard uncertainty.
+    Arrays have shape (2, n_bins); the interval has 95 % coverage, from the ``degrees_of_freedom``
+    of the standard uncertainty.
     """
 
     numerator: str

@@ -1,8 +1,8 @@
 r"""Secant, chord and dynamic moduli, ratios of curves, trends over cycles.
 
-**Dynamic modulus, loss factor and energy of a test as one number each, with its amplitude.** Three
-readings of the slope of a loop, and how far apart they lie.  A loop of loss angle :math:`\delta`
-has, by "the line drawn between the ends of the loop",
+**Dynamic modulus, loss factor and energy of a test as one number each, with its amplitude.** The
+slope of a loop has three readings that differ.  For a loop of loss angle :math:`\delta`,
+"the line drawn between the ends of the loop" has the slope
 
 .. math::
 
@@ -183,7 +183,7 @@ def end_moduli(
 
     Examples
     --------
-    From 100 % and 1000 N to 200 % and 2500 N and back to 1100 N, on 1 cm2.
+    From 100 % and 1000 N to 200 % and 2500 N and back to 1100 N, on 1 cm2:
 
     >>> strain = np.array([[1.0, 1.5, 2.0, 1.5, 1.0]])
     >>> tension = np.array([[1000.0, 1700.0, 2500.0, 1800.0, 1100.0]])
@@ -240,7 +240,7 @@ _FEWEST_TO_SETTLE = 4  # cycles, of which the last half is a mean
 
 
 def late_change(values: Floats) -> float:
-    """Mean over the last half of the cycles less that over all; NaN of fewer than four.
+    """Mean over the last half of the cycles minus that over all; NaN for fewer than four.
 
     Parameters
     ----------
@@ -271,11 +271,11 @@ def _mean_frequency(loops: Loops, break_in_cycles: int) -> tuple[Floats, Floats]
 
     Notes
     -----
-    Cycles touch, so that the first turn and the last alone are uncertain, by what scatters between
-    the durations or, where it is more, by what each cycle carries.  While the loss angle changes by
-    its rate, the channel that follows has another frequency than the one that the machine drives;
-    between the two the frequency of a test is not defined, and what of the rate is beyond its own
-    uncertainty counts as limits.
+    Cycles touch, so that only the first and the last turn are uncertain: by the scatter of
+    the durations or, where it is larger, by the uncertainty of each cycle.  While the loss angle
+    changes, the driven channel and the other one differ in frequency; between the two the frequency
+    of a test is not defined, and the excess of that rate over its own uncertainty counts as limits
+    of a uniform distribution.
     """
     frequency = loops.frequency[:, break_in_cycles:]
     angle = np.arctan2(
@@ -293,7 +293,7 @@ def _mean_frequency(loops: Loops, break_in_cycles: int) -> tuple[Floats, Floats]
             loops.tension_amplitude[row, break_in_cycles:],
         )
         known = steady if 2 * steady.sum() > known.sum() else known
-        # a cycle that waits, as before the machine starts, is no measure of the others
+        # a cycle that includes a wait, as before the machine starts, is not typical of the others
         n = int(known.sum())
         if n:
             middle = np.median(frequency[row, known])
@@ -305,7 +305,7 @@ def _mean_frequency(loops: Loops, break_in_cycles: int) -> tuple[Floats, Floats]
             n = int(known.sum())
         if not n:
             continue
-        # the last of a row may have no end of its own, and add twice what its beginning is off by
+        # the last one of a row may have no end of its own, and double the error of its beginning
         of_turn = own[row] / frequency[row] ** 2
         while n > 2 and of_turn[known][-1] > _IMPRECISE * np.median(of_turn[known]):
             known[np.flatnonzero(known)[-1]] = False
@@ -315,7 +315,7 @@ def _mean_frequency(loops: Loops, break_in_cycles: int) -> tuple[Floats, Floats]
         jitter = np.sqrt(np.mean(np.diff(period) ** 2) / 3) if n > 1 else 0.0
         ends = float(np.hypot(*own[row, known][[0, -1]])) / np.sqrt(2)
         of_turns = max(ends, mean[row] ** 2 * float(jitter)) / max(n - 1, 1)
-        # cycles that gaps part have ends of their own, which the sampling may miss alike
+        # cycles separated by gaps have ends of their own, whose sampling errors may be equal
         n_rows = 1 + np.sum(np.diff(time[row, known]) > _APART * period[:-1])
         of_turns = max(of_turns, ends * n_rows / n) if n_rows > 1 else of_turns
         rate, of_rate = _line_over(time[row, known], angle[row, known])
@@ -325,7 +325,7 @@ def _mean_frequency(loops: Loops, break_in_cycles: int) -> tuple[Floats, Floats]
 
 
 def _line_over(time: Floats, values: Floats) -> tuple[float, float]:
-    """Slope of a series over time and its standard uncertainty; zero where no line is known."""
+    """Slope of a series over time and its standard uncertainty; zero if no line can be fitted."""
     known = np.isfinite(time) & np.isfinite(values)
     if known.sum() < _FEWEST_OF_LINE or not np.ptp(time[known]) > 0:
         return 0.0, 0.0
@@ -353,7 +353,7 @@ def summarise_amplitude(
     break_in_cycles: int = 0,
     turns_alike: Floats | float = 0.0,
 ) -> AmplitudeSummary:
-    r"""Mean over the cycles of what depends on mean strain and amplitude.
+    r"""Mean over the cycles of quantities that depend on mean strain and amplitude.
 
     .. math:: E_{dyn} = K_{ap} / A
 
@@ -362,11 +362,11 @@ def summarise_amplitude(
     loops : Loops
         One row a cycle and specimen. [SI]
     area : array_like, shape (n_specimens,)
-        Cross-sectional area at zero tension; NaN for a rope that has none stated. [m2]
+        Cross-sectional area at zero tension; NaN for a rope without a stated area. [m2]
     break_in_cycles : int
         First cycles that are left out. [1]
     turns_alike : ndarray, shape (n_specimens,), optional
-        Correlation of what tension and strain miss of a turn between two samples. [1]
+        Correlation of the errors of tension and strain from a turn between two samples. [1]
 
     Returns
     -------
@@ -382,23 +382,23 @@ def summarise_amplitude(
     Notes
     -----
     Filled rubber is the softer the larger the amplitude ([2]_), so a dynamic modulus
-    without its strain amplitude says little: T-1 and T-2, and T-3 and T-4, of [1]_ are
-    pairs of one mean and two amplitudes.
+    without its strain amplitude is of little use: T-1 and T-2, and T-3 and T-4, of [1]_ are
+    pairs with one mean and two amplitudes.
 
-    ``slope_reading_spread`` is how far the other two readings of "slope of the loop" lie
-    apart, over K_ap (`reduction.stages.cycles.loops`).
+    ``slope_reading_spread`` is the distance between the other two readings of "slope of the loop",
+    over K_ap (`reduction.stages.cycles.loops`).
 
-    Uncertainty is type A: scatter over the cycles over the root of their number; of a
-    single cycle, its own. It is that of the mean of these cycles: a trend over them is no scatter
-    (`reduction.stages.moduli.local_regression.variance_of_a_cycle`), and `late_change` tells how
-    far the mean is from the later ones. Cycles with NaN are left out.  Beside it stands
-    what all cycles have alike: a turn missed between two samples in means, amplitudes, K_ap, K',
-    loss and loss factor, the place of the drift within its cycle in energy and loss, and in the
-    frequency what the driven channel and the other one differ by.
+    Uncertainty is type A: scatter over the cycles over the root of their number; for a
+    single cycle, its own. It is the uncertainty of the mean of these cycles: a trend is not scatter
+    (`reduction.stages.moduli.local_regression.variance_of_a_cycle`), and `late_change` is the
+    distance of the mean from the later cycles. Cycles with NaN are left out.  Errors
+    common to all cycles are added: a turn missed between two samples in means, amplitudes, K_ap,
+    K', loss and loss factor, the place of the drift within its cycle in energy and loss, and in the
+    frequency the difference between the driven channel and the other one.
 
     Examples
     --------
-    Two cycles of 100 N and 110 N per unit strain on 1 cm2.
+    Two cycles of 100 N and 110 N per unit strain on 1 cm2:
 
     >>> import numpy as np
     >>> one = np.ones((1, 2))
@@ -440,7 +440,7 @@ def summarise_amplitude(
     alike = loops.shared_by_cycles(slice(break_in_cycles, None), turns_alike=turns_alike)
     for name, shared in alike.items():
         uncertainty[name] = np.hypot(uncertainty[name], shared)
-    # of a loss angle that noise turns negative there is no ellipse to read slopes from
+    # noise may turn a loss angle negative: then there is no ellipse to read slopes from
     tangent = np.where(means["loss_factor"] >= 0, means["loss_factor"], np.nan)
     means["slope_reading_spread"] = slope_readings(
         means["apparent_spring_constant"], tangent
@@ -455,7 +455,7 @@ def summarise_amplitude(
 _CONFIDENCE = 0.95
 
 _MANY = 1e9
-"""Degrees of freedom of hundreds of samples."""
+"""Degrees of freedom for hundreds of samples."""
 
 
 @dataclass(frozen=True)
@@ -473,7 +473,7 @@ def _ratio(strain: Floats, above: _Side, below: _Side) -> Ratio:
         ratio = above.modulus / below.modulus
         relative = [(side.uncertainty / side.modulus) ** 2 for side in (above, below)]
         total = relative[0] + relative[1]
-        # Welch-Satterthwaite, [2]_ eq. G.2b
+        # Welch-Satterthwaite, [3]_ eq. G.2b
         freedom = total**2 / (relative[0] ** 2 / above.freedom + relative[1] ** 2 / below.freedom)
         uncertainty = np.abs(ratio) * np.sqrt(total)
         reach = uncertainty * stdtrit(np.where(total > 0, freedom, 1), (1 + _CONFIDENCE) / 2)
@@ -500,7 +500,7 @@ def _spacing(curves: ModulusCurves) -> float:
 def _side(curves: ModulusCurves, specimen: int, name: str, strain: Floats) -> _Side:
     """Mean curve of one specimen at the strains of the axis."""
     cycles = curves.tangent_modulus_count[specimen]
-    # of one cycle the uncertainty is that of a regression on its samples
+    # for one cycle the uncertainty is that of a regression on its samples
     count = np.where(cycles > 1, cycles - 1.0, _MANY)
     series = (
         curves.tangent_modulus[specimen],
@@ -529,17 +529,17 @@ def compare_curves(
     Parameters
     ----------
     numerator : ModulusCurves
-        Of one test. [SI]
+        Curves of one test. [SI]
     denominator : ModulusCurves
-        Of another, or the same again where one test holds both specimens. [SI]
+        Curves of another test, or the same if one test holds both specimens. [SI]
     numerator_specimen : int
         Place of the specimen in the numerator. [1]
     denominator_specimen : int
         Place of the specimen in the denominator. [1]
     numerator_name : str
-        What the numerator is called.
+        Name of the numerator.
     denominator_name : str
-        What the denominator is called.
+        Name of the denominator.
 
     Returns
     -------
@@ -549,21 +549,21 @@ def compare_curves(
     Raises
     ------
     DataError
-        If a curve does not have a value a bin.
+        If a curve does not have one value per bin.
 
     Notes
     -----
     Printed source: sec. 4.6 of [1]_ compares new and used tethers at equal strain.
 
-    The interval is :math:`r \pm t_{95}(\nu)\,u(r)` with u from the type A uncertainty
+    The interval is :math:`r \pm t_{95}(\nu)\,u(r)` with u from the type A uncertainties
     of both, taken as independent, and :math:`\nu` after Welch and Satterthwaite ([3]_).
-    It is that of one strain: of a hundred bins of equal curves five stand out. Where one
-    of the two has no modulus the ratio is NaN and ``is_different`` False; a note says
-    where that is so at every strain.
+    It applies to a single strain: of a hundred bins of equal curves five are outside. Where one
+    of the two has no modulus, the ratio is NaN and ``is_different`` False; a note says
+    if that is so at every strain.
 
     Examples
     --------
-    Ten cycles each; 11 and 10 MPa, both known to 1 %.
+    Ten cycles each; 11 and 10 MPa, both known to 1 %:
 
     >>> import numpy as np
     >>> modulus = np.array([11e6, 10e6])[:, None, None] * np.ones((2, 2, 3))
@@ -619,12 +619,12 @@ def compare_cycles(
 
     Notes
     -----
-    Printed source: sec. 4.7 of [1]_ sets the last cycles of the extended test beside the
+    Printed source: sec. 4.7 of [1]_ compares the last cycles of the extended test with the
     first. The uncertainty of each mean is that of the regressions of its cycles (type A).
 
     Examples
     --------
-    A modulus that halves from cycle 1 to cycle 3.
+    A modulus that halves from cycle 1 to cycle 3:
 
     >>> import numpy as np
     >>> by_cycle = np.array([2.0, 1.5, 1.0])[None, :, None, None] * np.ones((1, 3, 2, 1))
@@ -661,7 +661,7 @@ FEWEST_CYCLES = 3
 
 
 def _trend_of(values: Floats, start: int, *, cycles: Cycles | None) -> tuple[Floats, Floats]:
-    """Slope per decade from a cycle on, with what the cycles in gaps of the log may make of it."""
+    """Slope per decade from a cycle on, with the uncertainty from cycles in gaps of the log."""
     logged = np.arange(start + 1, values.shape[1] + 1)
     number = logged if cycles is None else cycles.number[start:]
     slope, uncertainty = slope_per_decade(values[:, start:], number=number)
@@ -678,9 +678,9 @@ def slope_per_decade(
 
     Notes
     -----
-    Every cycle counts alike in the logarithm: a cycle is weighted by the inverse of its
+    All cycles have equal weight in the logarithm: each is weighted by the inverse of its
     number, so that the last decade of a long test, which holds nine tenths of the cycles,
-    does not decide alone.
+    does not dominate.
 
     Examples
     --------
@@ -706,7 +706,7 @@ def slope_per_decade(
         power = (share * x * x).sum()
         slope[row] = (share * x * y).sum() / power
         residual = y - slope[row] * x
-        # Sandwich form: weights even out the decades, they do not claim different noise.
+        # Sandwich form: the weights even out the decades and do not imply different noise.
         freedom = y.size - 2
         variance = (residual**2).sum() / freedom * ((share * x) ** 2).sum() / power**2
         uncertainty[row] = np.sqrt(variance * lag_one_inflation(residual))
@@ -714,7 +714,7 @@ def slope_per_decade(
 
 
 def cycles_at_an_end(n_cycles: int) -> int:
-    """Return how many cycles at each end of a test are compared: a tenth, from one to ten.
+    """Return the number of cycles compared at each end of a test: a tenth, from one to ten.
 
     Examples
     --------
@@ -724,13 +724,13 @@ def cycles_at_an_end(n_cycles: int) -> int:
     return min(max(n_cycles // 10, 1), 10)
 
 
-_LATER = 10  # cycles, after which the slope of creep is taken again, to see whether it is one
+_LATER = 10  # cycles after which the slope of creep is fitted again, to test its linearity
 
 _SETTLING = 2  # first cycles, in which a specimen still follows the ramp to its mean load
 
 
 def first_of_trend(n_cycles: int, break_in_cycles: int, *, is_creep: bool = False) -> int:
-    """Return how many first cycles a slope per decade leaves out; creep those that settle too.
+    """Return the number of first cycles left out of a slope per decade; creep also settles.
 
     Examples
     --------
@@ -742,18 +742,18 @@ def first_of_trend(n_cycles: int, break_in_cycles: int, *, is_creep: bool = Fals
 
 
 def _means_at_ends(values: ArrayLike) -> tuple[Floats, Floats, Floats]:
-    r"""Mean of the first tenth of the cycles, of the last, and the scatter of such a mean.
+    r"""Means of the first and of the last tenth of the cycles, and the scatter of such a mean.
 
     Notes
     -----
     .. math:: s^2 = \overline{(y_{i+1} - y_i)^2} / 2
 
-    is the variance of a cycle that a slow trend does not enter [5]_; a fast one at the start of a
-    test does, and the uncertainty is then too large rather than too small.
+    is the variance of a cycle, which a slow trend does not affect [5]_; a fast one at the start of
+    a test does, and the uncertainty is then too large rather than too small.
 
     Examples
     --------
-    Ten cycles whose neighbours differ by 1 N; a mean is of one cycle:
+    Ten cycles whose neighbours differ by 1 N; each mean is of one cycle:
 
     >>> parts = _means_at_ends([[100, 98, 97, 96, 96, 95, 96, 95, 96, 95]])
     >>> print(*(part.round(2) for part in parts))
@@ -770,7 +770,7 @@ def _means_at_ends(values: ArrayLike) -> tuple[Floats, Floats, Floats]:
 
 
 def _change_of_ends(values: ArrayLike) -> tuple[Floats, Floats]:
-    """Mean of the last tenth of the cycles over that of the first, minus one.
+    """Relative change of the mean of the last tenth of the cycles from that of the first.
 
     Examples
     --------
@@ -799,14 +799,13 @@ def fit_peak_trend(
     break_in_cycles : int, optional
         Cycles left out of the slopes at the start. [1]
     cycles : Cycles, optional
-        With their numbers, where the log lacks some; left out: 1, 2, 3, ...
+        With their numbers, where the log lacks some; by default 1, 2, 3, ...
 
     Returns
     -------
     trend : PeakTrend
-        Slopes per decade of cycles with standard uncertainties (type A), peak of the last
-        cycles over the first, minus one, and their mean strain less that of the first. [N], [Pa],
-        [1]
+        Slopes per decade of cycles with standard uncertainties (type A), relative change of the
+        peak from the first to the last cycles, and change of the mean strain. [N], [Pa], [1]
 
     Raises
     ------
@@ -816,13 +815,13 @@ def fit_peak_trend(
     Notes
     -----
     Source: [1]_, sec. 4.1 ("the maximum peak can be seen to still decreasing with time");
-    the straight line in the logarithm is [4]_.  The dynamic modulus is the apparent spring
-    constant over the area.  The changes from the first to the last cycles are of a tenth of
-    them each, and count from the first cycle whatever the break-in.  The slope of the mean
+    the straight line in the logarithm is from [4]_.  The dynamic modulus is the apparent spring
+    constant over the area.  The changes from the first to the last cycles are those of a tenth of
+    the cycles each, counted from the first cycle whatever the break-in.  The slope of the mean
     strain is the creep of a rope in load control.  It begins with the third cycle: in the first
     two a specimen still follows the ramp to its mean load, and with the weights of
-    `slope_per_decade` they would be most of it.  Creep need not be a line in the logarithm: half
-    of what the slope from the eleventh cycle on differs is in its uncertainty.
+    `slope_per_decade` they would dominate it.  Creep need not be a line in the logarithm: half
+    of the difference from the slope from the eleventh cycle on is in its uncertainty.
 
     Examples
     --------
@@ -869,7 +868,7 @@ def fit_peak_trend(
 @dataclass(frozen=True)
 @read_only_arrays
 class _SlopeReadings:
-    """Slope of each loop by three readings; every array has the shape of the loops."""
+    """Slope of each loop by three readings; each array has the shape of the loops."""
 
     amplitude_ratio: Floats
     between_strain_extremes: Floats
@@ -886,9 +885,9 @@ def slope_readings(apparent_spring_constant: ArrayLike, loss_factor: ArrayLike) 
     Parameters
     ----------
     apparent_spring_constant : array_like, shape (...)
-        Tension amplitude over strain amplitude, of each loop. [N]
+        Tension amplitude over strain amplitude of each loop. [N]
     loss_factor : array_like, shape (...)
-        Tangent of the loss angle, of each loop. [1]
+        Tangent of the loss angle of each loop. [1]
 
     Returns
     -------
@@ -905,8 +904,8 @@ def slope_readings(apparent_spring_constant: ArrayLike, loss_factor: ArrayLike) 
     [6]_ reads K_ap from "the slope of the line drawn between the ends of the hysteresis
     loop", and eq. 1 there gives the modulus: the amplitude ratio, which is used here.  The
     others differ from it by 0.4 to 2.7 % at the loss angles of [6]_, 5.1 to 13.1 degrees.  A
-    loop with pointed ends has its extremes of strain and tension at one point and all three
-    readings are one: there the spread is that of the ellipse with the same loss angle.
+    loop with pointed ends has its extremes of strain and tension at one point, and all three
+    readings agree; there the spread is that of the ellipse with the same loss angle.
     NaN in, NaN out.
 
     Examples

@@ -25,15 +25,15 @@ from reduction.stages.moduli.modulus_product import ModulusCurves, Segments
 
 _SHORTEST_POINTS = 3  # of a segment: two make any slope
 
-_SHORTEST_SHARE = 10  # a segment is at least a tenth of the points
+_SHORTEST_SHARE = 10  # a segment has at least a tenth of the points
 
-_MOST_CANDIDATES = 48  # of breakpoints; all their combinations are tried
+_MOST_CANDIDATES = 48  # for breakpoints; all their combinations are tried
 
 
 @dataclass(frozen=True)
 @read_only_arrays
 class _PiecewiseLine:
-    """Best continuous line of a number of segments."""
+    """Best continuous line for a number of segments."""
 
     knot: Floats
     ordinate: Floats
@@ -78,7 +78,7 @@ class _Pairs:
 
 @dataclass(frozen=True)
 class _Paths:
-    """Lines up to a last knot; each is a parabola in the ordinate there, of what it explains."""
+    """Lines up to a last knot, each with a parabola in its ordinate for the squares explained."""
 
     last: Integers
     parent: Integers
@@ -87,7 +87,7 @@ class _Paths:
     explained: Floats
 
     def step(self, pairs: _Pairs, path: Integers, knot: Integers) -> _Paths:
-        """Add a segment to each named path; the ordinate it leaves takes its best value."""
+        """Add a segment to each path, with the ordinate at the preceding knot optimised."""
         i, j = self.last[path], knot
         pivot = self.curvature[path] + pairs.left[i, j]
         load = self.load[path] + pairs.left_load[i, j]
@@ -101,12 +101,12 @@ class _Paths:
         )
 
     def total(self) -> Floats:
-        """Weighted squares that each line explains, its last ordinate at its best."""
+        """Weighted squares explained by each line, with its last ordinate optimised."""
         return self.explained + self.load**2 / self.curvature
 
 
 def _search(pairs: _Pairs, maximum_segments: int) -> list[Integers]:
-    """Best knots of each number of segments, every combination tried."""
+    """Best knots for each number of segments, by trying every combination."""
     end = pairs.left.shape[0] - 1
     start = np.zeros(1, dtype=np.int64)
     levels = [_Paths(start, start, np.zeros(1), np.zeros(1), np.zeros(1))]
@@ -151,18 +151,18 @@ def _fit_piecewise_lines(
     Notes
     -----
     The segments of Tables 5 and 6 of [1]_ meet in tension and strain, so the line is
-    continuous. Continuity ties neighbouring segments, so that the recursion of [2]_
-    over independent segments does not hold; here each path to a breakpoint carries the
+    continuous. Continuity couples neighbouring segments, so that the recursion of [2]_
+    over independent segments does not hold.  Here each path to a breakpoint carries the
     parabola of its residual in the ordinate there, and every combination of breakpoints
     is tried: the answer is the best one on the candidates.
 
     Breakpoints lie half-way between neighbouring points, at most 48 of them, evenly
-    spaced in count; a segment holds at least 3 points and a tenth of all. The covariance
+    spaced in count; a segment has at least 3 points and a tenth of all. The covariance
     does not include the freedom of the breakpoints.
 
     Examples
     --------
-    Two lines that meet at 1.25 come back.
+    Two lines that meet at 1.25 are reproduced:
 
     >>> import numpy as np
     >>> x = np.arange(0.0, 2.0, 0.1) + 0.05
@@ -188,13 +188,13 @@ def _fit_piecewise_lines(
     middles = (x[1:] + x[:-1]) / 2
     stride = -(-middles.size // _MOST_CANDIDATES)
     knots = np.concatenate([x[:1], middles[stride - 1 : -1 : stride], x[-1:]])
-    # about the middle, so that the sums keep their digits
+    # about the middle, to preserve the digits of the sums
     centre, level, weight = float(x.mean()), float(y.mean()), sigma**-2
     pairs = _Pairs.of(x - centre, y - level, weight, knots - centre)
     return tuple(_solve(x, y, weight, knots[chosen]) for chosen in _search(pairs, maximum_segments))
 
 
-_REACHED = 0.9  # of the cycles: a bin that fewer reach has the mean tension of those few
+_REACHED = 0.9  # of the cycles: a bin reached by fewer has the mean tension of only those
 
 _FEWEST_BINS = 6  # two shortest segments
 
@@ -202,7 +202,7 @@ _FEWEST_CYCLES = 4  # with a curve of their own, for a scatter
 
 
 def _choose(lines: tuple[_PiecewiseLine, ...], n_points: int) -> _PiecewiseLine:
-    """Fewest segments whose rms distance is within the tolerance they were weighted with."""
+    """Fewest segments whose rms distance is within the tolerance used as their weight."""
     for line in lines:
         if line.chi_square <= n_points:
             return line
@@ -226,7 +226,7 @@ def find_segments(curves: ModulusCurves, *, area: ArrayLike, settings: ModulusSe
     Returns
     -------
     segments : Segments
-        Of each specimen and branch, in rising strain. [SI]
+        For each specimen and branch, in order of rising strain. [SI]
 
     Raises
     ------
@@ -236,34 +236,34 @@ def find_segments(curves: ModulusCurves, *, area: ArrayLike, settings: ModulusSe
     Notes
     -----
     Printed source: Tables 5 and 6 of [1]_, where neighbouring segments meet and
-    E is the chord of each; how [1]_ chose their limits it does not say.
+    E is the chord of each; [1]_ does not say how the limits were chosen.
 
-    Breakpoints are those of the best continuous line (`_fit_piecewise_lines`), all bins alike.
-    Tension at them is the branch's own, so that E is the chord of the branch and no line beside
-    it: a line fitted to a bent branch is off it by most where two segments meet.
+    Breakpoints are those of the best continuous line (`_fit_piecewise_lines`), with equal weights
+    of the bins.  Tension at them is that of the branch, so that E is the chord of the branch: a
+    line fitted to a bent branch has its largest error where two segments meet.
     *Number of segments:* the fewest whose root-mean-square distance from
     the mean branch is within ``segment_tolerance`` of the branch's range of tension (1 %),
     and the branch's own roughness from bin to bin (root sum of squares). A smooth curve has no true
-    breakpoints: they say where straight lines stand in for it best.
+    breakpoints: they show where straight lines approximate it best.
 
     Bins that fewer than nine tenths of the cycles reach are left out: at the ends of the
-    grid the mean of a few cycles stands beside the mean of all, and a line would follow
+    grid the mean of a few cycles adjoins the mean of all, and a line would follow
     the step between them.
 
     The uncertainty is type A and of the chord: the scatter from cycle to cycle of
     the mean tangent modulus over the segment, over the root of the cycles.  Where fewer than
     four cycles have a curve of their own it is that of the tangent modulus, root mean square
-    over the segment, over the root of the windows that fit in it.  Added are what one bin at
-    each end may be off by (roughness) and, where segments meet between two bins, what the branch
-    there may have of the corner; at a reversal, what it bends by within the last bin.
-    How far the branch is from the chord stands beside it as ``segment_misfit`` (root mean
-    square): who takes the segment for the curve adds what that means to him.
+    over the segment, over the root of the windows that fit in it.  Added are the possible error of
+    one bin at each end (roughness); where segments meet between two bins, the possible
+    effect of the corner on the branch there; at a reversal, its curvature within the last bin.
+    The distance of the branch from the chord is given as ``segment_misfit`` (root mean
+    square), to be added by users who take the segment for the curve.
 
     NaN for a branch with fewer than six bins.
 
     Examples
     --------
-    Two lines meet at a strain of 1.2: 100 and 300 N per unit strain on 1 cm2.
+    Two lines that meet at a strain of 1.2; 100 and 300 N per unit strain on 1 cm2:
 
     >>> import numpy as np
     >>> x = np.arange(0.0, 2.0, 0.1) + 0.05
@@ -311,7 +311,7 @@ def find_segments(curves: ModulusCurves, *, area: ArrayLike, settings: ModulusSe
 
 
 def _reached(curves: ModulusCurves, at: tuple[int, ...]) -> Bools:
-    """Bins of a branch that nearly all of its cycles reach, shape (n_bins,)."""
+    """Mask of bins of a branch that nearly all of its cycles reach, shape (n_bins,)."""
     count = curves.tangent_modulus_count[at]
     reached: Bools = np.isfinite(curves.branch_tension[at]) & (count >= _REACHED * count.max())
     return reached
@@ -323,8 +323,8 @@ def _segment_columns(
     """Modulus, its uncertainty, strains, tensions, misfit, their uncertainty: (9, n_segments)."""
     used = _reached(curves, at)
     strain, tension = curves.strain_bin[used], curves.branch_tension[at][used]
-    # roughness from bin to bin: a drift of the whole branch from cycle to cycle bends no line,
-    # and third differences leave its curvature out
+    # roughness from bin to bin: a drift of the whole branch from cycle to cycle does not matter,
+    # and third differences exclude its curvature
     rough = float(np.sqrt(np.mean(np.diff(tension, n=3) ** 2) / 20))
     tolerance = settings.segment_tolerance * (float(np.ptp(tension)) or 1.0)
     lines = _fit_piecewise_lines(
@@ -356,7 +356,7 @@ def _segment_columns(
             _spread(curves, at, used, inside, windows=(stop - start) / curves.window)
         )
     rows = [modulus, np.hypot(uncertainty, at_ends), low, high, at_knot[:-1], at_knot[1:], misfit]
-    # from cycle to cycle the branch moves as a whole
+    # from cycle to cycle the branch shifts as a whole
     scatter = curves.branch_tension_standard_uncertainty[at][used]
     known = np.isfinite(scatter)
     spread = np.full(knot.size, np.nan)

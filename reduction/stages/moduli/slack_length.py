@@ -1,4 +1,4 @@
-"""Strain left at zero tension after a test, where the record comes back to slack.
+"""Strain left at zero tension after a test, where the record returns to slack.
 
 References
 ----------
@@ -45,13 +45,13 @@ class SlackStrain:
     Parameters
     ----------
     strain, standard_uncertainty : ndarray
-        NaN where the record does not begin or does not end slack; from scatter. [1]
+        NaN where the record does not begin or does not end slack; uncertainty from scatter. [1]
     by_tension : ndarray
-        Change of it with the tension that counts as slack. [N-1]
+        Change of the strain with the tension that counts as slack. [N-1]
     by_lag : ndarray
-        Change of it with a time by which tension is logged late. [s-1]
+        Change of the strain with a time by which tension is logged late. [s-1]
     remarks : tuple of Note or None, length n_specimens
-        Why the number is missing; empty where it is there.
+        Why the number is missing; empty where it is present.
     """
 
     strain: Floats
@@ -68,7 +68,7 @@ def _slack_position(
 
     Notes
     -----
-    Below the slack tension a tether hangs in a curve and tension says nothing of length,
+    Below the slack tension a tether hangs in a curve and tension does not give its length,
     so samples there are left out.
 
     Examples
@@ -108,8 +108,8 @@ def slack_crossings(
 
     Notes
     -----
-    The first rise of the next test of a specimen, less the first rise of this one, is the
-    set that is left after the rest between them.
+    The first rise of a specimen's next test, less the first rise of this one, is the
+    set that remains after the rest between them.
 
     Examples
     --------
@@ -191,7 +191,7 @@ def slack_strain_at_unloading(
     relaxed_free_length : array_like, shape (n_specimens,)
         Free length at zero tension before the test; NaN where not known. [m]
     time : array_like, shape (n_samples,), optional
-        For what a lag does; nothing is said of it without. [s]
+        For the effect of a lag, which is not given without it. [s]
 
     Returns
     -------
@@ -201,16 +201,16 @@ def slack_strain_at_unloading(
     Raises
     ------
     DataError
-        If the series do not pair up, the slack tension is not positive, or the lengths do
-        not fit the rows.
+        If the series do not match, the slack tension is not positive, or the lengths do
+        not match the rows.
 
     Notes
     -----
     [1]_, sec. 2.3.4, reports "a permanent elongation of 2-3%" after deployment at 200 %.
-    The number here is no permanent set: at the moment of unloading it holds the delayed
-    elasticity that a rest gives back, and any length let out by a slipped splice.  The set
-    that is left after a rest is the difference of the first crossings of two tests
-    (`slack_crossings`), and stands in the history of the later one.
+    The number here is not permanent set: at the moment of unloading it includes the delayed
+    elasticity that a rest recovers, and any length let out by a slipped splice.  The set
+    left after a rest is the difference between the first crossings of two tests
+    (`slack_crossings`), and is given in the history of the later one.
 
     Examples
     --------

@@ -3,13 +3,13 @@
 **Steps in an evenly sampled series, told apart from smooth drift, at a stated false-alarm rate.**
 The series is the sum of a smooth background (constant, drift, logarithmic creep, a softening
 transient at the start), noise, and possibly steps, each of which may take many samples to develop.
-A step is looked for with matched kernels that do not see a local parabola, so that drift and its
-curvature cannot pass for a step; its onset and extent are then found by least squares, exactly, on
-the samples around it.
+Steps are detected with matched kernels that are orthogonal to a local parabola, so that drift and
+its curvature cannot pass for a step.  Their onset and extent are then found by exact least squares
+on the samples around them.
 
 **Slip of a splice: steps of tension from cycle to cycle that steady creep does not explain.** A
-splice that slips lets out length, and the tension at every crosshead position falls; what is looked
-at is the level of each cycle, from `reduction.stages.moduli.loop_balance`.
+splice that slips lets out length, and the tension at every crosshead position falls.  The series
+tested is the level of each cycle, from `reduction.stages.moduli.loop_balance`.
 
 References
 ----------
@@ -48,7 +48,7 @@ def sample_noise(values: ArrayLike) -> tuple[float, float]:
     Notes
     -----
     A series quieter than half its quantum has an error of the quantum over the root of
-    12 that no averaging removes.  The quantum is taken from at most 4096 samples.
+    12, which averaging does not remove.  The quantum is taken from at most 4096 samples.
 
     Examples
     --------
@@ -117,7 +117,7 @@ def _parabola(n_samples: int) -> Floats:
 
 
 def _without_parabola(rows: Floats) -> Floats:
-    """Rows less the parabola that fits each best."""
+    """Rows less their best-fitting parabolas."""
     base = _parabola(rows.shape[-1])
     # einsum, not matrix products: their last digits depend on the number of threads
     share = np.einsum("...i,ij->...j", rows, base)
@@ -126,13 +126,13 @@ def _without_parabola(rows: Floats) -> Floats:
 
 
 def _fit_ramps(level: Floats, *, onset: Integers, extent: Integers) -> tuple[Floats, Floats]:
-    r"""Least squares of a ramp and a parabola on a series, for many ramps and without making them.
+    r"""Least squares of a ramp and a parabola on a series, for many ramps without forming them.
 
     .. math:: g = r \cdot y, \qquad s = r \cdot r - \sum_j (p_j \cdot r)^2
 
-    with r the ramp of `_ramp_of`, y the series and p an orthonormal basis of the parabolas.  A
+    with r the ramp of `_ramp_of`, y the series and p an orthonormal basis of the parabolas.  The
     product with a ramp of onset o and extent w is that of a slope from o on and of ones from its
-    end on, :math:`\frac{1}{w} \sum_{i=o}^{o+w-1} (i - o + 1) c_i + \sum_{i \ge o+w} c_i`, which are
+    end on, :math:`\frac{1}{w} \sum_{i=o}^{o+w-1} (i - o + 1) c_i + \sum_{i \ge o+w} c_i`.  Both are
     differences of running sums of :math:`c_i` and :math:`i c_i`.
 
     Examples
@@ -151,7 +151,7 @@ def _fit_ramps(level: Floats, *, onset: Integers, extent: Integers) -> tuple[Flo
 
 
 def _fit_kinks(level: Floats, *, onset: Integers) -> tuple[Floats, Floats]:
-    """As `_fit_ramps`, of changes of slope that begin after an onset and go on to the end."""
+    """As `_fit_ramps`, for changes of slope that begin after an onset and go on to the end."""
     ones, slopes = _sums_from(level)
     products = slopes[onset] - onset[:, None] * ones[onset]
     last = (level.size - 1 - onset).astype(np.float64)
@@ -160,7 +160,7 @@ def _fit_kinks(level: Floats, *, onset: Integers) -> tuple[Floats, Floats]:
 
 
 def _sums_from(level: Floats) -> tuple[Floats, Floats]:
-    """Sums from each sample on: of a series and parabolas, and of both times the index."""
+    """Sums from each sample on, of a series and parabolas, and of both times the index."""
     columns = np.column_stack([level, _parabola(level.size)])
     count = np.arange(level.size)[:, None]
     ones, slopes = (
@@ -172,7 +172,7 @@ def _sums_from(level: Floats) -> tuple[Floats, Floats]:
 
 @lru_cache(maxsize=2)
 def _background(n_samples: int) -> Floats:
-    """Orthonormal columns that span what creep and softening look like over a series."""
+    """Orthonormal columns that span the forms of creep and softening over a series."""
     count = np.arange(1.0, n_samples + 1)
     times = 2.0 ** np.arange(0, max(1, int(np.log2(n_samples / 8)) + 1))
     columns = [np.ones(n_samples), count / n_samples, np.log(count)]
@@ -181,10 +181,10 @@ def _background(n_samples: int) -> Floats:
 
 
 def _without_background(values: Floats, ramps: Floats | None = None) -> Floats:
-    """Series less what creep and softening look like over the whole of it.
+    """Series less the forms of creep and softening over its whole length.
 
-    Only a smooth function of log-like form is taken out, so a step remains a step; known
-    ``ramps``, shape (n_steps, n_samples), are fitted beside it and stay in.
+    Only a smooth function of log-like form is removed, so a step remains a step; known
+    ``ramps``, shape (n_steps, n_samples), are fitted along with it and stay in.
     """
     base = _background(values.size)
 
@@ -204,7 +204,7 @@ def _neighbour_noise(values: Floats) -> float:
     """Standard deviation of the noise, from neighbours; steps and wild samples left out."""
     squares = np.sort(np.diff(values) ** 2)
     kept = squares[: max(1, int(np.ceil(0.98 * squares.size)))]
-    # Dropping the largest 2 % of Gaussian differences takes 13 % of their mean square.
+    # Dropping the largest 2 % of Gaussian differences removes 13 % of their mean square.
     return float(np.sqrt(kept.mean() / 2 / 0.87))
 
 
@@ -213,7 +213,7 @@ def _without_outliers(values: Floats) -> Floats:
     padded = np.pad(values, 2, mode="edge")
     median = np.median(np.lib.stride_tricks.sliding_window_view(padded, 5), axis=-1)
     distance = np.abs(values - median)
-    # The median alone would take a rounded series for free of noise.
+    # By the median alone a rounded series would appear free of noise.
     spread = max(MAD_TO_SIGMA * float(np.median(distance)), _neighbour_noise(values))
     return np.where(distance > 6 * spread, median, values)
 
@@ -232,7 +232,7 @@ def _windows(n_samples: int) -> list[tuple[int, int]]:
 
 @cache
 def _kernel(window: int, extent: int) -> Floats:
-    """Weights that give the size of a step in the middle of a window, blind to a parabola."""
+    """Weights that give the size of a step in the middle of a window, without any parabola."""
     ramp = _without_parabola(_ramp_of(2 * window + extent, onset=window, extent=extent))
     kernel: Floats = ramp / np.sum(ramp * ramp)
     kernel.flags.writeable = False
@@ -240,9 +240,9 @@ def _kernel(window: int, extent: int) -> Floats:
 
 
 def _colour(size: Floats, onset: Integers, white: float, reach: int) -> float | None:
-    """Spread of a kernel's responses over that of white noise; None where they are too few.
+    """Spread of a kernel's responses over that for white noise; None if they are too few.
 
-    What the strongest response touches is left out: it may be a step.
+    Responses that overlap the strongest one are left out, since it may be a step.
     """
     top = onset[np.argmax(np.abs(size))]
     rest = size[np.abs(onset - top) > reach]
@@ -252,7 +252,7 @@ def _colour(size: Floats, onset: Integers, white: float, reach: int) -> float | 
 
 
 def _noise_memory(residual: Floats) -> float:
-    """Spread of a long mean of autoregressive noise over what its differences suggest."""
+    """Spread of a long mean of autoregressive noise over that predicted from its differences."""
     power = max(float(residual @ residual), np.finfo(float).tiny)
     lag_one = min(0.95, max(0.0, float(residual[1:] @ residual[:-1]) / power))
     return float(np.sqrt(1 + lag_one) / (1 - lag_one))
@@ -282,7 +282,7 @@ def _strongest_response(
     spectrum = scipy.fft.rfft(values, length)
     for window, extent in _windows(values.size):
         kernel = _kernel(window, extent)
-        # product with the kernel at every place; those that run over the end are left out
+        # product with the kernel at every place; those that extend beyond the end are left out
         product = scipy.fft.irfft(spectrum * scipy.fft.rfft(kernel, length).conj(), length)
         size = product[: values.size - kernel.size + 1]
         onset = np.arange(size.size) + window
@@ -291,7 +291,7 @@ def _strongest_response(
             continue
         size, onset = size[keep], onset[keep]
         white = noise * float(np.linalg.norm(kernel))
-        # Coloured noise shows in the responses; a long window sees at least the colour that
+        # Coloured noise shows in the responses; a long window responds at least as much to it as
         # a short one does.
         colour = _colour(size, onset, white, 2 * window + extent)
         inflation = max(inflation, colour or 1.0)
@@ -370,9 +370,9 @@ MOST_STEPS = 30
 def _refine(
     values: Floats, candidate: _Candidate, sigma: float, quantum: float
 ) -> tuple[_SlipStep, bool, float]:
-    """Onset and extent by least squares around a candidate; False where a kink does as well.
+    """Onset and extent by least squares around a candidate; False where a kink fits as well.
 
-    The last is the most that rounding to a quantum, half of it either way, makes of no step.
+    The last value is the largest apparent step due to rounding by half a quantum either way.
     """
     reach = 2 * max(candidate.window, candidate.extent)
     first = max(0, candidate.onset - reach, candidate.onset // 2)
@@ -429,7 +429,7 @@ def _is_recovery(step: _SlipStep, earlier: list[_SlipStep], reach: int) -> bool:
 
 
 def _joined(steps: list[_SlipStep]) -> tuple[_SlipStep, ...]:
-    """Join steps of one sign that touch: parts of one step that does not develop evenly."""
+    """Join touching steps of one sign: parts of one step that does not develop evenly."""
     joined: list[_SlipStep] = []
     for step in sorted(steps, key=lambda step: step.onset):
         last = joined[-1] if joined else None
@@ -454,12 +454,12 @@ def _joined(steps: list[_SlipStep]) -> tuple[_SlipStep, ...]:
 def find_steps(
     values: ArrayLike, *, false_alarm: float, quantum: float | None = None
 ) -> tuple[_SlipStep, ...]:
-    """Steps of a series that neither drift, creep nor softening explains, in order.
+    """Steps of a series that drift, creep and softening do not explain, in order.
 
     The likelihood ratio of a step of extent w against none, in a window of h samples
     on each side and with a free parabola in both, is scanned over every onset, for h
     of 8 to 128 samples (at most a quarter of the series) and w of 1 to h, powers of
-    two.  The strongest response is dated, taken out, and the scan repeated.
+    two.  The strongest response is dated and subtracted, and the scan is repeated.
 
     Parameters
     ----------
@@ -470,8 +470,8 @@ def find_steps(
         step: the threshold is Bonferroni's over all windows, extents and onsets, which
         makes it an upper bound. [1]
     quantum : float, optional
-        Step of the digitizer, of a series of means that does not show it; from the series where
-        it is not given. [any unit]
+        Step of the digitizer, for a series of means that does not show it; by default from the
+        series. [any unit]
 
     Returns
     -------
@@ -487,16 +487,16 @@ def find_steps(
     Notes
     -----
     Generalized likelihood ratio ([2]_), strongest first in local windows ([4]_).
-    Noise that is not white is seen in the spread of the responses and in the correlation
-    of neighbours, and raises the threshold; the stated chance is not kept for it: with a
+    Noise that is not white shows in the spread of the responses and in the correlation
+    of neighbours, and raises the threshold.  The stated chance does not hold for it: with a
     correlation of 0.9, 4 % of generated series of 100 samples showed a step at a stated
-    0.1 % (none of 300 with white noise).  No step is looked for in the first ten
-    samples, nor where the window would begin before half the sample number: there
+    0.1 % (none of 300 with white noise).  The first ten samples are not searched for steps, nor
+    those where the window would begin before half the sample number: there
     softening is as fast as a step.  A change that takes longer than twice the window, or
     that a change of slope explains as well, is drift.  An opposite change of less than
     half the size just after a step is its recovery, not a step.  Where the digitizer's
-    step is coarser than the noise, a drift moves in jumps of it, and nothing is a step that
-    errors of half of it at every sample, with the signs of the kernel, could make.
+    step is coarser than the noise, a drift moves in jumps of that size.  Then nothing counts as a
+    step that errors of half of it at every sample, with the signs of the kernel, could make.
 
     Examples
     --------
@@ -548,7 +548,7 @@ def find_steps(
         if not is_step:
             blocked = (candidate.onset - candidate.window, candidate.onset + candidate.window)
         else:
-            # What is left close to a step is its shape, not another one.
+            # A residual close to a step is due to its shape, not another step.
             blocked = (step.onset - step.extent - 2, step.onset + 2 * step.extent + 2)
             remaining = without
             if abs(step.size) < of_rounding or _is_recovery(step, steps, 2 * candidate.window):
@@ -573,7 +573,7 @@ def _filled(series: Floats) -> Floats:
 
 
 def _creep_per_cycle(series: Floats, steps: tuple[_SlipStep, ...]) -> float:
-    """Slope of the last half of the series, steps taken out."""
+    """Slope of the last half of the series, with steps removed."""
     n_samples = series.size
     half = slice(n_samples // 2, n_samples)
     columns = [np.ones(n_samples), np.arange(n_samples) / n_samples]
@@ -582,15 +582,15 @@ def _creep_per_cycle(series: Floats, steps: tuple[_SlipStep, ...]) -> float:
     return float(np.linalg.lstsq(basis, series[half])[0][1] / n_samples)
 
 
-_PAUSE = 3.0  # over the time that a cycle takes
+_PAUSE = 3.0  # times the usual duration of a cycle
 
-_BEFORE_PAUSE = 20  # cycles that show how fast a specimen creeps before a pause
+_BEFORE_PAUSE = 20  # cycles that show the rate of creep before a pause
 
 
 def _is_told_from_pause(level: Floats, time: Floats, step: _SlipStep) -> bool:
-    """Whether a step is more than creep at the speed before a pause within it leads to.
+    """Whether a step exceeds the creep during a pause within it, at the rate before the pause.
 
-    What creeps or relaxes slows down, so that in the pause it does less.
+    Creep and relaxation slow down, so that they contribute less than this in the pause.
     """
     lasts = np.diff(time)
     at = max(0, step.onset_low - 1)
@@ -624,20 +624,20 @@ def find_slips(
     Parameters
     ----------
     peak_tension : array_like, shape (n_specimens, n_cycles)
-        Of each cycle, which gives the size of each step. [N]
+        Peak of each cycle, which gives the size of each step. [N]
     specimens : tuple of str, length n_specimens
         Names, in the order of the rows. [text]
     settings : SlipSettings
         Shortest run of cycles and the false-alarm rate of one specimen. [1]
     tension_level : array_like, shape (n_specimens, n_cycles), optional
-        Series in which steps are looked for, from
-        `reduction.stages.moduli.loop_balance.cycle_tension_level`; the peaks where it is not
-        given. [N]
+        Series in which steps are searched, from
+        `reduction.stages.moduli.loop_balance.cycle_tension_level`; by default the
+        peaks. [N]
     tension_slope : array_like, shape (n_specimens,), optional
         Slope of tension on position at the top of the loop; without it the length of a
         slip is NaN. [N m-1]
     time : array_like, shape (n_cycles,), optional
-        At which each cycle begins; without it the cycles follow each other evenly. [s]
+        Beginning of each cycle; without it the cycles are taken as evenly spaced. [s]
 
     Returns
     -------
@@ -656,8 +656,8 @@ def find_slips(
     date it ([5]_).  Method and false-alarm rate: `find_steps`.  ``slip_length`` is the step of
     peak tension over the slope of a cycle; a relaxed specimen is softer than that slope,
     so the length is a lower bound (0.5 to 0.8 of the true length on a generated tether).
-    A step at a pause between cycles is none where creep at the speed before it explains the size.
-    Missing cycles are bridged; a specimen of which more than half are missing is left
+    A step at a pause between cycles is ignored where creep at the rate before it explains the size.
+    Missing cycles are bridged; a specimen with more than half missing is left
     out, and a note says so.
 
     Examples

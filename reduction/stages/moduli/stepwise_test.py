@@ -21,20 +21,20 @@ from reduction.record.measurement import Bools, Floats, Integers, StepReadings, 
 from reduction.record.notes import Note, note
 
 STRAIN_DIGIT = 0.01
-"""A recorded elongation is a whole per cent; readings that differ by less agree. [1]"""
+"""A recorded elongation is a whole per cent; readings within this agree. [1]"""
 
 _ASCENDING, _DESCENDING = 1, 2
 
 # robust standard deviations beyond which a row disagrees with the others
 _INCONSISTENT = 5.0
 
-# steps of weight by which a weight is beyond both neighbours that was not hung
+# steps of weight beyond both neighbours from which a weight was not the one hung
 _FAR_BEYOND = 2.0
 
-# a curvature that is extrapolated by half an interval may be this much more
+# a curvature that is extrapolated by half an interval may be larger by this factor
 _AT_ENDS = 2.0
 
-# by which the slopes at a reading differ more than those beside them where it is odd
+# ratio of the slopes at an odd reading to the ratio of the slopes beside them
 _ODD_SLOPES = 2.0
 
 _FEWEST = 5  # readings: four slopes
@@ -136,9 +136,9 @@ def _interval_slopes(
 
     Notes
     -----
-    A difference over 15 to 35 points of strain: tape reading is 1 to 3 % of it, so
-    that no smoothing is called for, but neighbours share a reading and their
-    errors are opposed.  The modulus is that of slow steps with creep in them, 10
+    Each interval covers 15 to 35 points of strain: tape reading is 1 to 3 % of it, so
+    that no smoothing is needed, but neighbours share a reading and their
+    errors are opposite.  The modulus is that of slow steps including creep, 10
     to 45 minutes each in [1]_.  NaN in, NaN out.
 
     Examples
@@ -164,20 +164,20 @@ def _interval_slopes(
 def _curvature_error(
     strain: Floats, width: Floats, modulus: Floats, branch: Integers
 ) -> tuple[Floats, bool]:
-    r"""How far slopes between readings may be from those at the middles, and whether that is known.
+    r"""Error of slopes between readings as slopes at the middles, and whether that is known.
 
     .. math:: E_\mathrm{chord} - E(\bar\varepsilon) = \frac{E''}{24} (\Delta\varepsilon)^2
 
     Notes
     -----
-    The largest :math:`E''` is taken that three slopes in a row show of the branch, and twice that
+    The largest :math:`E''` from three consecutive slopes of the branch is used, and twice that
     at its ends; that of the other branch where it has fewer.  Where neither has three,
     :math:`E'' \Delta\varepsilon = 2 E'`: the slope of the modulus changes by twice itself within an
-    interval.  A single slope says nothing of a curve.
+    interval.  A single slope gives no information on a curve.
 
     Examples
     --------
-    Stress as the cube of strain: :math:`E'' = 6`.
+    Stress as the cube of strain, :math:`E'' = 6`:
 
     >>> ends = np.array([0.0, 0.2, 0.4, 0.6])
     >>> error, _ = _curvature_error(ends[:-1] + 0.1, np.diff(ends), np.diff(ends**3) / 0.2,
@@ -206,7 +206,7 @@ def _curvature_error(
 
 
 def _find_odd_weights(tension: Floats, length: Floats) -> Bools:
-    """Weights far beyond both neighbours while the length goes on as without them.
+    """Weights far beyond both neighbours while the length continues as without them.
 
     Examples
     --------
@@ -225,7 +225,7 @@ def _find_odd_weights(tension: Floats, length: Floats) -> Bools:
 
 
 def _find_odd_lengths(tension: Floats, length: Floats, branch: Integers) -> Bools:
-    """Lengths that make the slope before them less, and that after them more, than all around.
+    """Lengths that make the slope before them lower, and that after them higher, than elsewhere.
 
     A curve that stiffens or softens has the slopes at a reading between those beside them.
 
@@ -273,31 +273,31 @@ class StepwiseResult:
     printed_strain : ndarray
         Elongation as recorded; NaN where not recorded. [1]
     strain : ndarray
-        Length over the recovered gauge length, minus one, flagged rows too. [1]
+        Length over the recovered gauge length, minus one; for flagged rows too. [1]
     branch : ndarray of int
         1 ascending, 2 descending.
     gauge_length, gauge_length_standard_uncertainty : float
         Recovered from length and recorded elongation (median); its uncertainty is
-        one all strains and moduli share. [m]
+        common to all strains and moduli. [m]
     is_inconsistent : ndarray of bool
         Recorded elongation and length disagree by more than reading error.
     is_creep : ndarray of bool
         Length grew while tension fell, shrank while it rose, or changed at one weight.
     is_odd : ndarray of bool
-        Weight or length is far from where the readings before and after it lead.
+        Weight or length is far from the value expected from the readings before and after it.
     interval_strain, interval_modulus, interval_modulus_standard_uncertainty : ndarray, (n_steps-1,)
         Middle of each interval between readings [1] and its slope [Pa]; NaN where
         an end is inconsistent or odd, the length creeps against the weight, the weights
-        turn, or the slope is the only one. Uncertainty of the readings, of which neighbours
-        share one, and of the slope as the modulus at the middle.
+        turn, or the slope is the only one. The uncertainty is that of the readings, one of which
+        is shared with each neighbour, and of the slope as the modulus at the middle.
     interval_branch : ndarray of int, shape (n_steps-1,)
         1 ascending, 2 descending, 0 where the weights turn.
     secant_modulus, secant_modulus_standard_uncertainty : ndarray
-        Stress over strain; NaN where the reading is inconsistent. Uncertainty of the
-        reading and of the weight alone, as that of the intervals. [Pa]
+        Stress over strain; NaN where the reading is inconsistent. The uncertainty is that of the
+        reading and of the weight only, as for the intervals. [Pa]
     notes : tuple of Note
     made : tuple of str
-        How it was made, with numbers that stand nowhere else: lines of the history.
+        Lines of the history: how it was made, with numbers that are not stored elsewhere.
     length_standard_uncertainty, tension_standard_uncertainty : float
         Of one reading of length, stated or from its scatter, and of one weight as stated; NaN
         where neither is known. [m], [N]
@@ -329,7 +329,7 @@ class StepwiseResult:
 
 
 def _made(gauge: float, readings: StepReadings, is_inconsistent: Bools) -> tuple[str, ...]:
-    """Where the gauge length is from, and how well the rows agree with it."""
+    """Origin of the gauge length, and how well the rows agree with it."""
     known = np.isfinite(readings.printed_strain)
     if not known.any():
         return ()
@@ -357,7 +357,7 @@ def _ends(values: Floats) -> tuple[float, float]:
 def _inconsistency_note(
     row: int, readings: StepReadings, gauge: float, area: float, is_inconsistent: Bools
 ) -> Note:
-    """What a row would be if its elongation is right and its length is not."""
+    """Values of a row if its elongation is right and its length is wrong."""
     length, printed = readings.length, readings.printed_strain
     corrected = gauge * (1 + printed[row])
     speaks_for = ""
@@ -384,7 +384,7 @@ def _inconsistency_note(
 def _odd_readings(
     readings: StepReadings, gauge: float, is_inconsistent: Bools
 ) -> tuple[Integers, Bools, list[Note]]:
-    """Branches of the readings, those that are odd, and what is said of them."""
+    """Branches of the readings, mask of the odd ones, and notes on them."""
     is_odd = _find_odd_weights(readings.tension, readings.length)
     notes = [
         note("reading-of-odd-weight", readings.clock[row], weight=float(readings.tension[row]))
@@ -431,7 +431,7 @@ def greatest_step_strain(
     Parameters
     ----------
     readings : StepReadings
-        In SI, in the order they were taken.
+        In SI, in the order in which they were taken.
     stated_gauge_length : float, optional
         Used where no elongation was recorded. [m]
 
@@ -447,7 +447,7 @@ def greatest_step_strain(
 
     Examples
     --------
-    Table 4 of [1]_ at 208 lb, and after 45 min of creep: 212 % of 6.125 in are printed.
+    Table 4 of [1]_ at 208 lb, and after 45 min of creep; 212 % of 6.125 in are printed:
 
     >>> inch, none = 0.0254, np.full(2, np.nan)
     >>> round(greatest_step_strain(
@@ -469,9 +469,9 @@ def reduce_stepwise(
     Parameters
     ----------
     readings : StepReadings
-        In SI, in the order they were taken.
+        In SI, in the order in which they were taken.
     area : float
-        At zero tension. [m2]
+        Cross-section at zero tension. [m2]
     stated_gauge_length : float, optional
         Used where no elongation was recorded; otherwise only compared. [m]
 
@@ -489,9 +489,9 @@ def reduce_stepwise(
     Notes
     -----
     A flagged row is kept as it was read, with its flag.  An inconsistent or odd row
-    gives no modulus, and a note says what it would give if the recorded elongation is
-    right.  Where the length moved against the weight the interval is creep and
-    gives none; its later end is a sound reading, and the next interval stands.
+    gives no modulus, and a note gives the value for the case that the recorded elongation is
+    right.  Where the length moved against the weight, the interval is creep and
+    gives no modulus; its later end is a sound reading, and the next interval is used.
 
     Examples
     --------

@@ -1,7 +1,7 @@
-"""Tangent modulus against strain, of every cycle and over the cycles, branches apart.
+"""Tangent modulus against strain, for every cycle and over the cycles, by branch.
 
-**Curves of each specimen from the blocks of a record, and how blocks add up.** A block is a run of
-whole cycles that fits into memory; blocks are reduced side by side.
+**Curves of each specimen from the blocks of a record, and addition of blocks.** A block is a run of
+whole cycles that fits into memory; blocks are reduced in parallel.
 
 References
 ----------
@@ -47,20 +47,20 @@ from reduction.stages.moduli.tangent_window import (
     window_blur,
 )
 
-_PART = 1 << 18  # samples of a block of which sums are taken together
+_PART = 1 << 18  # samples of a block that are summed together
 
 
-# of the curves of a branch: a mean over fewer is that of some cycles, not of the test
+# of the curves of a branch: a mean over fewer represents some cycles, not the test
 _REACHED = 0.9
 
-_REFUSED = 0.1  # of the bins that some cycles reach, before a reader is told which are not given
+_REFUSED = 0.1  # of the bins that some cycles reach: if more are not given, a note says which
 
 
 @dataclass(frozen=True)
 class _CycleMeans:
-    """Means along a branch over the cycles, shape (2, n_bins), and over the steps between bins.
+    """Means along a branch over the cycles, shape (2, n_bins), and of the steps between bins.
 
-    ``n_seen`` (2,) is how many curves have a value in any bin.
+    ``n_seen`` (2,) is the number of curves that have a value in any bin.
     """
 
     level: RunningStatistics
@@ -92,9 +92,9 @@ class _CycleMeans:
     def value(self) -> Floats:
         """Mean of the bins that most cycles reach, and by the mean step of those beside them.
 
-        Where some cycles do not reach a bin, the mean of the others stands higher or lower by what
-        these differ, which is no slope of the specimen; a step between two bins is of cycles that
-        reach both.  Between two bins that most reach the steps are laid on both.
+        Where some cycles do not reach a bin, the mean of the others is higher or lower by their
+        difference, which is not a slope of the specimen; a step between two bins is from cycles
+        that reach both.  Between two bins that most cycles reach, the steps are fitted to both.
         """
         n_curves, mean = self.level.n_curves, self.level.value()
         curve = np.full_like(mean, np.nan)
@@ -107,7 +107,7 @@ class _CycleMeans:
                 part = slice(first, last + 1)
                 most = n_curves[branch, part].max()
                 if self.step.n_curves[branch, first:last].min() == most:
-                    continue  # one population: the mean as it is
+                    continue  # one population: the mean is not changed
                 rise = np.concatenate([[0.0], np.cumsum(self.step.mean[branch, first:last])])
                 full = np.flatnonzero(n_curves[branch, part] == most)
                 above = mean[branch, part][full] - rise[full]
@@ -115,17 +115,17 @@ class _CycleMeans:
         return self.given(curve)
 
     def given(self, values: Floats) -> Floats:
-        """Values without those of the bins that too few cycles reach."""
+        """Values without those in bins that too few cycles reach."""
         return np.where(self.is_reached(), values, np.nan)
 
     def count(self) -> Integers:
-        """Cycles in the mean."""
+        """Number of cycles in the mean."""
         return np.where(self.is_reached(), self.level.count, 0).astype(np.int64)
 
 
 @dataclass(frozen=True)
 class _SpecimenCurves:
-    """What one specimen gives in a block: statistics (2, n_bins) [N] and selected curves.
+    """Results of one specimen in a block: statistics (2, n_bins) [N] and selected curves.
 
     ``pooled`` holds the moments of both branches over the cycles of each block.
     """
@@ -249,9 +249,9 @@ def _adapted(
     minimum_count: int,
     n_cycles: int,
 ) -> tuple[Floats, Floats, Floats, Floats]:
-    """Slope in the widest window and `adapt_window`, by all cycles together. [N].
+    """Slope in the widest window and by `adapt_window`, from all cycles together. [N].
 
-    A narrow window holds few samples of one.
+    A narrow window holds few samples of a single cycle.
     """
     slopes, deviations, blurs = [], [], []
     for half in halves:
@@ -352,8 +352,8 @@ def tangent_curves(
     break_in_cycles : int
         First cycles that are left out of every mean; their own curves are kept. [1]
     grid : StrainGrid, optional
-        The grid of the whole record, where a piece of it is reduced; without it
-        `choose_grid_and_window` makes it. [1]
+        The grid of the whole record, where a piece of it is reduced; by default
+        from `choose_grid_and_window`. [1]
 
     Returns
     -------
@@ -372,37 +372,37 @@ def tangent_curves(
     Notes
     -----
     Printed source: eq. 2 and sec. 4.1 of [1]_; ends are trimmed as there ("end
-    points have been removed"), with the untrimmed curve beside. [1]_ does not say
+    points have been removed"), and the untrimmed curve is also given. [1]_ does not say
     how it took the derivative.
 
-    *Uncertainty* is type A alone: the scatter over the cycles over the root of
-    their number, or, of a single curve, from its regression residuals. What is
-    common to all cycles (area, calibration, splice strain) is not in it. A trend over
-    the cycles is no scatter (`variance_of_a_cycle`); the mean is over slopes of single
+    *Uncertainty* is type A only: the scatter over the cycles over the root of
+    their number, or, for a single curve, from its regression residuals. Errors
+    common to all cycles (area, calibration, splice strain) are not included. A trend over
+    the cycles is not scatter (`variance_of_a_cycle`); the mean is over slopes of single
     cycles (or of groups of consecutive ones), so that loss of tension from one to
     the next does not enter a slope.
 
-    *Bias.* A window of width :math:`W` blurs: a slope is high by :math:`E'' W^2 / 40`,
-    0.4 % where E grows e-fold in a strain of 0.3 and W is 0.12. `window_blur` takes
-    that off, the same from every cycle, by the second difference of the mean curve.
+    *Bias.* A window of width :math:`W` blurs: a slope is too high by :math:`E'' W^2 / 40`,
+    0.4 % where E grows e-fold in a strain of 0.3 and W is 0.12. `window_blur` subtracts
+    the same correction from every cycle, by the second difference of the mean curve.
     Where windows of half and a quarter of the width, over all cycles together, show
-    another slope, theirs is taken; what the window may still miss is
+    another slope, theirs is used; the error that may remain is
     ``tangent_modulus_window_uncertainty`` (`adapt_window`). The modulus jumps at a
-    reversal; the untrimmed curve smears that jump over :math:`W`, the trimmed one sees
+    reversal; the untrimmed curve smears that jump over :math:`W`, the trimmed one uses
     only the trimmed branch and ends a quarter window short of it, since a slope needs
     samples on both sides.
 
     *One population.* A bin that fewer than nine tenths of the curves reach is not given: a
     mean over some cycles beside one over all is a step that no cycle has. Along the bins
-    that are given the mean curve goes by the mean step from bin to bin, over the curves
-    that reach both; where all reach all, that is the mean of the curves.
+    that are given, the mean curve follows the mean step from bin to bin, over the curves
+    that reach both; where all curves reach all bins, that is their mean.
 
     NaN: a sample missing in strain or tension is skipped; a bin without support is
-    NaN in that cycle and left out of the mean, as its count says.
+    NaN in that cycle and left out of the mean, as the count shows.
 
     Examples
     --------
-    One cycle of a straight line, 1000 N per unit strain on 1 cm2, is 10 MPa.
+    One cycle of a straight line, 1000 N per unit strain on 1 cm2, is 10 MPa:
 
     >>> import numpy as np
     >>> stroke = np.linspace(1.0, 2.0, 201)
@@ -519,15 +519,15 @@ def tangent_curves(
 
 
 def _not_below(deviation: Floats, least: Floats) -> Floats:
-    """Greater of both where both are known; a deviation that is not known stays so."""
+    """Greater of both where both are known; an unknown deviation remains unknown."""
     return np.where(np.isfinite(least), np.maximum(deviation, least), deviation)
 
 
 def _off_the_slopes(level: Floats, step: Floats, *, half_window: int) -> Floats:
-    """Deviation of levels from the sum of slopes a bin, within a window about each bin.
+    """Deviation of levels from the sum of slopes per bin, within a window about each bin.
 
     Where windows hold few samples, and the same ones in every cycle of a log in step with its
-    period, a curve that bends goes up and down beside the truth as samples enter them.
+    period, a curve oscillates about the truth as samples enter them.
     """
     off = np.zeros_like(level)
     for curve in np.ndindex(level.shape[:-1]):
@@ -543,7 +543,7 @@ def _off_the_slopes(level: Floats, step: Floats, *, half_window: int) -> Floats:
 
 
 def _mean_about(values: Floats, half_window: int) -> Floats:
-    """Running mean; beyond the ends stands the last value."""
+    """Running mean; beyond the ends the last value is repeated."""
     n_window = 2 * half_window + 1
     beyond = np.pad(values, half_window, mode="edge")
     return np.convolve(beyond, np.full(n_window, 1 / n_window), mode="valid")

@@ -1,10 +1,10 @@
-"""The strain grid of a test, and the window of the tangent modulus that moves along it.
+"""Strain grid of a test, and the moving window of the tangent modulus.
 
 Both are found from the ends of the branches alone, so that a record read in
-pieces gives the grid of the whole.
+pieces gives the same grid as the whole.
 
-What a moving window adds to a curved modulus, from the curve itself; and where a narrower window
-shows something else, that one.
+The bias of a moving window on a curved modulus is estimated from the curve itself; where a narrower
+window contradicts it, the narrower one is used.
 
 References
 ----------
@@ -35,37 +35,37 @@ from reduction.record.samples import step_that_fills, take_samples
 from reduction.record.settings import ModulusSettings
 from reduction.stages.cycles.cycle_product import Cycles
 
-_STROKE_SHARE = 40  # bins a stroke
+_STROKE_SHARE = 40  # bins per stroke
 
-_WIDEST_WINDOW = 0.25  # of the stroke, to gather samples; the curve is blurred beyond it
+_WIDEST_WINDOW = 0.25  # of the stroke, to gather samples; a wider one blurs the curve
 
 _BRANCHES_READ = 25  # enough for a median, few enough to cost nothing
 
 _MAXIMUM_BINS = 5000  # a curve, not a copy of the record
 
-_FEWEST_SPACINGS = 3  # of samples, in the narrowest window that is tried
+_FEWEST_SPACINGS = 3  # of samples, in the narrowest window tried
 
 _CONTRADICTED = 2.0  # standard deviations of a narrower window's slope
 
 _FEWEST_DIFFERENCES = 5
 
-_TO_DEVIATION = 1.4826  # of a normal error, over the median of its size
+_TO_DEVIATION = 1.4826  # standard deviation of a normal error over its median magnitude
 
-# Halfway over a jump two windows agree on the mean of both sides; beside it they differ by a fifth
-# to a third of what each is off there at most.
+# Halfway over a jump two windows agree on the mean of both sides; beside it their difference is a
+# fifth to a third of the jump, and the greatest error of each is half of it.
 _UNSEEN = sqrt(2.0)
 
-# where one width alone is to be had: half of the second difference that its blur is a tenth of
+# if there is only one width: half of the second difference, of which its blur is a tenth
 _UNSEEN_OF_BLUR = 5.0
 
-# of a curve shorter than two windows: deviations of what its bend adds to the slope
-# and, where its bend is none by chance, of the range of the slope
+# for a curve shorter than two windows: deviations, over the bias of the slope due to curvature
+# and, in case the curvature is zero by chance, over the range of the slope
 _UNSEEN_OF_BEND, _UNSEEN_OF_RANGE = 2.0, 0.03
 
-_LEAST_STEP = 2  # bins of a second difference of such a curve
+_LEAST_STEP = 2  # bins in a second difference of such a curve
 
-# mean square of the range of ten normal numbers, as many as the second differences of the noise in
-# two windows are worth
+# mean square of the range of ten normal numbers, the equivalent number of independent second
+# differences of the noise in two windows
 _SQUARE_OF_RANGE = 10.0
 
 
@@ -84,7 +84,7 @@ class StrainGrid:
     half_window : int
         Bins on each side of the centre bin that share its window. [1]
     cycles_pooled : int
-        Consecutive cycles that give one curve; 1 where a cycle alone has enough
+        Consecutive cycles that give one curve; 1 where a single cycle has enough
         samples in a window. [1]
     """
 
@@ -114,7 +114,7 @@ class StrainGrid:
     def spanning(
         cls, lowest: float, highest: float, *, width: float, half_window: int, cycles_pooled: int
     ) -> StrainGrid:
-        """Grid on multiples of the width that holds both strains and a bin beyond each."""
+        """Grid on multiples of the width that contains both strains and a bin beyond each."""
         first = floor(lowest / width) - 1
         n_bins = ceil(highest / width) + 1 - first
         if n_bins > _MAXIMUM_BINS:
@@ -124,7 +124,7 @@ class StrainGrid:
                 needed=f"at most {_MAXIMUM_BINS}",
                 hint="Give a larger modulus.strain_bin_width, or flag the spike in position.",
             )
-        # a multiple of a decimal width is off by an ulp; the printed edge is not
+        # a multiple of a decimal width has rounding errors; the printed edge should not
         return cls(round(first * width, 12), width, n_bins, half_window, cycles_pooled)
 
 
@@ -137,7 +137,7 @@ def round_number(value: float) -> float:
 
 
 def bins_each_side(window: float, width: float) -> int:
-    """Half of the smallest odd number of bins that covers the window, rounding errors aside."""
+    """Half of the smallest odd number of bins that covers the window, apart from rounding."""
     half_window = ceil((window / width - 1) / 2 - 1e-6)
     if half_window < 1:
         raise SettingsError(
@@ -150,14 +150,14 @@ def bins_each_side(window: float, width: float) -> int:
 
 
 def sample_spacing(strain: Floats, cycles: Cycles, stroke: float) -> float:
-    """Strain from sample to sample at constant rate, median over branches spread over the test."""
+    """Strain between samples at constant rate, median over branches spread over the test."""
     chosen = np.unique(np.linspace(0, cycles.n_cycles - 1, _BRANCHES_READ).astype(int))
     spacings = []
     for first, last in zip(
         cycles.branch_first[chosen].ravel(), cycles.branch_last[chosen].ravel(), strict=True
     ):
         kept = first + np.flatnonzero(cycles.is_in_trimmed_branch[first : last + 1])
-        if kept.size < 2:  # nothing at constant rate: the untrimmed curve alone can be had
+        if kept.size < 2:  # nothing at constant rate: only the untrimmed curve is available
             kept = np.array([first, last])
         if last > first:
             begin, end = take_samples(strain, kept[[0, -1]]).T
@@ -177,9 +177,9 @@ def choose_grid_and_window(
     strain : array_like, shape (n_specimens, n_samples)
         Nominal strain of the free length; NaN where missing. [1]
     cycles : Cycles
-        Where the branches begin and end. [SI]
+        Beginning and end of the branches. [SI]
     settings : ModulusSettings
-        What is given there is used; what is None is found here. [1]
+        Given values are used; values of None are found here. [1]
 
     Returns
     -------
@@ -196,26 +196,26 @@ def choose_grid_and_window(
 
     Notes
     -----
-    *Bins.* None: the number of the 1-2-5 series nearest, by ratio, to a fortieth of
+    *Bins.* If None: the number of the 1-2-5 series nearest, by ratio, to a fortieth of
     the median stroke of the specimen with the shorter one. Edges are multiples of
     the width, so that tests of one width share their edges.
 
-    *Window.* Always an odd number of bins, symmetric about the bin centre. None:
+    *Window.* Always an odd number of bins, symmetric about the bin centre. If None:
     five bins, widened to three times ``minimum_count`` samples of one branch as long
     as it stays within a quarter of the stroke, and to four sample spacings in any case (a
     test logged in step with its period gives every cycle the same few strains).
     The bias of a window of width :math:`W` is given with `tangent_curves`.
 
     *Pooling.* Where the window still holds fewer than twice ``minimum_count``
-    samples, that many consecutive cycles as fill it give one curve.
+    samples, as many consecutive cycles as fill it give one curve.
 
-    Only strains at the ends of branches are read: a spike inside a branch does not
+    Only strains at the ends of branches are read, so that a spike inside a branch does not
     stretch the grid. Drift of the stroke is covered, since all cycles are read.
 
     Examples
     --------
     A stroke of 47.5 % in 48 samples a branch: bins of 1 %, and a window of 13 of them, the
-    smallest odd number that covers a quarter of the stroke.
+    smallest odd number that covers a quarter of the stroke:
 
     >>> import numpy as np
     >>> stroke = np.linspace(0.775, 1.25, 48)
@@ -236,7 +236,7 @@ def choose_grid_and_window(
         raise DataError("there is no cycle to make a strain grid from", needed="a whole cycle")
     ends = take_samples(strain, np.stack([cycles.branch_first, cycles.branch_last]))
     travel = np.abs(ends[:, 1] - ends[:, 0])
-    live = np.isfinite(travel).any(axis=(1, 2))  # a dead channel does not take the other along
+    live = np.isfinite(travel).any(axis=(1, 2))  # a dead channel does not affect the other one
     if not live.any():
         raise DataError(
             "no branch has strain at both ends",
@@ -299,9 +299,9 @@ def window_blur(slope: ArrayLike, *, half_window: int) -> tuple[Floats, float]:
     Returns
     -------
     blur : ndarray, shape (..., n_bins)
-        What to take off the slope; zero where a curve is too short to tell. [SI]
+        Correction to be subtracted from the slope; zero where a curve is too short. [SI]
     noise_gain : float
-        Factor by which taking it off raises the standard deviation of the slope. [1]
+        Factor by which the correction raises the standard deviation of the slope. [1]
 
     Raises
     ------
@@ -313,16 +313,16 @@ def window_blur(slope: ArrayLike, *, half_window: int) -> tuple[Floats, float]:
     Derivation: over samples spread evenly on :math:`[-W/2, W/2]` the regression slope
     of :math:`y = u^3` is :math:`\int u^4 / \int u^2 = 3 W^2 / 20`, and
     :math:`E'' = y''' = 6`. The step of the second difference is one bin more than
-    ``half_window``, or half of a curve that is shorter than two windows, if that is half of
-    ``half_window`` or more; nearer than that to the end of a curve the blur is that of the
-    nearest bin that has one. A jump of the modulus stays spread over the window.
+    ``half_window``, or half of a curve that is shorter than two windows, if that is at least half
+    of ``half_window``; closer than that to the end of a curve the blur is that of the
+    nearest bin that has one. A jump of the modulus remains spread over the window.
 
     The gain is that of white noise under the combined kernel, about 1.2.
 
     Examples
     --------
-    The window slope of a cubic, E = 3 x2, in windows of 5 bins of width 1, is high by
-    25 / 40 of 6.
+    The window slope of a cubic, E = 3 x2, in windows of 5 bins of width 1, is too high by
+    25 / 40 of 6:
 
     >>> import numpy as np
     >>> centre = np.arange(-10.0, 11.0)
@@ -335,7 +335,7 @@ def window_blur(slope: ArrayLike, *, half_window: int) -> tuple[Floats, float]:
     slopes = np.asarray(slope, dtype=np.float64)
     n_window = 2 * half_window + 1
     longest = int(np.isfinite(slopes).sum(axis=-1).max(initial=0))
-    # of a curve shorter than two windows the bend is that of all of it
+    # for a curve shorter than two windows the curvature is that of the whole curve
     step = min(half_window + 1, (longest - 1) // 2)
     if step < max(half_window // 2, _LEAST_STEP):
         step = half_window + 1
@@ -358,20 +358,20 @@ def window_blur(slope: ArrayLike, *, half_window: int) -> tuple[Floats, float]:
     return blur, sqrt(variance)
 
 
-_FULLER = 2.0  # more samples, since those of several cycles lie beside each other
+_FULLER = 2.0  # factor on the samples, since those of several cycles are irregularly spaced
 
-_MOST_POOLED = 3  # windows that all cycles together fill, where one cycle fills one alone
+_MOST_POOLED = 3  # windows that all cycles together fill, where a single cycle fills only one
 
 
 def pooled_spacing(strain: Floats, cycles: Cycles) -> float:
-    """Strain from sample to sample where those of many cycles are taken together.
+    """Strain between neighbouring samples of many cycles taken together.
 
-    On the branch that is filled less.  A slow log that is not in step with its period fills the
-    branches a little more with every cycle; one that is in step reads the same few strains again.
+    The less filled of the two branches counts.  A slow log that is not synchronous with its period
+    fills the branches a little more with every cycle; a synchronous one reads the same few strains.
 
     Examples
     --------
-    Two cycles of three readings a branch, of which the second lies half a step beside the first.
+    Two cycles of three readings a branch, the second of them offset by half a step:
 
     >>> strain = np.array([0.0, 2, 4, 2, 0, 1, 3, 5, 3, 1])
     >>> pair = np.array([[0, 2], [5, 7]])
@@ -393,18 +393,18 @@ def pooled_spacing(strain: Floats, cycles: Cycles) -> float:
 
 
 def narrower_windows(grid: StrainGrid, *, spacing: float, pooled: Callable[[], float]) -> list[int]:
-    """Half windows in bins, each half of the one before, that samples so far apart can fill.
+    """Half windows in bins, each half of the one before, that samples of this spacing can fill.
 
-    Of one cycle, or of all of them together where one fills no narrower one.
+    For one cycle, or for all of them together where one cycle fills no narrower window.
     """
     halves = _halved(grid, spacing)
     return halves if len(halves) > 1 else _halved(grid, pooled() * _FULLER)[:_MOST_POOLED]
 
 
 def is_filled_by_many(grid: StrainGrid, half_windows: Sequence[int], *, spacing: float) -> bool:
-    """Whether all cycles together fill narrower windows, and one of them does not.
+    """Whether all cycles together fill narrower windows although a single one does not.
 
-    The few samples of one cycle lie unevenly in its window: its slope is then off by the bend.
+    The few samples of one cycle are uneven in its window: curvature then makes an error of slope.
     """
     return len(half_windows) > len(_halved(grid, spacing)) == 1
 
@@ -421,7 +421,7 @@ def _halved(grid: StrainGrid, spacing: float) -> list[int]:
 
 
 def _roughness(slope: Floats, half_window: int) -> Floats:
-    """Standard deviation of window slopes by their differences, the least of three orders.
+    """Standard deviation of window slopes from their differences, the least of three orders.
 
     Infinite where no order has enough differences.
     """
@@ -436,10 +436,10 @@ def _roughness(slope: Floats, half_window: int) -> Floats:
             [sign * slope[..., k * step :][..., :n_differences] for k, sign in enumerate(signs)],
             axis=0,
         )
-        # windows that overlap have errors in common
+        # overlapping windows have correlated errors
         shifts = np.abs(np.subtract.outer(np.arange(order + 1), np.arange(order + 1)))
         common = np.vectorize(_overlap)(shifts * step / (2 * half_window + 1))
-        # a curve without a known difference stays as it is
+        # a curve without a known difference is left as it is
         known = np.where(np.isfinite(differences), np.abs(differences), np.inf)
         known.sort(axis=-1)
         middle = np.maximum(np.isfinite(known).sum(axis=-1, keepdims=True) - 1, 0) // 2
@@ -464,11 +464,11 @@ def _near(values: Floats, half_window: int, *, is_highest: bool) -> Floats:
 
 
 def _without_lone_choices(chosen: Integers, slope: Sequence[Floats], half_window: int) -> Integers:
-    """Windows without those that a single bin has narrower than both bins beside it.
+    """Window choices without single bins that have a narrower window than both neighbours.
 
-    A bend or a step contradicts a window in several bins; of many comparisons with two standard
-    deviations one in twenty does by chance, and the narrow window is the noisier one.  Within half
-    the widest window from the ends of a curve, where it changes fastest, all stay.
+    Curvature or a step contradicts a window in several bins.  Of many comparisons with two standard
+    deviations one in twenty does so by chance, and the narrow window is the noisier one.  Within
+    half the widest window from the ends of a curve, where it changes fastest, all choices stay.
 
     Examples
     --------
@@ -494,28 +494,28 @@ def adapt_window(
     half_windows: Sequence[int],
     n_cycles: int | None = None,
 ) -> tuple[Floats, Floats, Floats]:
-    r"""Slope by the widest window that no narrower one contradicts, and what it may still miss.
+    r"""Slope by the widest window that no narrower one contradicts, and the error that remains.
 
     Parameters
     ----------
     slope, deviation : sequence of ndarray, shape (..., n_bins)
-        Slopes at the bin centres, the widest window first, and their standard deviation by the
-        residuals; NaN where not supported. [SI]
+        Slopes at the bin centres, the widest window first, and their standard deviation from
+        the residuals; NaN where not supported. [SI]
     blur : sequence of ndarray, shape (..., n_bins)
-        That was taken off the slopes. [SI]
+        Correction that was subtracted from the slopes. [SI]
     half_windows : sequence of int
         Bins on each side of the centre bin in each window. [1]
     n_cycles : int, optional
-        That the slopes are of together. [1]
+        Number of cycles from which each slope is determined. [1]
 
     Returns
     -------
     change : ndarray, shape (..., n_bins)
-        What to add to the slope of the widest window. [SI]
+        Correction to be added to the slope of the widest window. [SI]
     noise : ndarray, shape (..., n_bins)
-        Standard deviation of the slope that was chosen. [SI]
+        Standard deviation of the chosen slope. [SI]
     missed : ndarray, shape (..., n_bins)
-        Standard uncertainty of what the chosen window still blurs. [SI]
+        Standard uncertainty of the blur that remains in the chosen window. [SI]
 
     Raises
     ------
@@ -525,26 +525,27 @@ def adapt_window(
     Notes
     -----
     After a reversal the modulus falls from a high value, in rubber along a curve and in a rope or
-    a braid in steps as one contact after the other begins to slip.  `window_blur` takes off what
-    a smooth bend adds; at a step no window is right.  In each bin the windows are compared ([4]_):
-    the widest is used whose slope lies within two standard deviations of that of every narrower
+    a braid in steps as one contact after the other begins to slip.  `window_blur` corrects for
+    smooth curvature; at a step no window is right.  In each bin the windows are compared ([4]_):
+    the widest one is used whose slope is within two standard deviations of that of every narrower
     one; a bin that alone takes a narrower one than both beside it takes theirs.  A deviation is no
-    smaller than the roughness of the curve says, as readings that are rounded alike in every cycle
-    count once in it and ``n_cycles`` times in the residuals: more than the root of their number
-    times the residuals' deviation is no error of readings but a modulus that rises and falls.
+    smaller than the roughness of the curve, since readings rounded alike in every cycle count
+    once in the roughness and ``n_cycles`` times in the residuals.  A roughness above the deviation
+    from the residuals times the root of their number is not an error of readings but a modulus that
+    rises and falls.
 
-    What is missed is the root mean square difference from the narrower windows over the window's
-    width, less their noise.  Of the narrowest it is the greatest difference from the next wider
-    one within its width, times :math:`\sqrt 2`: on top of a jump :math:`J` every window reads
-    the mean of both sides, off by :math:`J / 2`, while two windows differ by :math:`0.2\,J` to
-    :math:`0.35\,J` beside it.  One between, chosen because a wider one is contradicted, carries the
-    greater of the two.  Near the ends of a curve, where the blur is that of the nearest bin that
-    has one, its straight continuation bounds what is missed, evenly distributed.
+    The remaining error is the root mean square difference from the narrower windows over the
+    window's width, less their noise.  For the narrowest window it is the greatest difference from
+    the next wider one within its width, times :math:`\sqrt 2`: on top of a jump :math:`J` every
+    window reads the mean of both sides, wrong by :math:`J / 2`, while two windows differ by
+    :math:`0.2\,J` to :math:`0.35\,J` beside it.  One in between, chosen because a wider one is
+    contradicted, has the greater of the two.  Near the ends of a curve, where the blur is that of
+    the nearest bin that has one, its straight continuation bounds the error, uniformly distributed.
 
     Examples
     --------
-    A modulus of 3 that falls to 1, of which the wide window reads 2.33 where the narrow one reads
-    2.8; within two bins of the narrow one's own bins half of the jump may be missed.
+    A modulus of 3 that falls to 1; the wide window reads 2.33 where the narrow one reads
+    2.8; within two bins of the narrow one's own bins half of the jump may be missed:
 
     >>> before, after = np.full(8, 3.0), np.ones(8)
     >>> wide = np.concatenate([before, [2.9, 2.33, 1.67, 1.1], after])[None]
@@ -555,7 +556,7 @@ def adapt_window(
     2.8 [0.   0.04 0.21 0.66 0.66 0.66]
     """
     rough_alone = [_roughness(*one) for one in zip(slope, half_windows, strict=True)]
-    # a wide window averages more than a narrow one: what its differences show beyond is the curve
+    # a wide window averages more than a narrow one: an excess of its differences is the curve
     least = np.minimum.accumulate(rough_alone[::-1])[::-1]
     roughness = np.where(np.isfinite(least), least, 0.0)
     noises = [
@@ -565,7 +566,7 @@ def adapt_window(
         )
         for by_residuals, by_jumps in zip(deviation, roughness, strict=True)
     ]
-    # of the widest window the scatter of the cycles says what the residuals of all together do not
+    # for the widest window the scatter of the cycles shows more than the residuals of all together
     rough = [0 * slope[0] + roughness[0], *noises[1:]]
     last = len(slope) - 1
     chosen: Integers = np.zeros(slope[0].shape, dtype=np.int64)
@@ -579,17 +580,17 @@ def adapt_window(
         chosen = np.where(is_sound, wide, chosen)
     chosen = _without_lone_choices(chosen, slope, half_windows[0])
     missed = _unseen_by_one(blur[0], half_windows[0], noise=deviation[0]) ** 2
-    # of a curve shorter than two windows no blur is known: its modulus may change within one
+    # for a curve shorter than two windows no blur is known: its modulus may change within one
     is_blind = [(one == 0).all(axis=-1, keepdims=True) for one in blur]
     missed += np.where(is_blind[0], _range(slope[0]) ** 2 / 3, 0.0)
-    # of one shorter than that by half, the bend of all of it is known, and not where in it that is
+    # for one shorter by half, the mean curvature is known, but not where the curve bends
     n_known = np.isfinite(slope[0]).sum(axis=-1, keepdims=True)
     bend = _UNSEEN_OF_BEND * np.abs(blur[0]).max(axis=-1, keepdims=True)
     bend = np.hypot(bend, _UNSEEN_OF_RANGE * _range(slope[0]))
     missed = np.where(n_known <= 2 * (half_windows[0] + 1), np.maximum(missed, bend**2), missed)
     for wide, half in enumerate(half_windows[:-1]):
         squares = {n: (slope[wide] - slope[n]) ** 2 for n in range(wide + 1, last + 1)}
-        # against the next one a blind window is not given the benefit of the noise
+        # noise is not subtracted when a blind window is compared with the next one
         of_wide = np.maximum.reduce([
             _near(
                 square - np.where(is_blind[wide] & (narrow == wide + 1), 0.0, noises[narrow] ** 2),
@@ -597,7 +598,7 @@ def adapt_window(
             )
             for narrow, square in squares.items()
         ])  # fmt: skip
-        if wide:  # where a wider one was contradicted, a narrower one too noisy says nothing new
+        if wide:  # where a wider one was contradicted, a noisy narrower one gives nothing new
             of_wide = np.maximum(of_wide, missed)
         missed = np.where((chosen == wide) & (finest > wide), of_wide, missed)
         for narrow, square in squares.items():
@@ -605,7 +606,7 @@ def adapt_window(
             shown = square - np.where(finest > narrow, noises[narrow] ** 2, 0.0)
             of_narrow = _UNSEEN**2 * _near(shown, beside, is_highest=True) + blur[narrow] ** 2
             missed = np.where(chosen == narrow, of_narrow, missed)
-    # windows cross halfway over a jump: what both sides of a few bins miss, these miss too
+    # windows cross halfway over a jump: an error on both sides of a few bins applies to them too
     around = _near(missed, half_windows[-1], is_highest=True)
     missed = np.maximum(missed, -_near(-around, half_windows[-1], is_highest=True))
     adapted = np.choose(chosen, slope)
@@ -628,11 +629,11 @@ def adapt_window(
 
 
 def _unseen_by_one(blur: Floats, half_window: int, *, noise: Floats) -> Floats:
-    """What one width may miss: as much as it shows to change of a smooth bend, or all of the bend.
+    """Possible error of a single width: the change of a smooth curvature, or all of the curvature.
 
-    A jump makes the second difference, and with it the blur, change its sign within a window; of a
-    smooth bend it changes little, but for the noise of the slopes it is made of.  That is the one
-    that the residuals show: the roughness of a curve holds its jumps as well.
+    At a jump the second difference, and with it the blur, changes sign within a window.  For a
+    smooth curvature it changes little, apart from the noise of the slopes.  This noise is taken
+    from the residuals, since the roughness of a curve includes its jumps.
     """
     size = 4 * half_window + 1
     high = scipy.ndimage.maximum_filter1d(blur, size, axis=-1, mode="nearest")
@@ -646,7 +647,7 @@ def _unseen_by_one(blur: Floats, half_window: int, *, noise: Floats) -> Floats:
 
 
 def _range(slope: Floats) -> Floats:
-    """Range of each curve, 0 where nothing of it is known."""
+    """Range of each curve, 0 where all of it is missing."""
     known = np.isfinite(slope)
     high, low = (
         way * np.where(known, way * slope, -np.inf).max(axis=-1, keepdims=True) for way in (1, -1)
@@ -655,10 +656,10 @@ def _range(slope: Floats) -> Floats:
 
 
 def _missed_at_ends(slope: Floats, half_window: int) -> Floats:
-    """Half of what the bins next to a reversal rise above the line of those further inside.
+    """Half of the rise of the bins next to a reversal above the line of those further inside.
 
     A jump at the reversal itself, which reaches the first windows through the noise of strain, has
-    no bins on its other side by which it could be told from a modulus that rises.
+    no bins on its other side that would distinguish it from a rising modulus.
     """
     missed = np.zeros_like(slope)
     for curve in np.ndindex(slope.shape[:-1]):
@@ -677,13 +678,13 @@ def _missed_at_ends(slope: Floats, half_window: int) -> Floats:
 
 
 def _change_at_ends(slope: Floats, blur: Floats, half_window: int) -> Floats:
-    """How far the blur of the nearest bin that has one is from its straight continuation."""
+    """Difference between the blur of the nearest bin that has one and its straight continuation."""
     change = np.zeros_like(blur)
     step = half_window + 1
     beside = -(-step // 2)
     for curve in np.ndindex(slope.shape[:-1]):
         known = np.flatnonzero(np.isfinite(slope[curve]))
-        if known.size <= 2 * step + beside:  # of a bend in the middle alone: it may double, or end
+        if known.size <= 2 * step + beside:  # curvature known in the middle only: may double
             change[curve] = np.abs(blur[curve])
             continue
         for inwards in (known, known[::-1]):

@@ -1,4 +1,4 @@
-"""Strain that no specimen has: the whole length lost, or shorter than at rest while it pulls."""
+"""Impossible strain: the whole length lost, or shorter than at rest while the specimen pulls."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from reduction.record.notes import Note, note
 from reduction.record.samples import finite_extremes
 from reduction.stages.load_at_slack import PULLS_BACK, rises_with_stretch
 
-# of the reference tension: noise about it, and what a rope creeps by, are no contradiction
+# of the reference tension: noise about it and creep of a rope are no contradiction
 _ABOVE = 2.0
 
-_BELOW = 0.01  # of the range of strain: what the zero of a tape and a scale leave
+_BELOW = 0.01  # of the range of strain: error left by the zero of a tape and by a scale
 
 _FEWEST, _SHARE = 3, 0.005  # samples
 
 
 def refuse_impossible_strain(strain: Floats, *, specimen: str, test_id: str) -> None:
-    """Refuse strain at or below -100 %: nothing that is left of a specimen has it.
+    """Refuse strain at or below -100 %, which nothing left of a specimen can have.
 
     Examples
     --------
@@ -49,11 +49,11 @@ def refuse_impossible_strain(strain: Floats, *, specimen: str, test_id: str) -> 
 def note_on_strain_below_zero(
     strain: Floats, tension: Floats, *, specimen: str, reference_tension: float
 ) -> tuple[Note, ...]:
-    """Say that a specimen is shorter than at its reference tension while it pulls more.
+    """Report that a specimen is shorter than at its reference tension while it pulls more.
 
-    ``reference_tension`` [N] is that at which strain is zero: that of the gauge length, or that up
+    ``reference_tension`` [N] is the tension of zero strain: that of the gauge length, or that up
     to which the specimen counts as slack.  A position that falls while tension rises has a wrong
-    sign, another one a wrong zero.  What was pushed pulls on its way back while it is still short.
+    sign, otherwise the zero is wrong.  A pushed specimen pulls on its way back while still short.
 
     Examples
     --------

@@ -1,18 +1,18 @@
-r"""The laws that tape readings at the splice toes can carry, each fitted, judged and weighed.
+r"""The splice laws that tape readings at the toes support, each fitted, judged and weighted.
 
-Every law says by how much the splices lengthen,
+Every law gives the strain of the splices as
 
 .. math:: \varepsilon_s = s_0 + \rho\,\varepsilon + \kappa\,\varepsilon^2
    + \gamma\,\varepsilon^3 + c F^n + a\,(1 - e^{-b F})
 
-and they differ in the terms that they have: the splices strain by the tension that they carry
-(:math:`c, n`, or up to a limit, :math:`a, b`), by a share of what the free length does
-(:math:`\rho`), by a share that changes along the stroke (:math:`\kappa, \gamma`), by both, or
+and the laws differ in their terms: the splices strain by the tension that they carry
+(:math:`c, n`, or up to a limit, :math:`a, b`), by a fraction of the free strain
+(:math:`\rho`), by a fraction that changes along the stroke (:math:`\kappa, \gamma`), by both, or
 after they have bedded in (:math:`s_0`).
 
-Tape readings tell a law of tension from one of strain by their bend alone, and a loop of the one
-has another width than a loop of the other.  Each side therefore has laws that bend as they need, a
-power of the tension and a cubic in the strain, and none may have splices that shorten as the free
+Tape readings distinguish a law of tension from one of strain by curvature alone, and the loops of
+the two have different widths.  Each side therefore has laws with enough curvature, a
+power of the tension and a cubic in the strain.  None may have splices that shorten as the free
 length stretches at one tension: a mixture would use that to imitate a curve.
 
 References
@@ -51,7 +51,7 @@ LAWS: dict[str, tuple[str, ...]] = {
     "saturating mixture": ("strain", "saturating"),
     "saturating with line": ("tension", "saturating"),
 }
-"""Laws and the terms of the splice strain that each of them has."""
+"""Laws and the terms of the splice strain in each of them."""
 
 SATURATING = {
     "saturating": "tension-driven",
@@ -59,33 +59,33 @@ SATURATING = {
     "saturating mixture": "mixture",
     "saturating with line": "tension-driven",
 }
-"""Laws of which the strain by the tension tends to a limit, and what they are without one."""
+"""Laws whose strain by tension tends to a limit, and the corresponding law without one."""
 
 TERMS = {"offset": 0, "strain": 1, "square": 2, "cube": 3, "tension": 4, "saturating": 6}
 """Places in `FittedLaw.values`: the last two are splice strains at the reference tension."""
 
 OF_TENSION = frozenset({"tension", "saturating"})
-"""Terms by which splices strain by the tension that they carry."""
+"""Terms for strain of the splices by the tension that they carry."""
 
 _EXPONENT, _SATURATION, _N_VALUES = 5, 7, 10
 _OF_TENSION = np.arange(4, 8)  # both of them, each with its shape
 
 _TENSIONS = 24  # at which laws that saturate are compared
 
-_RANK = 1e-6  # of the change of these strains with a law: what less than this says is nothing
+_RANK = 1e-6  # of the change of these strains with a law: smaller singular values are dropped
 
 REJECTED = 0.001
-"""A law that sound marks would miss this rarely by as much is not used. [1]"""
+"""Least chance of a misfit, for sound marks, at which a law is still used. [1]"""
 
 _EXACT = 1e-14  # variance of a relative length
 
-_FAR = 4.0  # standard errors by which a mark is off every law before it is set aside
+_FAR = 4.0  # standard errors from every law beyond which a mark is set aside
 
-_ENOUGH = 6  # loaded marks from which one may be set aside
+_ENOUGH = 6  # loaded marks for each one that may be set aside
 
 _PASSES = 3
 
-_DOUBT = 0.05  # chance of a misfit below which slip and single marks are looked for
+_DOUBT = 0.05  # chance of a misfit below which slip and outlying marks are tested
 
 _SLIPS = np.geomspace(0.5, 100.0, 16)  # of a reading of the tape
 
@@ -93,37 +93,37 @@ _STEP = 0.01  # of the exponent, for the curvature of the misfit
 
 _EXPONENTS = np.linspace(0.3, 1.9, 9)
 
-# of the exponent between those: a bend of the misfit that no range holds says nothing of it
+# of the exponent between those: used where the misfit's curvature does not limit it to the range
 _FINE_EXPONENTS = np.linspace(0.3, 1.9, 33)
 
-# of the saturation b times the reference tension: a straight line has none, and above the last
+# of the saturation b times the reference tension: zero is a straight line, and above the last
 # splices no longer lengthen
 _SATURATIONS = np.array([0.1, 0.3, 0.6, 1.0, 1.5, 2.0, 2.7, 3.5, 4.5, 6.0, 8.0])
 _FINE_SATURATIONS = np.linspace(0.1, 8.0, 33)
 
 _NOWHERE = 1e12
 
-# of the splices' length: what splices settle by when they are first loaded; a law of position has
-# besides what its line or curve cannot follow below the lowest mark
+# of the splices' length: settlement of splices when they are first loaded; for a law of position
+# also the misfit of its line or curve below the lowest mark
 _BEDDING, _INTERCEPT = 0.03, 0.1
 
-_MOST_FALL = 2.0  # standard errors of the splice strain per free strain, below which it falls
+_MOST_FALL = 2.0  # standard errors by which splice strain per free strain may be negative
 
-# of the weight of laws, for a side that fits: of two laws with this and the rest, the 95 % interval
-# about their mean reaches both, as 1.96 sqrt(w (1 - w)) >= 1 - w
+# least weight of the laws of a side that fits: for two laws with this weight and the rest, the 95 %
+# interval about their mean reaches both, as 1.96 sqrt(w (1 - w)) >= 1 - w
 _LEAST = 1 / (1 + 1.96**2)
 
 _CURVE = 4  # coefficients of the tension over the strain, at most
 
-_SPARE = 2  # marks more than coefficients, for a cubic to be tried
+_SPARE = 2  # marks in excess of coefficients from which a cubic is tried
 
-_SPAN = 1.5  # of tension, from which an exponent is looked for
+_SPAN = 1.5  # ratio of tensions from which an exponent is fitted
 
 
 @dataclass(frozen=True)
 @read_only_arrays
 class SpliceReadings:
-    """Stretched and slack rows of a specimen, as the laws need them; shape (n_rows,).
+    """Stretched and slack rows of a specimen, in the form that the laws need; shape (n_rows,).
 
     ``free`` [1] and ``splice`` [1] are strains of the free length and of both splices; ``tension``
     [N] is NaN where it is not known and ``tension_uncertainty`` [1] its relative standard
@@ -131,7 +131,7 @@ class SpliceReadings:
     relaxed length of the splices over that of the free length [1], ``tape`` the standard
     uncertainty of one reading over the relaxed length of the splices [1], worth
     ``tape_freedom`` readings where it was not stated, and ``relaxed`` the covariance of the
-    relative errors of free and splice length [1]; ``row`` is where each stands among the marks.
+    relative errors of free and splice length [1]; ``row`` is the place of each among the marks.
     """
 
     free: Floats
@@ -167,12 +167,12 @@ class SpliceReadings:
 @dataclass(frozen=True)
 @read_only_arrays
 class FittedLaw:
-    """One law at its best: coefficients of `TERMS`, shapes and relaxed lengths, with covariance.
+    """Best fit of one law: coefficients of `TERMS`, shapes and relaxed lengths, with covariance.
 
-    Shape (10,) and (10, 10), zero of a term that it lacks.  After the tension stands its exponent,
-    after the saturating term its saturation, b times the reference tension; the last two are by how
-    much free and splice length are longer than the slack rows say, relative.  ``chi_square`` is
-    against the stated error of the tape, with ``freedom``; ``chance`` is its probability,
+    Shape (10,) and (10, 10), zero for missing terms.  The tension is followed by its exponent,
+    the saturating term by its saturation, b times the reference tension; the last two are the
+    relative excess of free and splice length over the slack rows.  ``chi_square`` is
+    relative to the stated error of the tape, with ``freedom``; ``chance`` is its probability,
     ``criterion`` that of Akaike.
     """
 
@@ -186,14 +186,14 @@ class FittedLaw:
 
     @property
     def chance(self) -> float:
-        """Probability of a misfit as large, were the law and the stated error right. [1]."""
-        # what splices settle by is known beforehand, and is missed as one more reading is
+        """Probability of a misfit at least as large if law and stated error are right. [1]."""
+        # the usual settlement of splices is known beforehand, and counts as one more reading
         freedom = self.freedom + ("offset" in LAWS[self.name])
         return 1.0 if freedom <= 0 else float(scipy.special.chdtrc(freedom, self.chi_square))
 
     @property
     def spread(self) -> Floats:
-        """Covariance; of a doubtful law by the errors that its misfit asks for, shape (10, 10)."""
+        """Covariance, scaled up for a doubtful law according to its misfit, shape (10, 10)."""
         is_doubtful = self.freedom > 0 and self.chance < _DOUBT
         return self.covariance * (self.chi_square / self.freedom if is_doubtful else 1.0)
 
@@ -204,7 +204,7 @@ class FittedLaw:
         return len(LAWS[self.name]) + int(np.count_nonzero(shapes))
 
     def by_tension(self, relative: Floats) -> tuple[Floats, Floats]:
-        """Splice strain by a tension over the reference, and its change with the logarithm."""
+        """Splice strain by a relative tension, and its derivative by the logarithm."""
         power = self.values[TERMS["tension"]] * relative ** self.values[_EXPONENT]
         limited, steepness = _saturated(relative, float(self.values[_SATURATION]))
         size = self.values[TERMS["saturating"]]
@@ -219,29 +219,29 @@ class SpliceAverage:
     Parameters
     ----------
     values : ndarray, shape (10,)
-        Mean coefficients of `TERMS` and of their shapes, and by how much relaxed free and splice
-        length are longer than the slack rows say, relative. [1]
+        Mean coefficients of `TERMS` and of their shapes, and relative excess of relaxed free and
+        splice length over the slack rows. [1]
     covariance : ndarray, shape (10, 10)
-        By the tape alone. [1]
+        From errors of the tape alone. [1]
     between : ndarray, shape (10, 10)
-        By which law it is. [1]
+        From the choice of law. [1]
     reference : float
-        Tension at which the splices strain by the coefficients of `OF_TENSION`. [N]
+        Tension at which the coefficients of `OF_TENSION` are the splice strains. [N]
     laws : tuple of FittedLaw
         Every law that was fitted, best first.
     weight : ndarray, shape (n_laws,)
-        Zero of those rejected. [1]
+        Zero for rejected laws. [1]
     slip : float
         Standard deviation of the splice strain between tests; zero where the marks show none. [1]
     test_offset : ndarray, shape (n_tests,)
-        By how much the splices of each test are longer, over their length. [1]
+        Relative excess length of the splices of each test. [1]
     test_variance : ndarray, shape (n_tests,)
-        Of these. [1]
+        Variance of these. [1]
     set_aside : tuple of int
-        Rows that lie far off every law that the others agree with, at most one of six.
+        Rows far from every law that the others agree with, at most one of six.
     is_checked : bool
-        False where every law with a mark to spare is doubtful, and others follow any marks: a
-        misread mark would not show.  Where none of the former passes at all, laws that the marks
+        False where every law with a spare mark is doubtful, and the others follow any marks: a
+        misread mark would not show.  Where none of the former passes, laws that the marks
         reject have a weight.
     """
 
@@ -261,49 +261,50 @@ class SpliceAverage:
 def fit_splice_laws(
     readings: SpliceReadings, *, specimen: str = "", names: Sequence[str] = ()
 ) -> SpliceAverage:
-    r"""Fit every law that the marks can carry, and average those that they do not reject.
+    r"""Fit every law that the marks support, and average those that they do not reject.
 
     Parameters
     ----------
     readings : SpliceReadings
-        Of all tests of the specimen.
+        Rows of all tests of the specimen.
     specimen : str
-        For messages.
+        Name, for messages.
     names : sequence of str
-        Of the rows, for messages.
+        Names of the rows, for messages.
 
     Returns
     -------
     average : SpliceAverage
-        With the laws, the best first.
+        With the laws, best first.
 
     Raises
     ------
     DataError
-        If no law has a mark to rest on, or the marks reject every law.
+        If no law has a mark to be fitted to, or the marks reject every law.
 
     Notes
     -----
-    A law passes whose misfit, against the stated error of the tape, has a chance of one in a
-    thousand or more.  Laws that pass are weighed by Akaike's criterion,
+    A law passes if its misfit, relative to the stated error of the tape, has a chance of at least
+    one in a thousand.  Laws that pass are weighted by Akaike's criterion,
     :math:`w \propto e^{-\mathrm{AIC}/2}`; equally where one of them has fewer marks than
-    coefficients and two, since the misfit then says nothing.  Where a law of tension alone and one
-    of strain alone both fit, neither has less than a fifth: their bend tells them apart, the width
-    of a loop hangs on which it is, and that the true bend is a power or a cubic is an assumption.
-    What the laws differ by is a source
+    coefficients plus two, since the misfit then shows nothing.  Where a law of tension alone and
+    one of strain alone both fit, neither has less than a fifth.  Only curvature distinguishes them,
+    the width of a loop depends on the choice, and it is an assumption that the true curve is a
+    power or a cubic.  The difference between the laws is a source
     of uncertainty of its own, the second term of
 
     .. math:: \sum w_k C_k + \sum w_k (\theta_k - \bar\theta)(\theta_k - \bar\theta)^T
 
-    ([1]_, eq. 4.9, without its square root), where an exponent of one law is worth, in that of the
-    mean, as much as its law strains by the tension.  An exponent that the marks do not fix has the
-    variance that the misfit leaves it within its range.  Where readings of one test lie off
-    together, the splices have slipped between tests ([2]_, sec. 4.7): the variance between tests
-    is the most likely one, and each test has the offset that its own marks say, drawn towards none.
+    ([1]_, eq. 4.9, without its square root).  An exponent of one law counts in that of the
+    mean in proportion to the strain of its law by tension.  An exponent that the marks do not
+    determine has the variance that the misfit leaves within its range.  Where readings of one test
+    are off together, the splices have slipped between tests ([2]_, sec. 4.7): the variance between
+    tests is the most likely one, and each test has the offset by its own marks, shrunk towards
+    zero.
 
     Examples
     --------
-    Splices that strain 22 % of what the free length does, read without error:
+    Splices that strain 22 % of the free strain, read without error:
 
     >>> free = np.array([0.0, 0.8, 1.0, 1.2, 1.5, 1.8, 2.1])
     >>> found = fit_splice_laws(SpliceReadings(
@@ -338,7 +339,7 @@ def fit_splice_laws(
     has_spare = np.array([law.freedom > 0 for law in laws])
     is_sure = np.array([law.chance >= _DOUBT for law in laws])
     is_checked = bool((has_spare & is_sure).any() or not (passing & ~has_spare).any())
-    # else that its laws bend as the marks do is all that tells a side from the other
+    # if not, the sides are distinguished only by how well their curvature fits the marks
     is_told = _is_told_apart(kept, laws)
     if not is_told or not (passing & has_spare).any():
         passing = _with_nearest(laws, passing)
@@ -348,7 +349,7 @@ def fit_splice_laws(
     criterion = np.array([law.criterion for law in laws])
     if is_known:
         weight = np.exp(-(criterion - criterion[passing].min()) / 2)
-    else:  # laws of one side say much the same: together they have as much as those of another
+    else:  # laws of one side are alike: together they weigh as much as those of another side
         side = np.array([2, 1]) @ _sides(laws)
         weight = 1.0 / np.array([np.count_nonzero(passing & (side == one)) or 1 for one in side])
     weight = np.where(passing, weight, 0.0) / weight[passing].sum()
@@ -378,13 +379,13 @@ def fit_splice_laws(
 
 
 def _mean_by_tension(values: Floats, weight: Floats, top: float) -> tuple[Floats, Floats, Floats]:
-    """Mean strain by the tension, what errors of each law are worth in it, and its distance.
+    """Mean strain by tension, effect of the errors of each law on it, and its distance.
 
-    Shapes (4,), (n_laws, 10, 10) and (n_laws, 4).  Powers of like exponents add up to one of their
-    mean, weighed by what each strains: what an exponent is off by is worth what its own law strains
-    by the tension, and that of the mean what the mean strains by it.  Laws that saturate add up to
-    no law of their kind: there the mean is what lies nearest to all of them up to the top tension,
-    and errors and distances are those of the strain.
+    Shapes (4,), (n_laws, 10, 10) and (n_laws, 4).  Powers of like exponents combine to one of
+    their mean, weighted by their strains: the error of an exponent counts in proportion to the
+    strain of its own law by tension, and that of the mean to the mean strain.  Laws that saturate
+    do not combine to a law of their kind: the mean is then the law nearest to all of them up to
+    the top tension, and errors and distances are those of the strain.
     """
     own = values[:, _OF_TENSION]
     mean = weight @ own
@@ -428,7 +429,7 @@ def _mean_by_tension(values: Floats, weight: Floats, top: float) -> tuple[Floats
 
 
 def _strain_by_tension(law: Floats, relative: Floats) -> tuple[Floats, Floats]:
-    """Strain by a tension over the reference, and its change with the four numbers of a law."""
+    """Strain by a relative tension, and its derivatives by the four numbers of a law."""
     size, exponent, limited, saturation = law
     power = relative**exponent
     share, _ = _saturated(relative, saturation)
@@ -443,7 +444,7 @@ def _strain_by_tension(law: Floats, relative: Floats) -> tuple[Floats, Floats]:
 
 
 def _sides(laws: Sequence[FittedLaw]) -> Bools:
-    """Which laws are of tension alone, and which of strain alone, shape (2, n_laws)."""
+    """Mark laws of tension alone, and laws of strain alone, shape (2, n_laws)."""
     terms = [frozenset(LAWS[law.name]) - {"offset"} for law in laws]
     return np.array(
         [[only <= OF_TENSION for only in terms], [not only & OF_TENSION for only in terms]]
@@ -451,13 +452,13 @@ def _sides(laws: Sequence[FittedLaw]) -> Bools:
 
 
 def _is_told_apart(readings: SpliceReadings, laws: Sequence[FittedLaw]) -> bool:
-    """Whether marks at one strain differ so much in tension that splices driven by it show it."""
+    """Whether tensions at one strain differ enough to show splices that are driven by tension."""
     loaded = ~readings.is_slack
     driven = [law for law in laws if _sides([law])[0].any()]
     if not driven:
         return True
     tension = readings.tension[loaded]
-    # the tension as a curve over the strain, as marks of one pull have it
+    # tension as a curve over strain, as for marks of one pull
     powers = np.vander(readings.free[loaded], min(_CURVE, tension.size))
     curve = powers @ np.linalg.lstsq(powers, np.log(tension), rcond=None)[0]
     steepness = driven[0].by_tension(tension / readings.reference)[1]
@@ -466,9 +467,9 @@ def _is_told_apart(readings: SpliceReadings, laws: Sequence[FittedLaw]) -> bool:
 
 
 def _with_nearest(laws: Sequence[FittedLaw], passing: Bools) -> Bools:
-    """Laws that pass, and the nearest of a side that has none; of all, where a side has no law.
+    """Laws that pass, and the nearest of a side without one; of all, if a side has no law.
 
-    Those that pass follow any marks, so that their misfit says nothing of a misread one.
+    Those that pass without it follow any marks, so that their misfit would not show a misread one.
     """
     misfit = np.array([law.chi_square / law.freedom if law.freedom > 0 else np.inf for law in laws])
     kept = passing.copy()
@@ -483,7 +484,7 @@ def _with_nearest(laws: Sequence[FittedLaw], passing: Bools) -> Bools:
 
 
 def _with_both_sides(laws: Sequence[FittedLaw], weight: Floats, counts: Bools) -> Floats:
-    """Weights with as much for laws of tension alone, and of strain alone, as an interval needs."""
+    """Weights with at least the share for each side, tension and strain, that an interval needs."""
     sides = _sides(laws)
     fits = counts & (weight > 0)
     if not (sides & fits).any(axis=1).all():
@@ -499,14 +500,14 @@ def _with_both_sides(laws: Sequence[FittedLaw], weight: Floats, counts: Bools) -
 
 @dataclass(frozen=True)
 class _Judged:
-    """Laws, best first, and how far the splices slip between tests."""
+    """Laws, best first, and the slip of the splices between tests."""
 
     laws: list[FittedLaw]
     slip: float
 
 
 def _judged(readings: SpliceReadings) -> _Judged:
-    """Every law; with slip between tests, where the marks ask for it."""
+    """Fit every law, with slip between tests if the marks require it."""
     laws = _fitted(readings, 0.0)
     if not laws or np.unique(readings.test).size < 2 or laws[0].chance >= _DOUBT:
         return _Judged(laws, 0.0)
@@ -524,7 +525,7 @@ def _judged(readings: SpliceReadings) -> _Judged:
         if (found := _fit(readings, name, shape_of(name), float(slip))) is not None
     ]
     criterion, slip = min(tried)
-    # one more number was found from the marks
+    # the slip is one more fitted parameter
     if criterion + 2 >= best.criterion:
         return _Judged(laws, 0.0)
     return _Judged(_fitted(readings, slip), slip)
@@ -536,15 +537,15 @@ def _fitted(readings: SpliceReadings, slip: float) -> list[FittedLaw]:
 
 
 def _law(readings: SpliceReadings, name: str, slip: float) -> FittedLaw | None:
-    """One law; of the tension with an exponent or a saturation, where the marks fix one."""
+    """Fit one law, with an exponent or a saturation if the marks determine one."""
     is_limited = name in SATURATING
     at_one = _fit(readings, SATURATING.get(name, name), 1.0, slip)
     if not is_limited and (at_one is None or not set(LAWS[name]) & OF_TENSION):
         return at_one
-    # without a bend it is another of the laws
+    # without curvature it is another of the laws
     without = None if is_limited else at_one
     loaded = readings.tension[~readings.is_slack]
-    # of two marks the tension alone may have one that leaves none to spare: no misfit judges it
+    # the law of tension alone may use two marks and leave none to spare: no misfit judges it
     spare = 1 if LAWS[name] == ("tension",) else 3 + (is_limited and len(LAWS[name]) > 1)
     if loaded.size < len(LAWS[name]) + spare or loaded.max() < _SPAN * loaded.min():
         return without
@@ -554,14 +555,14 @@ def _law(readings: SpliceReadings, name: str, slip: float) -> FittedLaw | None:
         found = _fit(readings, name, shape, slip)
         return _NOWHERE if found is None else min(found.criterion, _NOWHERE)
 
-    # a sharp minimum lies between the points of any grid, so that it is followed down
+    # a sharp minimum may lie between the points of any grid, so it is refined by a search
     place = int(np.argmin([criterion(float(one)) for one in grid]))
     ends = grid[max(place - 1, 0)], grid[min(place + 1, grid.size - 1)]
     search = scipy.optimize.minimize_scalar(
         criterion, bounds=ends, method="bounded", options={"xatol": 1e-5}
     )
     shape, best = float(search.x), float(search.fun)
-    # a number more than the straight line has; what saturates below the lowest mark is an offset
+    # one parameter more than the straight line; saturation below the lowest mark is an offset
     is_offset = is_limited and shape > grid[-1] - _STEP
     if is_offset or best + 2 >= (_NOWHERE if at_one is None else at_one.criterion):
         return without
@@ -594,7 +595,7 @@ def _shape(law: FittedLaw) -> float:
 
 
 def _saturated(relative: Floats, saturation: float) -> tuple[Floats, Floats]:
-    """1 - exp(-b F) over its value at the reference tension, and its change with ln F."""
+    """1 - exp(-b F) over its value at the reference tension, and its derivative by ln F."""
     if saturation == 0.0:
         return relative, relative
     at_reference = -np.expm1(-saturation)
@@ -616,7 +617,7 @@ def _terms(readings: SpliceReadings, exponent: float, saturation: float) -> dict
 
 
 def _fit(readings: SpliceReadings, name: str, shape: float, slip: float) -> FittedLaw | None:
-    """One law by generalised least squares; None where the marks cannot carry it."""
+    """Fit one law by generalised least squares; None where the marks do not support it."""
     places = [TERMS[term] for term in LAWS[name]]
     rows = np.arange(readings.free.size)
     is_driven = bool(set(LAWS[name]) & OF_TENSION)
@@ -632,21 +633,21 @@ def _fit(readings: SpliceReadings, name: str, shape: float, slip: float) -> Fitt
     load = np.maximum(np.nan_to_num(readings.tension), 0.0) / readings.reference
     steepness = np.where(readings.is_slack, 0.0, _saturated(load, saturation)[1])
     design = np.stack([columns[term] for term in LAWS[name]], axis=1)
-    # columns by their size: a tension has another than a strain
+    # columns are scaled by their size: tension and strain differ in magnitude
     size = np.sqrt((design**2).sum(axis=0))
     if (size == 0).any() or np.linalg.matrix_rank(design[loaded] / size, tol=1e-3) < len(places):
         return None
     known = np.zeros((len(places) + 2,) * 2)
     if "offset" in LAWS[name]:
-        # the first column: what splices settle by is small, whatever the readings would carry
+        # the first column: settlement of splices is small, whatever the readings allow
         usual = _BEDDING if is_driven else _INTERCEPT
         known[0, 0] = (usual * size[0]) ** -2
-    # lengths that count as exact stay as they are
+    # lengths that count as exact are not changed
     known[-2:, -2:] = np.linalg.inv(readings.relaxed + _EXACT * np.eye(2))
     slope, per_tension = np.zeros(rows.size), np.zeros(rows.size)
     for _ in range(_PASSES):
         covariance = _of_rows(readings, slope, slip, per_tension)
-        # the relaxed lengths are found anew: the slack rows know them beforehand, these too
+        # the relaxed lengths are fitted again, with the slack rows as prior information
         whole = np.concatenate([design / size, -_common(readings, slope)], axis=1)
         weighed = np.linalg.solve(covariance, whole)
         normal = np.linalg.inv(whole.T @ weighed + known)
@@ -657,7 +658,7 @@ def _fit(readings: SpliceReadings, name: str, shape: float, slip: float) -> Fitt
         slope = np.where(loaded, _per_strain(readings.free) @ values[1:4], 0.0)
         per_tension = exponent * values[TERMS["tension"]] * columns["tension"]
         per_tension = per_tension + values[TERMS["saturating"]] * steepness
-    # splices that shorten under load, or that stretch more than what they hold
+    # refuse splices that shorten under load, or stretch more than the free length that they hold
     if (
         values[list(map(TERMS.__getitem__, OF_TENSION))].min() < 0
         or (1 + readings.share * slope).min() <= 0.05
@@ -683,7 +684,7 @@ def _fit(readings: SpliceReadings, name: str, shape: float, slip: float) -> Fitt
         slack = np.diag(_of_rows(readings, slope, 0.0))[~loaded] / readings.tape**2
         spread -= float(np.log(slack).sum())
     count, worth = int(judged.sum()), readings.tape_freedom
-    # of an error of the tape that is itself not well known, a larger misfit says less
+    # with an uncertain error of the tape, a larger misfit is less significant
     misfit_term = chi_square if np.isinf(worth) else (worth + count) * np.log1p(chi_square / worth)
     return FittedLaw(
         name=name,
@@ -697,15 +698,15 @@ def _fit(readings: SpliceReadings, name: str, shape: float, slip: float) -> Fitt
 
 
 def _per_strain(free: Floats) -> Floats:
-    """Slopes of the terms in the strain of the free length; shape (n_rows, 3)."""
+    """Derivatives of the terms by the strain of the free length; shape (n_rows, 3)."""
     return np.stack([np.ones_like(free), 2 * free, 3 * free**2], axis=-1)
 
 
 def _of_rows(
     readings: SpliceReadings, slope: Floats, slip: float, per_tension: Floats | None = None
 ) -> Floats:
-    """Covariance of the rows: three readings of the tape each, the tension, what a test shares."""
-    # both toes are in the free length and, the other way, in the splices
+    """Covariance of the rows: three readings of the tape, the tension, and the slip of a test."""
+    # both toes are in the free length and, with opposite sign, in the splices
     own = readings.tape**2 * (2 * (1 + readings.share * slope) ** 2 + 1)
     if per_tension is not None and readings.tension_uncertainty.size:
         own = own + (per_tension * readings.tension_uncertainty) ** 2
@@ -714,7 +715,7 @@ def _of_rows(
 
 
 def _common(readings: SpliceReadings, slope: Floats) -> Floats:
-    """Change of the residuals with the relative errors of relaxed free and splice length."""
+    """Derivative of the residuals by the relative errors of relaxed free and splice length."""
     loaded = ~readings.is_slack
     return np.stack(
         [
@@ -726,7 +727,7 @@ def _common(readings: SpliceReadings, slope: Floats) -> Floats:
 
 
 def _offsets(readings: SpliceReadings, law: FittedLaw, slip: float) -> tuple[Floats, Floats]:
-    """Offset of each test by its own marks, drawn towards none, and its variance."""
+    """Offset of each test by its own marks, shrunk towards zero, and its variance."""
     n_tests = int(readings.test.max(initial=-1)) + 1
     if slip == 0.0:
         return np.zeros(n_tests), np.zeros(n_tests)
@@ -741,10 +742,10 @@ def _offsets(readings: SpliceReadings, law: FittedLaw, slip: float) -> tuple[Flo
 
 
 def _outlier(readings: SpliceReadings, slip: float) -> int | None:
-    """Return the stretched row that lies far off every law that is fitted without it."""
+    """Return the stretched row that is far from every law fitted without it."""
     far = np.zeros(readings.free.size)
     for row in np.flatnonzero(~readings.is_slack):
-        # what a law says of the row counts where the other marks agree with the law
+        # a law is used for this row if the other marks agree with it
         others = [
             law for law in _fitted(readings.without(int(row)), slip) if law.chance >= REJECTED
         ]
@@ -764,9 +765,9 @@ def _outlier(readings: SpliceReadings, slip: float) -> int | None:
     worst = int(np.argmax(far))
     if far[worst] <= _FAR:
         return None
-    # without it the marks have to agree with a law: else it is not the mark that is wrong; below or
-    # above all others it may as well be the law, so that they have to agree well, and one that
-    # saturates says nothing there
+    # without it the marks have to agree with a law, otherwise that mark may not be the wrong one;
+    # outside the range of the others the law may be wrong instead, so they have to agree well, and
+    # a law that saturates is no evidence there
     kept = readings.without(worst)
     known = kept.tension[~kept.is_slack]
     is_inside = known.min() <= readings.tension[worst] <= known.max()

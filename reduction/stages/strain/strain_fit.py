@@ -1,4 +1,4 @@
-"""Tape readings at the splice toes, and the strain model that they give.
+"""Tape readings at the splice toes, and the strain model fitted to them.
 
 **Coefficients of the strain methods from tape readings, each with its covariance.** A row of marks
 is three tape readings (near toe, far toe, far thimble) of one standard uncertainty.  The relaxed
@@ -61,29 +61,29 @@ from reduction.stages.strain.zero_strain import ZeroStrain
 
 LEVEL = 0.005
 
-"""Chance at which sound marks are taken to scatter too much. [1]"""
+"""Probability that sound marks are judged to scatter too much. [1]"""
 
-# five thousandths of a foot: what a reading of a stretched tether scatters by, where nothing is
-# stated of the tape
+# five thousandths of a foot: scatter of a reading of a stretched tether, where the error of the
+# tape is not stated
 _USUAL_TAPE = 0.005 * 0.3048
-_USUAL_READINGS = 4.0  # that this counts for, beside those of slack rows
+_USUAL_READINGS = 4.0  # weight of this value, beside those of slack rows
 
-# of the extension of the splices: what they creep by from the time of a cycle to that of a mark.
-# A judgement, as large as that of friction: no measurement of splices is known.
+# creep of the splices between the time of a cycle and that of a mark, as a fraction of their
+# extension.  A judgement, as large as that of friction: no measurement of splices is known.
 _CREEP = 0.02
 
-_CREEP_TOLD = 0.1  # of their extension, of which a note states the effect
+_CREEP_TOLD = 0.1  # of their extension: a note states the effect of this creep
 
-_CREEP_NOTICE = 0.005  # of a strain amplitude, from which it is stated
+_CREEP_NOTICE = 0.005  # of a strain amplitude: smaller effects are not stated
 
-_ANY = 12**0.5  # of a range, any value of which is as likely
+_ANY = 12**0.5  # range over standard deviation of a uniform distribution
 
 _CONFIDENCE = 0.975  # of one side of a 95 % interval
 
 
 @dataclass(frozen=True)
 class _RowScatter:
-    """What one row of a fit is good for."""
+    """Information in one row of a fit."""
 
     variance: float
     widening: float = 1.0
@@ -99,18 +99,18 @@ def _row_scatter(
 
     Notes
     -----
-    The columns of Q span what the coefficients cannot follow.  What the tape is known to do is
-    known better than what a few residuals say ([2]_): the larger of the two would be too large
-    in the mean, with one mark to spare by :math:`E \max(1, \chi^2_1) = 1.48`, which is 1.22 of
-    the standard uncertainty.  The residuals are therefore tested, and only where sound marks
-    would have them that large in one of 200 fits is the variance multiplied by the square of
-    the Birge ratio :math:`\chi^2 / \nu` ([1]_).  With one mark to spare that adds 4.4 % to the
-    mean variance of sound marks (:math:`P(\chi^2_3 > 7.88) - 0.005`); testing at 1 % would add
-    7.5 %.
+    The columns of Q span the space that the coefficients cannot follow.  The stated error of the
+    tape is better known than what a few residuals show ([2]_).  To take the larger of the two would
+    widen too much on average: with one mark to spare by :math:`E \max(1, \chi^2_1) = 1.48`, which
+    is 1.22 of the standard uncertainty.  The residuals are therefore tested.  Only where sound
+    marks would have residuals that large in one of 200 fits is the variance multiplied by the
+    square of the Birge ratio :math:`\chi^2 / \nu` ([1]_).  With one mark to spare this adds 4.4 %
+    to the mean variance of sound marks (:math:`P(\chi^2_3 > 7.88) - 0.005`); a test at 1 % would
+    add 7.5 %.
 
-    Where nothing is stated the scatter is all there is: its variance by :math:`\nu` degrees of
+    Where nothing is stated, only the scatter is known: its variance by :math:`\nu` degrees of
     freedom, times :math:`(t_\nu / 1.96)^2`, so that 1.96 standard uncertainties hold 95 %.
-    Without a row to spare nothing is known, and the coefficients count as exact.
+    Without a spare row nothing is known, and the coefficients count as exact.
 
     Examples
     --------
@@ -183,11 +183,11 @@ def _relaxed_lengths(
 
     Notes
     -----
-    The mean over tests, and not each test's own row: a reading is good to 0.01 ft
+    The mean over tests is used, not each test's own row: a reading is good to 0.01 ft
     ([3]_, Table 3), which is 0.12 % of the free length, and that would enter every
     strain and modulus of the test.  Rows that scatter more than the tape explains widen both
-    lengths, as `reduction.stages.strain.strain_fit._row_scatter` has it: a permanent set from
-    test to test does that, and a tape that is read worse than its last digit.
+    lengths (`reduction.stages.strain.strain_fit._row_scatter`).  Causes are a permanent set from
+    test to test, and a tape that is read less precisely than its last digit.
 
     Examples
     --------
@@ -206,7 +206,7 @@ def _relaxed_lengths(
     as_positive("relaxed length", rows)
     n_slack = rows.shape[1]
     mean = rows.mean(axis=1)
-    # uncorrelated: one tape made both lengths, and one scatter is judged
+    # made uncorrelated: one tape measured both lengths, and one scatter is judged
     apart = np.linalg.solve(np.linalg.cholesky(_OF_READINGS), rows - mean[:, None])
     scatter = _row_scatter(
         reading_uncertainty**2, apart.ravel(), np.kron(np.eye(2), np.ones((1, n_slack)))
@@ -255,7 +255,7 @@ def _check_marks(marks: SpliceMarks, *, tests: Collection[str] | None = None) ->
         rows = rows[np.argsort(marks.far_thimble[rows], kind="stable")]
         growth = np.diff(marks.free_length[rows])
         stroke = np.diff(marks.far_thimble[rows])
-        # the free length takes up no more than the stroke, and never falls
+        # the free length grows by no more than the stroke, and never shrinks
         bad = (growth < -allowance) | (growth > stroke + allowance)
         if bad.any():
             low, high = rows[np.flatnonzero(bad)[0] :][:2]
@@ -357,10 +357,10 @@ def measure_mark_tension(
 
     Notes
     -----
-    A mark belongs to the earliest hold at its position, within 50 mm: the report
-    marks while the machine is set up and cycles afterwards, and the crosshead may
-    stand there again, at another tension ([3]_, sec. 4.1).  Of a mark on the way down it is the
-    earliest whose tension was higher just before.
+    A mark belongs to the earliest hold at its position, within 50 mm: the marks of the report
+    were read during set-up, before cycling, and the crosshead may
+    stand there again at another tension ([3]_, sec. 4.1).  A mark on the way down belongs to the
+    earliest hold whose tension was higher just before.
 
     The rubber relaxes while a hold lasts, by 12 % in the longest one of a test at
     275 %, so it matters when the tape was read; the report does not say.  The
@@ -403,7 +403,7 @@ def measure_mark_tension(
         )
         distance[np.isnan(distance)] = (
             np.inf
-        )  # of a hold whose readings of position are all flagged
+        )  # for a hold in which all readings of position are flagged
         nearest = float(distance.min(initial=np.inf))
         if is_slack:
             measured.append(slack)
@@ -418,7 +418,7 @@ def measure_mark_tension(
 @dataclass(frozen=True)
 @read_only_arrays
 class _SpliceCalibration:
-    """Coefficients of one method."""
+    """Fitted coefficients of one method."""
 
     values: Floats
     covariance: Floats
@@ -506,7 +506,7 @@ def _fit_splice_ratio(
     Notes
     -----
     Errors of the free strain are one fortieth of its value in Table 3 of [3]_, so
-    that the ratio is not biased by them to the digits given.
+    their bias of the ratio is below the digits given.
 
     Examples
     --------
@@ -567,12 +567,12 @@ def _root(covariance: Floats) -> Floats:
 
 EXPONENT_BOUNDS = (0.3, 1.9)
 
-"""Exponents between which a splice law is looked for: a friction-locked splice
+"""Bounds of the search for the exponent of a splice law: a friction-locked splice
 stiffens with tension (below 1), one that beds in and then slides softens (above 1)."""
 
 HELD_EXPONENT = 1.0
 
-"""Exponent where the marks do not fix one: splices that strain in proportion to tension."""
+"""Exponent where the marks do not determine one: splices that strain in proportion to tension."""
 
 _POLISHING_STEPS = 30
 
@@ -595,8 +595,8 @@ def _fit_splice_law(
     Rows have equal weight: each splice length is three readings of one tape, and its stated
     error is taken unless the residuals refute it
     (`reduction.stages.strain.strain_fit._row_scatter`).  The
-    compliance is linear and solved for; the exponent is found by a bounded search
-    in one dimension, so that there is no starting value to depend on, and followed from there to
+    compliance is linear and solved for.  The exponent is found by a bounded search
+    in one dimension, so that there is no starting value to depend on, then refined to
     its last digits.
 
     Examples
@@ -622,7 +622,7 @@ def _fit_splice_law(
             needed=f"at least {n_values}",
         )
     strain = splice / relaxed_splice_length - 1
-    # tension over its geometric mean: keeps compliance and exponent apart in the fit
+    # tension is scaled by its geometric mean to decorrelate compliance and exponent in the fit
     reference = float(np.exp(np.mean(np.log(force))))
     relative = force / reference
 
@@ -686,8 +686,8 @@ def _polished(
 ) -> float:
     """Gauss-Newton steps while they get shorter.
 
-    A search that compares sums of squares stops at half the digits of the exponent, at a place
-    that the last digits of the sums decide, which are those of a processor.
+    A search that compares sums of squares finds only half the digits of the exponent; the rest
+    depends on the rounding of the sums, which differs between processors.
     """
     shortest = np.inf
     for _ in range(_POLISHING_STEPS):
@@ -708,7 +708,7 @@ TENSION_SPAN = 2.0
 
 """Marks must span this factor in tension before an exponent is fitted to them. [1]"""
 
-# an exponent less certain than this says nothing that a straight line does not
+# an exponent less certain than this adds nothing to a straight line
 _EXPONENT_UNCERTAINTY = 0.25
 
 
@@ -743,7 +743,7 @@ class PooledMarks:
 
     @property
     def knows_tension(self) -> bool:
-        """Whether a law of tension can be asked for at two stretched rows or more."""
+        """Whether a law of tension can be fitted to at least two stretched rows."""
         known = ~self.marks.is_slack & ~self.marks.is_unloading
         return bool(np.count_nonzero(known & (np.nan_to_num(self.tension) > 0)) > 1)
 
@@ -751,8 +751,8 @@ class PooledMarks:
         """Rows that fix the coefficients of a method.
 
         ``tension-driven`` and ``mixed``: all whose tension is known, since splices are the same
-        in every test; otherwise, and where ``mixed`` knows the tension of hardly one, those of the
-        test, or all where it has none.
+        in every test.  Other methods, and ``mixed`` where the tension is known for fewer than two
+        rows: the rows of the test, or all where it has none.
         """
         stretched = ~self.marks.is_slack & ~self.marks.is_unloading
         if method == "tension-driven" or (method == "mixed" and self.knows_tension):
@@ -792,7 +792,7 @@ def _with_relaxed(
 def _scatter_notes(
     marks: SpliceMarks, relaxed: _RelaxedLengths, fit: _SpliceCalibration
 ) -> tuple[Note, ...]:
-    """What the marks do that the tape does not explain."""
+    """Scatter of the marks that the tape does not explain."""
     told = {"slack rows": relaxed.note, "stretched marks": fit.note}
     return tuple(
         replace(one, subject=marks.specimen, numbers={"rows": rows, **one.numbers})
@@ -812,7 +812,7 @@ def _fit_marks(readings: PooledMarks) -> StrainModel:
     coefficients, covariance = _with_relaxed(
         ("free_length_intercept", "free_length_slope"), relaxed, line
     )
-    # the line knows no splice length
+    # the line does not use a splice length
     del coefficients["relaxed_splice_length"]
     keep = [0, 2, 3]
     return StrainModel(
@@ -841,7 +841,7 @@ def _fit_strain_ratio(readings: PooledMarks) -> StrainModel:
 
 
 def _fit_constant_fraction(readings: PooledMarks) -> StrainModel:
-    """As the report: the test's own slack row, the mean share of its stretched rows."""
+    """As in the report: the test's own slack row, the mean share of its stretched rows."""
     marks, rows = readings.marks, readings.stretched_rows("constant-fraction")
     slack = marks.is_slack & readings.is_own
     relaxed = (
@@ -850,7 +850,7 @@ def _fit_constant_fraction(readings: PooledMarks) -> StrainModel:
     n_slack = max(int(slack.sum()), 1)
     length = marks.far_thimble[rows]
     share = marks.free_length[rows] / length
-    # both toes, and the far thimble in the denominator
+    # both toes enter, and the far thimble in the denominator
     variance = marks.reading_uncertainty**2 * np.array(
         [np.sum((2 + share**2) / length**2) / rows.size**2, 2 / n_slack]
     )
@@ -898,7 +898,7 @@ def _fit_tension_driven(readings: PooledMarks) -> StrainModel:
 
 @dataclass(frozen=True)
 class _MixedFit:
-    """Average over the laws of the splices, and the model of one test that it gives."""
+    """Average over the laws of the splices, and the resulting model of one test."""
 
     average: SpliceAverage
     model: StrainModel
@@ -906,7 +906,7 @@ class _MixedFit:
 
 
 def _splice_readings(readings: PooledMarks, relaxed: _RelaxedLengths) -> SpliceReadings:
-    """Strains at every row: those whose tension is known, or all where hardly one is."""
+    """Strains at every row whose tension is known, or at all rows where hardly one is."""
     marks = readings.marks
     known = marks.is_slack.copy()
     known[readings.stretched_rows("mixed")] = True
@@ -929,7 +929,7 @@ def _splice_readings(readings: PooledMarks, relaxed: _RelaxedLengths) -> SpliceR
 
 
 def _tension_uncertainty(readings: PooledMarks) -> Floats:
-    """Relative, of when in its hold each mark was read: any moment is as likely. [1]."""
+    """Relative uncertainty of tension from the unknown time of reading in its hold. [1]."""
     if not readings.tension_at_start.size:
         return np.zeros(readings.tension.size)
     change = readings.tension_at_start - readings.tension
@@ -949,7 +949,7 @@ def average_over_laws(readings: PooledMarks) -> SpliceAverage:
 
 
 def _fit_mixed(readings: PooledMarks, average: SpliceAverage | None) -> _MixedFit:
-    """Average over the laws of the splices, as one test has it."""
+    """Average over the laws of the splices, for one test."""
     marks, relaxed = readings.marks, readings.relaxed()
     given = _splice_readings(readings, relaxed)
     if average is None:
@@ -975,7 +975,7 @@ def _fit_mixed(readings: PooledMarks, average: SpliceAverage | None) -> _MixedFi
     covariance = to_si @ average.covariance @ to_si.T
     between = to_si @ average.between @ to_si.T
     covariance[2, 2] += of_marks
-    if not average.slip:  # strain refers to the mean slack length, a test lies anywhere about it
+    if not average.slip:  # strain refers to the mean slack length; a test may lie anywhere about it
         of_slip = _growth_of_slack(marks) / (_ANY * splice)
     between += _of_creep(np.array(values), _mean_splice_strain(given, own))
     model = StrainModel(
@@ -991,17 +991,17 @@ def _fit_mixed(readings: PooledMarks, average: SpliceAverage | None) -> _MixedFi
 
 
 def _mean_splice_strain(given: SpliceReadings, own: Sequence[int]) -> float:
-    """Of the loaded marks of one test, or of all where it has none. [1]."""
+    """Mean splice strain of the loaded marks of one test, or of all where it has none. [1]."""
     loaded = ~given.is_slack
     of_test = loaded & np.isin(given.test, own)
     return float(given.splice[of_test if of_test.any() else loaded].mean())
 
 
 def _of_creep(values: Floats, mean: float) -> Floats:
-    """Covariance of the coefficients by what splices creep while a mark waits to be read. [SI].
+    """Covariance of the coefficients by creep of the splices before a mark is read. [SI].
 
-    In a cycle they extend from their mean by a share less than from mark to mark: their strain
-    about the mean is that much smaller, whatever drives it.
+    In a cycle the splices extend from their mean less than between marks, by a fixed fraction:
+    their strain about the mean is that much smaller, whatever drives it.
     """
     change = np.zeros(values.size)
     # offset, powers of the strain, compliance and limit
@@ -1011,9 +1011,9 @@ def _of_creep(values: Floats, mean: float) -> Floats:
 
 
 def _law_in_si(values: Floats, reference: float) -> tuple[Floats, Floats]:
-    """Coefficients of a law from the strains at a reference tension, and their change with these.
+    """Coefficients of a law from the strains at a reference tension, and their Jacobian.
 
-    The compliance is the strain at one newton, the limit what the saturating term tends to.
+    The compliance is the strain at one newton, the limit the asymptote of the saturating term.
     """
     law, change = np.array(values[:-2]), np.eye(values.size - 2)
     strained, exponent, limited, saturation = (float(one) for one in law[4:])
@@ -1029,12 +1029,13 @@ def _law_in_si(values: Floats, reference: float) -> tuple[Floats, Floats]:
 
 
 def _own_offset(average: SpliceAverage, place: int | None) -> tuple[float, float, float]:
-    """By how much the splices of one test are longer than the law says, and what is open of it.
+    """Extra length of the splices of one test over the law, its variance, and that of later slip.
 
-    The variance that its own marks leave, and the standard uncertainty of what slipped after they
-    were read.  Marks are read before the cycles: what the next test begins with slipped between
-    both, and any moment is as likely.  After the last test no mark says how much it was: what
-    slips is taken to be as uncertain as it is large, so that of a share U of S the variance is
+    Returns the offset, the variance that the test's own marks leave, and the standard uncertainty
+    of slip after they were read.  Marks are read before the cycles: the offset at the start of the
+    next test slipped between both, at any moment with equal probability.  After the last test no
+    mark shows the slip: it is taken to be as uncertain as it is large, so that the variance of a
+    fraction U of S is
     E(U^2) E(S^2) - (S / 2)^2 = 5/12 S^2.
     """
     if not average.slip:
@@ -1053,7 +1054,7 @@ def _own_offset(average: SpliceAverage, place: int | None) -> tuple[float, float
 
 
 def _tape_error(marks: SpliceMarks) -> float:
-    """Standard uncertainty of one reading: stated, or the usual one with what slack rows say.
+    """Standard uncertainty of one reading: stated, or the usual one pooled with slack rows.
 
     Slack rows of one specimen are readings of the same lengths, test after test.
     """
@@ -1076,7 +1077,7 @@ _NO_FIT = _SpliceCalibration(np.empty(0), np.empty((0, 0)), np.empty((0, 2)), np
 
 
 def _on_laws(fit: _MixedFit, readings: PooledMarks) -> tuple[Note, ...]:
-    """Which law it is, how sure that is, and what another would do to a modulus."""
+    """The law used, its certainty, and the effect of another law on a modulus."""
     average, marks = fit.average, readings.marks
     order = np.argsort(-average.weight, kind="stable")
     best, second = average.laws[order[0]], None
@@ -1129,9 +1130,9 @@ def _on_laws(fit: _MixedFit, readings: PooledMarks) -> tuple[Note, ...]:
 
 
 def _effect_on_modulus(model: StrainModel, law: FittedLaw, reference: float) -> float:
-    """Change of a modulus by another law, over the middle of what was marked."""
+    """Change of a modulus by another law, over the middle of the marked range."""
     other = dict(model.coefficients)
-    # after the relaxed lengths, which stay
+    # the relaxed lengths before these stay
     other |= dict(zip(list(other)[2:], _law_in_si(law.values, reference)[0].tolist(), strict=True))
     middle = (model.position_low + model.position_high) / 2
     force = np.full(2, model.tension_high if np.isfinite(model.tension_high) else 0.0) / 2
@@ -1152,7 +1153,7 @@ _FROM_MARKS: dict[StrainMethod, Callable[[PooledMarks], StrainModel]] = {
 
 
 def _slope_ratio(model: StrainModel, readings: PooledMarks) -> float:
-    """Strain slope of constant-fraction over that of the model, over the test's own marks."""
+    """Strain slope of constant-fraction over that of the model, at the test's own marks."""
     usable = readings.stretched_rows(model.method)
     own = usable[readings.is_own[usable]]
     rows = own if own.size > 1 else usable
@@ -1165,7 +1166,7 @@ def _slope_ratio(model: StrainModel, readings: PooledMarks) -> float:
 
 
 def fit_to_marks(method: StrainMethod, readings: PooledMarks) -> StrainModel:
-    """Fit a method that needs marks, and say how far it is from each mark it used.
+    """Fit a method that needs marks, with its residual at each mark it used.
 
     Examples
     --------
@@ -1190,7 +1191,7 @@ def fit_to_marks(method: StrainMethod, readings: PooledMarks) -> StrainModel:
 
 
 def _at_marks(model: StrainModel, readings: PooledMarks, stretched: Integers) -> StrainModel:
-    """Say how far a model is from each mark that it used, and over which range these are."""
+    """Add the residuals of a model at the marks that it used, and the range of these."""
     marks, by_all = readings.marks, model.method in ("tension-driven", "mixed")
     slack = marks.is_slack
     if not by_all and np.any(slack & readings.is_own):
@@ -1221,13 +1222,13 @@ def _at_marks(model: StrainModel, readings: PooledMarks, stretched: Integers) ->
 def _average_at_marks(
     readings: PooledMarks, average: SpliceAverage | None
 ) -> tuple[StrainModel, _MixedFit]:
-    """Fit the average over the laws, and say how far it is from each mark."""
+    """Fit the average over the laws, with its residual at each mark."""
     fit = _fit_mixed(readings, average)
     stretched = fit.rows[~readings.marks.is_slack[fit.rows]]
     model = _at_marks(fit.model, readings, stretched)
     marks = readings.marks
     if fit.average.slip:
-        # its own offset: what the tests share is in the covariance of each
+        # only its offset is its own: the covariance of each test holds what the tests share
         model = replace(model, marks_from="this test, over those of the campaign")
     friction = _friction(model, readings)
     if friction is not None:
@@ -1244,7 +1245,7 @@ def _average_at_marks(
 
 
 def _on_creep(model: StrainModel, marks: SpliceMarks, rows: Integers) -> tuple[Note, ...]:
-    """What creep of the splices, which no mark shows, would do to a strain amplitude."""
+    """Effect of creep of the splices, which no mark shows, on a strain amplitude."""
     free = marks.free_length[rows]
     if np.ptp(free) < _CREEP_NOTICE * model.coefficients["relaxed_free_length"]:
         return ()
@@ -1255,7 +1256,7 @@ def _on_creep(model: StrainModel, marks: SpliceMarks, rows: Integers) -> tuple[N
 
 
 def _friction(model: StrainModel, readings: PooledMarks) -> tuple[float, float] | None:
-    """Share by which splices are longer on the way down than the law says, and its uncertainty.
+    """Relative excess length of splices on the way down over the law, and its uncertainty.
 
     None without marks on the way down.  Splices that friction holds keep the length that they had
     as the crosshead stopped while the rubber relaxes, up, or recovers, down; others follow the
@@ -1286,7 +1287,7 @@ def _friction(model: StrainModel, readings: PooledMarks) -> tuple[float, float] 
     return float(np.mean(shares)), float(np.hypot(np.mean(errors), np.ptp(shares) / 2))
 
 
-# a strain slope that differs by less than this is not worth a sentence
+# a smaller relative difference of the strain slope is not worth a note
 _SLOPE_NOTICE = 0.01
 
 # scatter and outliers, in standard uncertainties of a mark
@@ -1294,7 +1295,7 @@ _SCATTER_NOTICE = 2.0
 
 _OUTLIER_NOTICE = 5.0
 
-# slack rows that can show a trend, and the chance that level ones show it
+# fewest slack rows that can show a trend, and the probability that level ones show it
 _TREND_ROWS = 4
 
 _TREND_CHANCE = 0.01
@@ -1330,8 +1331,8 @@ def _on_constant_fraction(model: StrainModel, is_stretched: Bools) -> tuple[Note
 def _on_scatter(model: StrainModel, is_stretched: Bools, expected: float) -> tuple[Note, ...]:
     """Scatter beyond tape reading, and single marks far off; not for the legacy method.
 
-    Nor for an average over laws: these are judged one by one, with slip and with the tensions of
-    the marks, and single marks with them; what their mean is off by is in the interval.
+    An average over laws is also exempt: its laws, with slip, and its single marks are judged one by
+    one at the tensions of the marks; the error of their mean is in the interval.
     """
     if model.method in ("constant-fraction", "mixed"):
         return ()
@@ -1342,7 +1343,7 @@ def _on_scatter(model: StrainModel, is_stretched: Bools, expected: float) -> tup
         notes.append(
             note("marks-differ", model.specimen, method=model.method, rms=rms, expected=expected)
         )
-    # a median does not let one misread mark hide itself
+    # the median, so that one misread mark does not hide itself
     usual = max(expected, 1.4826 * float(np.median(np.abs(residual))))
     if residual.size > 3 and usual > 0:
         rows = np.flatnonzero(is_stretched)[np.abs(residual) > _OUTLIER_NOTICE * usual]
@@ -1362,8 +1363,8 @@ def _on_scatter(model: StrainModel, is_stretched: Bools, expected: float) -> tup
 def _growth_of_slack(marks: SpliceMarks) -> float:
     """Growth of the slack length over the tests: permanent set, or a splice let out. [m].
 
-    Zero where there is none.  A trend over the rows, since single readings scatter by more than
-    their last digit; or a step after the first row, far beyond the stated error of the tape.
+    Zero where there is none.  Needs a trend over the rows, since single readings scatter by more
+    than their last digit, or a step after the first row, far beyond the stated error of the tape.
     """
     length = marks.far_thimble[marks.is_slack]
     if marks.is_reading_stated and length.size > 1:
@@ -1374,7 +1375,7 @@ def _growth_of_slack(marks: SpliceMarks) -> float:
         return 0.0
     row = np.arange(length.size)
     slope, correlation = _line_slope(row, length), float(np.corrcoef(row, length)[0, 1])
-    # of a correlation this far from zero among rows without a trend (Student's t, both sides)
+    # probability of a correlation this large in rows without a trend (Student's t, both sides)
     chance = scipy.special.betainc(length.size / 2 - 1, 0.5, max(0.0, 1 - correlation**2))
     return 0.0 if slope <= 0 or chance > _TREND_CHANCE else float(slope * (length.size - 1))
 
@@ -1415,7 +1416,7 @@ def _on_slack(marks: SpliceMarks) -> tuple[Note, ...]:
 def _on_reading_time(
     model: StrainModel, is_stretched: Bools, at_start: StrainModel
 ) -> tuple[str, ...]:
-    """How far it matters when in a hold the tape was read."""
+    """Effect of the time in a hold at which the tape was read."""
     force = np.array([model.tension_high])
     position = np.array([float(model.mark_position[is_stretched].max())])
     change = float(
@@ -1437,7 +1438,7 @@ def _on_reading_time(
 def _on_left_out(
     model: StrainModel, marks: SpliceMarks, n_used: int, failed_tests: Sequence[str]
 ) -> tuple[Note, ...]:
-    """Stretched marks that the law of tension lacks: their log failed, or shows no hold."""
+    """Stretched marks without a tension for the law: their log failed, or shows no hold."""
     rows = np.flatnonzero(~marks.is_slack & ~marks.is_unloading)
     tests = [marks.test[row] for row in rows if marks.test[row] in failed_tests]
     notes = []
@@ -1490,7 +1491,7 @@ def _remarks_on(
     )
 
 
-_ELSEWHERE = 0.005  # of the gauge length: strain by which two zeros of it differ
+_ELSEWHERE = 0.005  # of the gauge length: strain between two zeros that counts as different
 
 
 def _without_marks(
@@ -1530,7 +1531,7 @@ def _without_marks(
 
 
 def _on_stated_zero(name: str, zero: ZeroStrain, gauge: float) -> list[Note]:
-    """A position that the layout states for the reference tension, where the log has another."""
+    """A position that the layout states for the reference tension, but the log contradicts."""
     if zero.position is None or zero.stated_position is None:
         return []
     if abs(zero.position - zero.stated_position) <= _ELSEWHERE * gauge:
@@ -1561,7 +1562,7 @@ def _default_method(
 
 
 def _by_marks(readings: PooledMarks, average: SpliceAverage | None) -> StrainModel | None:
-    """Average over the laws of the same splices; None where the marks reject them all."""
+    """Average over the laws of the same splices; None where the marks reject all laws."""
     try:
         return _fit_mixed(readings, average).model
     except DataError:
@@ -1588,7 +1589,7 @@ def fit_strain_model(
     Parameters
     ----------
     specimen : Specimen
-        Its ``gauge_length`` and that one's standard uncertainty are used by that method.
+        Its ``gauge_length`` with its standard uncertainty is used by that method.
     test_id : str
         Test to which the model will be applied.
     marks : SpliceMarks, optional
@@ -1612,7 +1613,7 @@ def fit_strain_model(
     failed_tests : sequence of str
         Tests whose log could not be read, so that their marks have no tension. [1]
     average : SpliceAverage, optional
-        Over the laws of the splices, from `average_over_laws`; found anew where it is not given.
+        Average over the laws of the splices, from `average_over_laws`; computed if not given.
 
     Returns
     -------
@@ -1636,9 +1637,10 @@ def fit_strain_model(
     has none.  The relaxed lengths are means over all slack rows; only
     ``constant-fraction`` takes the test's own row, as the report does.
 
-    The covariance holds reading errors of the tape, or the stated standard uncertainty of the
-    gauge length, which all samples share; ``law_covariance`` which law it is.  A method that was
-    asked for keeps the average over the laws as ``by_marks``: what it misses is judged by it.
+    The covariance holds the errors common to all samples: reading errors of the tape, or the
+    stated standard uncertainty of the gauge length; ``law_covariance`` holds the uncertainty of the
+    law.  A method that was asked for keeps the average over the laws as ``by_marks``, by which
+    its own error is judged.
 
     Examples
     --------
@@ -1697,14 +1699,14 @@ def fit_strain_model(
             "tension-driven", replace(readings, tension=readings.tension_at_start)
         )
         made += _on_reading_time(model, is_stretched, at_start)
-    # a method that was asked for and needs no tension loses nothing with a log
+    # a method that was asked for and needs no tension loses nothing when a log fails
     lost = failed_tests if stated in (None, "tension-driven", "mixed") else ()
     remarks = _remarks_on(model, readings.marks, is_stretched, failed_tests=lost)
     return replace(model, notes=(*model.notes, *remarks), made=made)
 
 
 def _laws_in_words(average: SpliceAverage) -> str:
-    """One line of the history: every law with its misfit and its weight."""
+    """One line of the history: each law with its misfit and its weight."""
     laws = (
         f"{law.name} (chi-square {law.chi_square:.3g} of {law.freedom}, weight {weight:.2g})"
         for law, weight in zip(average.laws, average.weight, strict=True)

@@ -2,11 +2,11 @@
 
 **Strain by one constant splice-free share of the length: the method of WHOI-2005-10 itself.** A
 tether ends in a splice at each thimble, and the splices strain less than the rubber between them.
-Thimble-to-thimble length therefore understates the strain of the rubber.  The report takes the mean
-share of the marked positions for the share at every position.  Kept so that its Table 3 can be
+Thimble-to-thimble length therefore understates the strain of the rubber.  The report uses the mean
+share of the marked positions at every position.  The method is kept so that its Table 3 can be
 reproduced; the share grows with stretch, so the slope of this strain on position is too small.
 
-How the coefficients of each method are found from tape readings is in
+The coefficients of each method are fitted to tape readings in
 `reduction.stages.strain.strain_fit`.
 
 References
@@ -39,20 +39,20 @@ def _empty() -> Floats:
 @dataclass(frozen=True)
 @read_only_arrays
 class StrainModel:
-    """How crosshead position becomes strain of one specimen in one test.
+    """Conversion of crosshead position to strain for one specimen in one test.
 
     Parameters
     ----------
     specimen : str
         Name of the specimen.
     method : StrainMethod
-        Which of the seven methods.
+        One of the seven methods.
     coefficients : dict of str to float
-        By full name, SI; what `strain_by_model` needs. For
+        By full name, SI, as `strain_by_model` needs them. For
         ``tension-driven``: ``relaxed_free_length`` [m], ``relaxed_splice_length``
         [m], ``splice_compliance`` c [N**-n] and ``splice_exponent`` n [1].
     covariance : ndarray, shape (n_coefficients, n_coefficients)
-        Of the coefficients in the order of the dict; zeros where exact. [SI]
+        Of the coefficients, in the order of the dict; zeros where exact. [SI]
     position_low, position_high : float
         Marked range of position; outside it the strain is extrapolated. [m]
     tension_low, tension_high : float
@@ -65,30 +65,30 @@ class StrainModel:
         Far thimble [m], strain at the marks [1], tension while they were read
         [N], strain by the method minus strain at the marks [1].
     mark_load_cell : tuple of str, length n_marks or 0
-        Of which load cell the tension at each mark is; where it is empty, that of the test.
+        Load cell of the tension at each mark; where empty, that of the test.
     strain_slope_ratio : float
         d(strain)/d(position) by ``constant-fraction`` over that of this method,
         mean over the test's own marked range: a modulus by ``constant-fraction``
         is the inverse of this times the modulus here. NaN without marks. [1]
     notes : tuple of Note
-        What a reader has to know.
+        Remarks for the reader.
     made : tuple of str
-        How it was made, with numbers that stand nowhere else: lines of the history.
+        Lines of the history: how it was made, with numbers that are not stored elsewhere.
     is_zero_logged : bool
-        True where the position of zero strain was read from the log of the test, so that a wrong
-        zero of the crosshead is in it as well.
+        True where the position of zero strain was read from the log of the test, so that an error
+        of the crosshead zero is in it as well.
     by_marks : StrainModel, optional
-        Of a method that was asked for: ``mixed``, averaged over the laws that the same marks do
-        not reject, by which its error is judged.
+        For a method that was asked for: the ``mixed`` model, averaged over the laws that the same
+        marks do not reject, by which its error is judged.
     law_covariance : ndarray, shape (n_coefficients, n_coefficients)
-        Of the coefficients, by which law of the splices it is; empty where there is one law. [SI]
+        Of the coefficients, from the choice of splice law; empty where there is one law. [SI]
     reference_tension : float
-        At which strain is zero, where that is not slack. [N]
+        Tension at which strain is zero, where that is not slack. [N]
     splice_friction : float
-        Root mean square of the share by which splices are longer on the way down, by marks that
+        Root mean square of the relative excess length of splices on the way down, from marks that
         were read there; NaN without them. [1]
     splice_slip : float
-        Standard uncertainty of what the splices slipped by from the marks of the test to its
+        Standard uncertainty of the slip of the splices between the marks of the test and its
         cycles; zero where the marks show no slip. [m]
     """
 
@@ -120,7 +120,7 @@ class StrainModel:
 
     @property
     def relaxed_length(self) -> float:
-        """Length that stretches, at zero strain; NaN where the method knows none. [m]."""
+        """Length that stretches, at zero strain; NaN where the method has none. [m]."""
         known = self.coefficients
         return known.get("relaxed_free_length", known.get("gauge_length", float("nan")))
 
@@ -148,7 +148,7 @@ def free_length_fraction(free_length: ArrayLike, total_length: ArrayLike) -> flo
 
     Notes
     -----
-    The row at zero strain is left out by the caller: Table 3 of [1]_ averages
+    The caller leaves out the row at zero strain: Table 3 of [1]_ averages
     the stretched positions only, because an unstretched splice takes up a
     larger share (68.4 % free at rest, 77.7 % under strain).
 
@@ -223,8 +223,8 @@ def free_length_strain(
     Not corrected: the share grows with stretch.  Against the marks of Table 3
     the strain is 3.1 points high at the lowest mark and 3.3 low at the highest
     (new tether), its slope 12.7 % too small, and a modulus reduced with it
-    14.5 % too high.  Nor is slip of a splice during the test ([1]_, sec. 4.7),
-    which makes ``free_fraction`` drift.  NaN in, NaN out.
+    14.5 % too high.  Slip of a splice during the test ([1]_, sec. 4.7), which
+    makes ``free_fraction`` drift, is not corrected either.  NaN in, NaN out.
 
     Examples
     --------
@@ -250,7 +250,7 @@ def free_length_strain(
     return strain
 
 
-# the logarithm of this times any exponent below 2 is finite, and its power is zero in effect
+# the logarithm of this times any exponent below 2 is finite, and the power is effectively zero
 _NO_TENSION = 1e-150
 
 
@@ -266,7 +266,7 @@ def splice_strain(
     tension : array_like, shape (...)
         :math:`F`; values below zero (noise about slack) count as zero. [N]
     splice_compliance : float
-        :math:`c`; its unit goes with the exponent. [N**-n]
+        :math:`c`; its unit depends on the exponent. [N**-n]
     splice_exponent : float
         :math:`n`. [1]
 
@@ -313,14 +313,14 @@ def _tension_driven_strain(
     splice_compliance: float,
     splice_exponent: float,
 ) -> Floats:
-    r"""Strain where the splices strain by the tension they carry.
+    r"""Strain for splices that strain by the tension they carry.
 
     .. math:: \varepsilon = \frac{p - \ell_s (1 + c F^n)}{\ell_0} - 1
 
     Notes
     -----
-    Splice and rubber carry one tension, so the splice length follows from the
-    log itself at every sample, also where a position is visited at two tensions:
+    Splice and rubber carry the same tension, so the splice length follows from the
+    log itself at every sample, even where a position is visited at two tensions:
     on the first pull, and after the rubber has relaxed.  Zero at the slack length.
 
     Not corrected: creep and friction inside the splice (its strain is taken to
@@ -329,7 +329,7 @@ def _tension_driven_strain(
 
     Examples
     --------
-    Slack is zero strain; a rigid splice would give 103 % where a soft one gives 95 %.
+    Slack is zero strain; a rigid splice would give 103 % where a soft one gives 95 %:
 
     >>> strain = _tension_driven_strain(
     ...     [3.74, 6.35],
@@ -370,7 +370,7 @@ def _mixed_strain(
     splice_limit: float,
     splice_saturation: float,
 ) -> Floats:
-    r"""Strain where the splices strain by what they carry, and by what the free length does.
+    r"""Strain for splices that strain by the tension they carry and by the free strain.
 
     .. math:: \ell_0 (1 + \varepsilon)
        + \ell_s \left(1 + s_0 + \rho\varepsilon + \kappa\varepsilon^2 + \gamma\varepsilon^3
@@ -378,8 +378,8 @@ def _mixed_strain(
 
     Notes
     -----
-    The root that is the strain of splices without curvature where there is none.  Tension below
-    zero counts as zero.  NaN in, NaN out, and NaN where the splices would be longer than all.
+    Takes the root that tends to the strain without curvature as curvature vanishes.  Tension below
+    zero counts as zero.  NaN in, NaN out, and NaN where the splices would exceed the whole length.
 
     Examples
     --------
@@ -399,7 +399,7 @@ def _mixed_strain(
     share = relaxed_splice_length / relaxed_free_length
     slope = 1 + share * splice_strain_ratio
     as_positive("1 + splice_strain_ratio * splice length / free length", slope)
-    # NaN stays NaN, but of a law that knows no tension
+    # NaN stays NaN, except for a law that does not depend on tension
     by_tension = _by_tension(
         np.maximum(load, 0.0), splice_compliance, splice_exponent, splice_limit, splice_saturation
     )
@@ -416,13 +416,13 @@ def _mixed_strain(
 def _by_tension(
     load: Floats, compliance: float, exponent: float, limit: float, saturation: float
 ) -> Floats:
-    """Splice strain by a tension not below zero; zero, also of NaN, of a law that knows none."""
+    """Splice strain by a tension not below zero; zero, also for NaN, if independent of tension."""
     power = compliance * load**exponent if compliance else np.zeros(load.shape)
     return power - limit * np.expm1(-saturation * load) if limit else power
 
 
 def _cubic_root(excess: Floats, slope: float, square: float, cube: float) -> Floats:
-    """Root of a rising cubic through zero, by Newton; NaN where it has none in reach."""
+    """Root of a rising cubic through zero, by Newton; NaN where none is within reach."""
     root = np.asarray(excess / slope)
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
         for _ in range(_MOST_STEPS):
@@ -435,7 +435,7 @@ def _cubic_root(excess: Floats, slope: float, square: float, cube: float) -> Flo
         return np.where(np.abs(missing) <= 10 * _ROUNDING * (1 + np.abs(excess)), root, np.nan)
 
 
-_MOST_STEPS = 30  # of Newton; five do
+_MOST_STEPS = 30  # of Newton; five suffice
 
 _ROUNDING = 1e-14  # of the strain 1
 
@@ -453,9 +453,9 @@ def _marked_line_strain(
 
     Notes
     -----
-    Holds inside the marked range of position and at the tension history of the
+    Holds inside the marked range of position and for the tension history of the
     marks: where the same position is visited at another tension, the splices
-    have another length and the line does not know.  NaN in, NaN out.
+    have another length, which the line does not describe.  NaN in, NaN out.
 
     Examples
     --------
@@ -482,7 +482,7 @@ def _splice_ratio_strain(
     relaxed_splice_length: float,
     splice_strain_ratio: float,
 ) -> Floats:
-    r"""Strain where the splices strain by a constant share of what the free length does.
+    r"""Strain for splices whose strain is a constant fraction of the free strain.
 
     .. math:: \varepsilon = \frac{p - \ell_0 - \ell_s}{\ell_0 + \rho\,\ell_s}
 
@@ -522,7 +522,7 @@ def _gauge_length_strain(
 
     Notes
     -----
-    The whole of the crosshead's travel is charged to the gauge length: give in
+    The whole travel of the crosshead is attributed to the gauge length: compliance of
     grips and machine is not corrected.  The definition is that of the first
     column of Table 4 of [1]_.  NaN in, NaN out.
 
@@ -546,7 +546,7 @@ _OF_POSITION: dict[StrainMethod, Callable[..., Floats]] = {
     "gauge-length": _gauge_length_strain,
 }
 
-# a crosshead that returns to its marks passes them by its own resolution; not an extrapolation
+# a crosshead that returns to its marks overshoots them by its resolution; not an extrapolation
 _MARGIN = 0.01
 
 
@@ -566,9 +566,9 @@ def strain_by_model(
     position : array_like, shape (...)
         Crosshead position. [m]
     tension : array_like, shape (...)
-        Of this specimen; used by ``tension-driven`` and ``mixed`` alone. [N]
+        Tension of this specimen; used only by ``tension-driven`` and ``mixed``. [N]
     measured_strain : array_like, shape (...), optional
-        Channel of the extensometer, where that is the method. [1]
+        Channel of the extensometer, if that is the method. [1]
 
     Returns
     -------
@@ -583,12 +583,12 @@ def strain_by_model(
 
     Notes
     -----
-    Sample by sample, so that a block of a log gives what the whole log gives.
+    Computed sample by sample, so that a block of a log gives the same as the whole log.
     NaN in, NaN out.
 
     Examples
     --------
-    The line of Table 3 of [1]_, used tether, in metre:
+    The line of Table 3 of [1]_, used tether, in metres:
 
     >>> line = StrainModel("used", "marks", {"free_length_intercept": -0.83512,
     ...     "free_length_slope": 0.90527, "relaxed_free_length": 2.542})
@@ -623,7 +623,7 @@ def extrapolated(model: StrainModel, position: ArrayLike, tension: ArrayLike) ->
     -----
     ``tension-driven`` is bounded in tension, from slack to the highest marked
     tension; the others in position, between the stretched marks.  One per cent of
-    the range is allowed for, since a crosshead that returns to its marks passes
+    the range is allowed for, since a crosshead that returns to its marks overshoots
     them by its resolution.
 
     Examples
@@ -636,7 +636,7 @@ def extrapolated(model: StrainModel, position: ArrayLike, tension: ArrayLike) ->
         values, low, high = np.asarray(tension), -np.inf, model.tension_high
         margin = _MARGIN * high
     elif model.method == "mixed":
-        # from slack, which the marks begin at, to the highest of them
+        # from slack, where the marks begin, to the highest mark
         values, low, high = np.asarray(position), -np.inf, model.position_high
         margin = _MARGIN * (high - model.position_low)
     else:
@@ -656,11 +656,11 @@ def strain_sensitivity_of(
     Parameters
     ----------
     model : StrainModel
-        With coefficients.
+        Model with coefficients.
     position : array_like, shape (...)
         Crosshead position. [m]
     tension : array_like, shape (...)
-        Of this specimen. [N]
+        Tension of this specimen. [N]
 
     Returns
     -------
@@ -677,9 +677,9 @@ def strain_sensitivity_of(
     Notes
     -----
     With the covariance this gives the part of the uncertainty of strain that all
-    samples share: it does not average out over cycles.  Of ``mixed`` the derivatives of the
-    implicit equation for strain; of the others central differences, since the coefficients enter
-    smoothly.
+    samples share: it does not average out over cycles.  For ``mixed``, derivatives of the
+    implicit equation for strain; for the others, central differences, since strain is a smooth
+    function of the coefficients.
 
     Examples
     --------
@@ -730,7 +730,7 @@ def _mixed_sensitivity(
     power = load ** coefficients["splice_exponent"]
     square = strain * strain
     limit, saturation = coefficients["splice_limit"], coefficients["splice_saturation"]
-    # NaN stays NaN, but of a law that knows no tension
+    # NaN stays NaN, except for a law that does not depend on tension
     by_power = compliance * power if compliance else np.zeros(strain.shape)
     by_tension = _by_tension(load, compliance, coefficients["splice_exponent"], limit, saturation)
     left = np.exp(-saturation * load)
@@ -748,11 +748,11 @@ def _mixed_sensitivity(
         "splice_saturation": splice * limit * load * left,
     }
     slope = free + splice * (ratio + 2 * curvature * strain + 3 * cubic * square)
-    # where there is no strain nothing moves it
+    # where strain is missing, so is its derivative
     return {name: np.where(np.isnan(strain), np.nan, -one / slope) for name, one in own.items()}
 
 
-# lengths that grow with the free length; the others of a method do not, or say nothing of splices
+# lengths that grow with the free length; methods not listed have none that separates the splices
 _SCALED = {
     "tension-driven": "relaxed_free_length",
     "mixed": "relaxed_free_length",
@@ -762,33 +762,33 @@ _SCALED = {
 
 
 def position_by_model(model: StrainModel, *, strain: ArrayLike, tension: ArrayLike) -> Floats:
-    r"""Crosshead position, thimble to thimble, at which the free length has a strain.
+    r"""Crosshead position, thimble to thimble, for a given strain of the free length.
 
     .. math:: p = \frac{\varepsilon - \varepsilon(0, F)}{\varepsilon(1, F) - \varepsilon(0, F)}
 
     Parameters
     ----------
     model : StrainModel
-        Of the specimen; any method but an extensometer.
+        Model of the specimen, by any method but an extensometer.
     strain : array_like, shape (...)
         Nominal strain of the free length. [1]
     tension : array_like, shape (...)
-        At that strain; the splices of ``tension-driven`` stretch by it. [N]
+        Tension at that strain, which stretches the splices of ``tension-driven``. [N]
 
     Returns
     -------
     position : ndarray, shape (...)
-        Length with the splices. [m]
+        Length including the splices. [m]
 
     Raises
     ------
     DataError
-        If the method is an extensometer, which says nothing of the length of the specimen.
+        If the method is an extensometer, which does not measure the length of the specimen.
 
     Notes
     -----
-    Every method but one is a straight line of strain on position at one tension, so that two
-    positions give its inverse exactly, and the laws of the splices stand in one place; of
+    At a given tension every method but one is a straight line of strain on position.  Two
+    positions then give the inverse exactly, and the laws of the splices are in one place.  For
     ``mixed`` the length is the sum of both parts.
 
     Examples
@@ -833,29 +833,29 @@ def _mixed_length(strain: Floats, tension: Floats, known: dict[str, float]) -> F
 
 
 def with_free_length(model: StrainModel, free_length: float) -> StrainModel:
-    """Model of a specimen that is like another one but longer: the same splices.
+    """Model of a specimen that is like another one but longer, with the same splices.
 
     Parameters
     ----------
     model : StrainModel
-        Of the tested specimen.
+        Model of the tested specimen.
     free_length : float
-        Relaxed, splice toe to splice toe, of the new one. [m]
+        Relaxed length of the new one, splice toe to splice toe. [m]
 
     Returns
     -------
     model : StrainModel
-        With that length; marks and covariance, which are of the old one, left out.
+        With that length; without marks and covariance, which belong to the old one.
 
     Raises
     ------
     DataError
-        If the method knows no splice apart from the whole, or the length is not positive.
+        If the method does not separate splices from the whole, or the length is not positive.
 
     Notes
     -----
-    A line through the marks, and a constant fraction, hold for the length that was tested: the
-    share of the splices is another in a longer tether ([1]_, Table 3: a third of 12 ft at rest).
+    A line through the marks, and a constant fraction, hold for the tested length only: the
+    share of the splices differs in a longer tether ([1]_, Table 3: a third of 12 ft at rest).
 
     Examples
     --------
@@ -875,7 +875,7 @@ def with_free_length(model: StrainModel, free_length: float) -> StrainModel:
         )
     coefficients = {**model.coefficients, name: length}
     if model.method == "gauge-length":
-        # it begins at the gauge length where the position is a length, at zero where it is none
+        # it begins at the gauge length where the position is a length, otherwise at zero
         old = model.coefficients["gauge_length"]
         begin = model.coefficients["reference_position"]
         coefficients["reference_position"] = begin * length / old

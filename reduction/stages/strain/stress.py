@@ -88,7 +88,7 @@ def constant_volume_diameter(strain: ArrayLike, stretched_diameter: ArrayLike) -
     Notes
     -----
     Rubber keeps its volume to about one part in a thousand at these stresses;
-    a rope or a braid does not, and the relation says nothing about it.
+    a rope or a braid does not, and the relation says nothing about them.
 
     Examples
     --------
@@ -133,10 +133,10 @@ def check_constant_volume(specimen: Specimen) -> tuple[Note, ...]:
     Notes
     -----
     The scatter is that of all implied diameters about their mean, and is taken
-    to hold for the stated readings too.  In Table 2 of [1]_ it is 0.009 in for
+    to apply to the stated readings too.  In Table 2 of [1]_ it is 0.009 in for
     the new tether, where the implied 1.038 in differs from the printed 1.01 in
-    by three times that; and 0.007 in for the used one, where 0.929 in against
-    0.94 in is within it.
+    by three times that, and 0.007 in for the used one, where 0.929 in and
+    0.94 in agree within it.
 
     Examples
     --------

@@ -1,8 +1,8 @@
 r"""Whether tape and crosshead agree on the length of a specimen while its marks were read.
 
-Both measure the distance between the thimbles, one of them with an instrument whose scale and
-zero stand in campaign.toml and the other in a file that was typed.  Where they disagree one of
-the two is wrong, and no strain can be had from both.
+Both measure the distance between the thimbles: one with an instrument whose scale and zero stand
+in campaign.toml, the other by values typed into a file.  Where they disagree, one of the two is
+wrong, and no strain can be computed from both.
 
 References
 ----------
@@ -24,17 +24,17 @@ from reduction.record.samples import finite_extremes
 from reduction.stages.standstills import Standstills
 
 POSITION_TOLERANCE = 0.05
-"""Within this a tape and a scaled crosshead agree on a length; holds lie much farther apart. [m]"""
+"""Within this a tape and a scaled crosshead agree on a length; holds are much farther apart. [m]"""
 
 TAPE_UNCERTAINTY = 0.003
-"""A hundredth of a foot: a tape is not read better than this on a stretched tether. [m]"""
+"""A hundredth of a foot: a tape on a stretched tether cannot be read better than this. [m]"""
 
 UNITS = {"ft": 0.3048, "in": 0.0254, "m": 1.0, "mm": 1e-3, "cm": 1e-2}
 """Units that the columns of a marks file may have, by their suffix, in metres. [m]"""
 
 _FAR = 4.0  # standard uncertainties
 
-# rows that one wrong zero explains lie as far apart as the holds do, but for the tape
+# rows that one wrong zero explains are as far apart as the holds, within the tape's error
 _ONE_ZERO = 0.01
 
 
@@ -51,11 +51,11 @@ def check_tape_against_crosshead(
     Parameters
     ----------
     marks : SpliceMarks
-        Of one specimen, over the campaign.
+        Marks of one specimen, over the campaign.
     test_id : str
-        The test whose log this is; rows of other tests are left alone.
+        The test that this log belongs to; rows of other tests are left alone.
     standstills : Standstills
-        Of the same log.
+        Standstills of the same log.
     position : ndarray, shape (n_samples,)
         Distance between the thimbles by the crosshead; NaN where not usable. [m]
     position_uncertainty : float
@@ -64,26 +64,26 @@ def check_tape_against_crosshead(
     Returns
     -------
     notes : tuple of Note
-        Where both differ by more than their errors explain, and by less than is refused.
+        Where the two differ by more than their errors explain but by less than is refused.
 
     Raises
     ------
     DataError
-        If the crosshead was never where the tape says that it was, if another unit of the
-        column brings the rows to the holds, if one shift of position does, or if the unloaded
-        crosshead stood farther out than the slack length.
+        If the crosshead was never where the tape says it was, if another unit for the column
+        or one shift of position brings the rows to the holds, or if the unloaded crosshead
+        stood farther out than the slack length.
 
     Notes
     -----
-    The marks are read while the machine stands at them ([1]_, sec. 4.1).  A log need not hold
+    The marks are read while the machine stands at them ([1]_, sec. 4.1).  A log need not contain
     that: rows inside the range of the
-    log that meet no hold, and rows outside it while none meets one, contradict nothing unless
-    another unit or one shift explains them all.  A slack specimen may hang: its thimbles stand
+    log that match no hold, and rows outside it when none matches one, contradict nothing unless
+    another unit or one shift explains them all.  A slack specimen may hang: its thimbles are
     nearer than the tape says, but never farther.
 
     Examples
     --------
-    Readings in inches under a header that says feet.
+    Readings in inches under a header that says feet:
 
     >>> from reduction.record.measurement import MarkPlace
     >>> hold = Standstills(
@@ -133,7 +133,7 @@ def check_tape_against_crosshead(
         return alike
     nearest = np.abs(holds - tape[meets][:, None]).argmin(axis=1)
     ends = _ends(standstills, position)[nearest]
-    # where the specimen creeps at a held load, the tape may have been read at any moment
+    # where the specimen creeps at a held load, the tape may have been read at any time in the hold
     apart = float(np.mean(np.clip(tape[meets], *ends.T) - tape[meets]))
     reading = max(marks.reading_uncertainty, TAPE_UNCERTAINTY)
     if abs(apart) <= _FAR * np.hypot(reading, position_uncertainty):
@@ -143,7 +143,7 @@ def check_tape_against_crosshead(
 
 
 def _ends(standstills: Standstills, position: Floats) -> Floats:
-    """Least and greatest of where each hold begins and ends, means over a tenth, shape (n, 2)."""
+    """Least and greatest of the start and end of each hold, means over a tenth, shape (n, 2)."""
     ends = []
     for mean, first, last in zip(
         standstills.mean_position[~standstills.is_rest],
@@ -160,7 +160,7 @@ def _ends(standstills: Standstills, position: Floats) -> Floats:
 
 
 def _alike(marks: SpliceMarks, rows: Integers) -> tuple[Note, ...]:
-    """Rows of two holds of one test that have the same three lengths, to the digit."""
+    """Rows for two holds of one test that have exactly the same three lengths."""
     seen: dict[tuple[float, ...], int] = {}
     for row in map(int, rows):
         lengths = tuple(
@@ -198,13 +198,14 @@ def _check_unit(
     allowance: float,
     outside: Bools,
 ) -> None:
-    """Refuse readings that another unit of their column brings to the crosshead."""
+    """Refuse readings that agree with the crosshead in another unit."""
     declared = _unit(marks, int(rows[0]))
     tape = marks.far_thimble[rows]
     for unit, size in UNITS.items():
         other = tape * (size / UNITS[declared])
         inside = (other >= logged[0] - allowance) & (other <= logged[1] + allowance)
-        # without a hold in the log, that all are in its range and none was is as much as can be had
+        # without a hold in the log, ask only that all are in range in this unit and none as
+        # declared
         fits = _meets(other, holds, allowance).all() or (outside.all() and inside.all())
         if unit == declared or not fits:
             continue
@@ -232,7 +233,7 @@ def _check_unit(
 
 
 def _check_zero(marks: SpliceMarks, rows: Integers, holds: Floats, allowance: float) -> None:
-    """Refuse readings that are all off the holds by one length."""
+    """Refuse readings that are all off the holds by the same length."""
     tape = marks.far_thimble[rows]
     if np.unique(tape).size < 2:
         return
@@ -253,7 +254,7 @@ def _unit(marks: SpliceMarks, row: int) -> str:
 
 
 def _contradiction(marks: SpliceMarks, row: int, crosshead: str, *, hint: str) -> DataError:
-    """The error of a row that the crosshead contradicts, with both values."""
+    """Error for a row that the crosshead contradicts, with both values."""
     unit, length = _unit(marks, row), float(marks.far_thimble[row])
     read = f"far_thimble {length:.4g} m"
     if unit != "m":

@@ -1,8 +1,8 @@
-"""Where a specimen without splices has no strain: at slack, or at the tension of its gauge length.
+"""Zero of strain of a specimen without splices: at slack, or at the tension of its gauge length.
 
-A rubber cord is measured slack.  A rope hangs in a curve then and is measured under a small
-tension that is part of its gauge length, usually a hundredth or two of its break strength ([1]_),
-so that its strain counts from that tension.
+A rubber cord is measured slack.  A slack rope hangs in a curve, so it is measured under a small
+tension that belongs to its gauge length, usually a hundredth or two of its break strength ([1]_),
+and its strain counts from that tension.
 
 References
 ----------
@@ -21,7 +21,7 @@ from reduction.record.measurement import Bools, Floats
 from reduction.record.samples import finite_extremes, first_sample, last_sample, step_of_codes
 from reduction.stages.standstills import Standstills, estimate_noise, noise_range
 
-# of the reference tension to either side of it: a rope's curve is straight there
+# of the reference tension, on either side of it: there the curve of a rope is straight
 _BAND = 0.2
 
 _FEWEST = 4  # samples in the band, for a line and its residual
@@ -29,13 +29,13 @@ _FEWEST = 4  # samples in the band, for a line and its residual
 
 @dataclass(frozen=True)
 class ZeroStrain:
-    """Where strain is zero in one test, of one specimen.
+    """Zero of strain of one specimen in one test.
 
-    ``position`` [m] is None where nothing says it, ``standard_uncertainty`` [m] that of reading
-    it from the log, ``compliance`` [m/N] how far it moves with the tension that it stands for,
+    ``position`` [m] is None if it is not known, ``standard_uncertainty`` [m] that of reading
+    it from the log, ``compliance`` [m/N] its derivative by the corresponding tension,
     ``is_logged`` whether it is a position of the log itself, ``reference_tension`` [N] the
-    tension there, zero at slack, and ``stated_position`` [m] where the layout has that tension.
-    ``bent_at`` [m] is the first rest of a specimen that is longer than it, and hangs bent.
+    tension there, zero at slack, and ``stated_position`` [m] that of the layout for this tension.
+    ``bent_at`` [m] is the first rest of a specimen that is longer than this rest, and hangs bent.
     """
 
     position: float | None = None
@@ -54,9 +54,9 @@ def zero_at_slack(
     length_at_slack: float | None = None,
     code_step: float = 0.0,
 ) -> ZeroStrain:
-    """Position of the first rest, else that at which the layout says that the specimen is slack.
+    """Position of the first rest, else that at which the layout states that the specimen is slack.
 
-    A position that is written in coarse codes stands anywhere within one of them.
+    A position that is written in coarse codes is uncertain by one of them.
 
     Examples
     --------
@@ -74,10 +74,10 @@ def zero_at_slack(
 def zero_of_bent(
     zero: ZeroStrain, position: Floats, tension: Floats, *, gauge_length: float
 ) -> ZeroStrain:
-    """Zero at the gauge length where a specimen hangs bent in the first rest, with closer pins.
+    """Zero at the gauge length, if a specimen hangs bent in the first rest, with closer pins.
 
-    It pulls from about its own length on; one that is shorter than stated pulls as soon as it
-    leaves the rest.
+    It pulls from about its own length on; a specimen that is shorter than stated pulls as soon as
+    it leaves the rest.
 
     Examples
     --------
@@ -114,7 +114,7 @@ _NEARER = 0.7  # of the way from the rest to the gauge length
 
 
 def half_band_of(reference_tension: float, tension: Floats) -> float:
-    """By how much a reading at the reference tension may miss it: a fifth of it, or noise. [N]."""
+    """Allowed distance of a reading from the reference tension: a fifth of it, or noise. [N]."""
     return max(_BAND * reference_tension, float(noise_range(tension)) / 2)
 
 
@@ -132,19 +132,19 @@ def zero_at_tension(
     Parameters
     ----------
     position : ndarray, shape (n_samples,)
-        Of the crosshead; NaN where not usable. [m]
+        Position of the crosshead; NaN where not usable. [m]
     tension : ndarray, shape (n_samples,)
-        Of the specimen. [N]
+        Tension of the specimen. [N]
     reference_tension : float
-        Under which its gauge length was read. [N]
+        Tension under which its gauge length was read. [N]
     stated_position : float, optional
-        Where the layout says that the tension is that one; it counts where the log begins above
+        Position at that tension as stated in the layout, used if the log begins above
         the reference tension. [m]
 
     Returns
     -------
     zero : ZeroStrain
-        Without a position where neither says it.
+        Without a position if neither determines it.
 
     Raises
     ------
@@ -153,14 +153,14 @@ def zero_at_tension(
 
     Notes
     -----
-    The first rise of the log through the reference tension, or the hold at it with which the log
-    begins: a line of position on tension over a fifth of that tension to either side, or over the
-    noise where that is wider; through the two samples beside it where too few lie there.  What a
-    later cycle has at that tension is creep and hysteresis, and is strain.
+    The first rise of the log through the reference tension is used, or the hold at it with which
+    the log begins: a line of position on tension over a fifth of that tension to either side, or
+    over the noise if that is wider; through the two nearest samples if too few are in that range.
+    The difference in a later cycle at that tension is creep and hysteresis, and counts as strain.
 
     Examples
     --------
-    A rope of 20 kN a metre that is pulled from slack, and has 400 N at 0.12 m.
+    A rope of 20 kN a metre, pulled from slack, with 400 N at 0.12 m:
 
     >>> place = np.linspace(0, 1, 2001)
     >>> zero = zero_at_tension(place, 2e4 * np.clip(place - 0.1, 0, None), reference_tension=400.0)
@@ -212,29 +212,29 @@ def zero_at_tension(
     )  # fmt: skip
 
 
-# readings on each side between which a length jumps, and how far beyond their own steps
+# readings on each side of a jump of length, and its size compared with their own steps
 _BESIDE_JUMP = 8
 _JUMP = 10.0
 
 _LEAST_JUMP, _CODES = 0.002, 3.5  # of the range of length, and steps in which it is written
 
-_IN_STEP = 3.5  # usual steps of time: in a longer gap a line may creep as far
+_IN_STEP = 3.5  # usual time steps: in a longer gap creep may be as large
 
-# share of a jump that the load may answer: a line that is stretched answers all of it
+# fraction of a jump to which the load may respond: for a real stretch it responds to all of it
 _ANSWER = 0.1
 
 
 def jumps_of_length(
     time: Floats, length: Floats, tension: Floats, *, slack_tension: float
 ) -> list[tuple[float, float]]:
-    """Times and sizes of steps of a length that the load does not answer.
+    """Times and sizes of steps of a length to which the load does not respond.
 
     Parameters
     ----------
     time, length, tension : ndarray, shape (n_samples,)
         Length may be a measured strain. [s], [m], [N]
     slack_tension : float
-        Up to which a specimen is slack, and answers no motion. [N]
+        Tension up to which a specimen is slack, and does not respond to motion. [N]
 
     Returns
     -------
@@ -248,10 +248,10 @@ def jumps_of_length(
 
     Notes
     -----
-    A stroke that is set to zero again under load, a grip or an extensometer that is seated anew.
-    The medians of eight readings on both sides differ by the step, so a spike is none, nor is the
-    motion of both sides; the load steps by less than a tenth of what a stretch of that size makes
-    by the ranges of the record.
+    Causes are a stroke that is reset to zero under load, and a grip or extensometer that slips.
+    The medians of eight readings on both sides differ by the step, so that neither a spike nor the
+    motion of both sides counts; the load steps by less than a tenth of its change for a stretch of
+    that size, by the ranges of the record.
 
     Examples
     --------
@@ -265,7 +265,7 @@ def jumps_of_length(
     known = np.isfinite(length) & np.isfinite(tension)
     if np.count_nonzero(known) < 4 * _BESIDE_JUMP:
         return []
-    # most records lack none, and need no copy
+    # most records have no missing values, and need no copy
     t, x, load = (one if known.all() else one[known] for one in (time, length, tension))
     reach, pull = float(np.ptp(x)), float(np.ptp(load))
     step = np.diff(x)
@@ -281,7 +281,7 @@ def jumps_of_length(
         waits = np.diff(t[around])
         (size, way), (answered, pulled) = (_step_beside_motion(one[around]) for one in (x, load))
         if 4 * pull * abs(way) < reach * abs(pulled):
-            # readings that are repeated stand still, and step, while the load moves
+            # repeated readings stand still, and step, while the load moves
             answered += pulled / 2
         if (
             waits[_BESIDE_JUMP - 1] <= _IN_STEP * np.median(waits)
@@ -294,7 +294,7 @@ def jumps_of_length(
 
 
 def _step_beside_motion(values: Floats) -> tuple[float, float]:
-    """Step in the middle of some readings, and the way that they go beside it."""
+    """Step in the middle of some readings, and their motion beside it."""
     half = values.size // 2
     rate = float(np.median(np.delete(np.diff(values), half - 1)))
     still = values - rate * np.arange(values.size)

@@ -1,18 +1,18 @@
 r"""The six change-in-length properties of rope practice.
 
-**What the six change-in-length properties are made from, and what they are.** A step is as an
-archive keeps it: one specimen, numbers without samples.
+**Definitions of the six change-in-length properties, and the numbers they are made from.** A step
+has the form in an archive: one specimen, numbers without samples.
 
 **The six change-in-length properties of rope practice, from the steps of a programme.** [1]_ names
 original, static and dynamic stiffness, and construction, polymer and working strain, from one
-programme of many steps.  It was read in its abstract alone, which gives no formula: the definitions
-are this package's reading of the names.
+programme of many steps.  Only its abstract was read, which gives no formula: the definitions
+are this package's interpretation of the names.
 
 ================== =====================================================================
 original stiffness chord of the first rise of a new rope, end to end
-static stiffness   secant between two held tensions, at a time after the upper one was put on
+static stiffness   secant between two held tensions, at a time after the upper one was applied
 dynamic stiffness  apparent spring constant, mean over the last cycles of a level
-construction       strain that bedding-in left at equal tension, first rise and cycles
+construction       strain left by bedding-in at equal tension, first rise and cycles
 polymer            :math:`c \log_{10}(t / t_{ref})` to the end of a hold, c its creep a decade
 working            :math:`(T_h - T_l) / K_s(t_{ref})` of a rope that has been bedded in
 ================== =====================================================================
@@ -59,7 +59,7 @@ MANY = float("inf")
 """Degrees of freedom of a regression on many samples. [1]"""
 
 RISE_GAP = 1.5
-"""Strains of a rise further apart than this, over the grid's spacing, have a gap between them."""
+"""A rise has a gap where its strains are further apart than this, over the grid's spacing."""
 
 
 def _none_shared() -> Floats:
@@ -69,14 +69,14 @@ def _none_shared() -> Floats:
 @dataclass(frozen=True)
 @read_only_arrays
 class StepNumber:
-    """A number of a step, and the two parts of its uncertainty.
+    """A number of a step, with the two parts of its uncertainty.
 
     Parameters
     ----------
     value, random_standard_uncertainty : float
-        The uncertainty is of what nothing else shares. [as the quantity]
+        The uncertainty is the part that is not shared with other numbers. [as the quantity]
     contribution : ndarray, shape (n_components,)
-        Signed, of each error that the numbers of the step share. [as the quantity]
+        Signed effect of each error shared by the numbers of the step. [as the quantity]
     degrees_of_freedom : float
         Of the random part. [1]
     """
@@ -90,18 +90,18 @@ class StepNumber:
 @dataclass(frozen=True)
 @read_only_arrays
 class FirstRise:
-    """Tension on the first rise of a test, at two strains or more, all of them known.
+    """Tension on the first rise of a test, at two or more strains, all of them known.
 
     Parameters
     ----------
     strain : ndarray, shape (n_points,)
-        Rising; a gap is where the rise was held or has too few samples. [1]
+        Rising; it has a gap where the rise was held or has too few samples. [1]
     tension, tension_random_standard_uncertainty : ndarray, shape (n_points,)
         [N]
     spacing : float
-        Of the grid that the strains are on. [1]
+        Spacing of the grid of the strains. [1]
     strain_contribution, tension_contribution : ndarray, shape (n_components, n_points)
-        By which each shared error moves the points. [1], [N]
+        Effect of each shared error on the points. [1], [N]
     """
 
     strain: Floats
@@ -122,13 +122,13 @@ class BeddingCycles:
     first_stiffness : StepNumber
         Secant of the first cycle. [N]
     permanent_strain : StepNumber
-        By which the foot of the loop moved, at equal tension. [1]
+        Shift of the foot of the loop, at equal tension. [1]
     foot_strain : float
-        At the foot of the first cycle. [1]
+        Strain at the foot of the first cycle. [1]
     foot_strain_contribution : ndarray, shape (n_components,)
-        By which each shared error moves that strain. [1]
+        Effect of each shared error on that strain. [1]
     valley_tension, first_peak_tension, peak_tension : float
-        Of the first cycle, and the greatest of all. [N]
+        Valley and peak of the first cycle, and the greatest peak of all. [N]
     """
 
     first_stiffness: StepNumber
@@ -151,9 +151,9 @@ class CyclicLevel:
 
 @dataclass(frozen=True)
 class PairOfHolds:
-    """Static stiffness [N] between two held tensions [N]; NaN with a reason where it has none.
+    """Static stiffness [N] between two held tensions [N]; NaN with a reason where there is none.
 
-    ``reason`` may stand beside a number, too: that the line was read beyond the hold.
+    A number may also have a ``reason``: that the line was read beyond the hold.
     """
 
     low_tension: StepNumber
@@ -179,26 +179,26 @@ class HeldTension:
 @dataclass(frozen=True)
 @read_only_arrays
 class StepOfProgramme:
-    """One step of the programme of one specimen; parts that it does not give are None, or empty.
+    """One step of the programme of one specimen; parts that it does not have are None, or empty.
 
     Parameters
     ----------
     name : str
-        Of the test or step.
+        Name of the test or step.
     reference_time : float
-        After loading, from which polymer strain counts. [s]
+        Time after loading from which polymer strain counts. [s]
     first_rise : FirstRise or None
-        Of the test.
+        First rise of the test.
     bedding : BeddingCycles or None
-        Of a step that beds the rope in.
+        For a step that beds the rope in.
     level : CyclicLevel or None
-        Of a step of cycles of a settled rope.
+        For a step of cycles of a settled rope.
     pairs : tuple of PairOfHolds
-        In time.
+        In order of time.
     holds : tuple of HeldTension
-        In time.
+        In order of time.
     strength_contribution : ndarray, shape (n_components,)
-        Relative, of each error that the numbers of the step share to the rated break strength. [1]
+        Relative effect of each error shared by the step on the rated break strength. [1]
     """
 
     name: str
@@ -221,19 +221,19 @@ class ChangeInLength:
     name : str
         One of the six.
     value, random_standard_uncertainty : float
-        [N] of a stiffness, [1] of a strain
+        [N] for a stiffness, [1] for a strain.
     over_strength, over_strength_random_standard_uncertainty : float
-        A stiffness over the rated break strength; NaN of a strain. [1]
+        A stiffness over the rated break strength; NaN for a strain. [1]
     low_tension, high_tension : float
-        Between which it holds; one number twice for a hold. [N]
+        Range in which it holds; the same number twice for a hold. [N]
     reference_time : float
-        Where a time belongs to it. [s]
+        Time to which it refers, if any. [s]
     step : str
-        Which step it is from.
+        Step from which it is taken.
     reason : str
-        Why there is no number, or what is not in it.
+        Reason for a missing number, or parts that are not included.
     contribution, over_strength_contribution : ndarray, shape (n_components,)
-        Signed, of each error that the numbers of that step share. [as the number]
+        Signed effect of each error shared by the numbers of that step. [as the number]
     degrees_of_freedom : float
         Of the random part. [1]
     """
@@ -254,11 +254,11 @@ class ChangeInLength:
 
     @property
     def is_stiffness(self) -> bool:
-        """True of a stiffness, in N; False of a strain."""
+        """True for a stiffness, in N; False for a strain."""
         return self.name.endswith("stiffness")
 
     def with_number(self, number: StepNumber) -> ChangeInLength:
-        """Return the property as a number of its step has it."""
+        """Return the property with the value of a number of its step."""
         return replace(
             self,
             value=number.value,
@@ -274,7 +274,7 @@ class ChangeInLength:
 
     @property
     def over_strength_standard_uncertainty(self) -> float:
-        """Shared and random parts of that over the strength together."""
+        """Shared and random parts of the uncertainty of the number over the strength, together."""
         return _together(
             self.over_strength_contribution, self.over_strength_random_standard_uncertainty
         )
@@ -285,13 +285,13 @@ def _together(contribution: Floats, random: float) -> float:
 
 
 def _construction_strain(steps: Sequence[StepOfProgramme], before: str) -> ChangeInLength:
-    """Strain that bedding-in left at equal tension, on the first rise and in the cycles.
+    """Strain left by bedding-in at equal tension, on the first rise and in the cycles.
 
     Notes
     -----
-    A name of [1]_.  The strain of the cycles' permanent change, and how far their first foot lies
-    from the first rise at the same tension.  That tension is read by one load cell in both places,
-    so that its errors move neither; what an error of the strain adds is its difference between
+    A name of [1]_.  It is the permanent strain of the cycles plus the distance of their first foot
+    from the first rise at the same tension.  One load cell reads that tension in both places,
+    so that its errors affect neither; an error of strain adds its difference between
     them.
 
     Examples
@@ -318,7 +318,7 @@ def _construction_strain(steps: Sequence[StepOfProgramme], before: str) -> Chang
         reason = "the first foot is taken to be on the first rise, which was held there"
     elif at_valley is not None:
         reason = ""
-        # what is random at the first foot is in the permanent strain with the other sign
+        # the random error at the first foot is in the permanent strain with the opposite sign
         found = replace(
             found,
             value=found.value + cycles.foot_strain - at_valley.value,
@@ -339,7 +339,7 @@ def _bedded_in(steps: Sequence[StepOfProgramme]) -> int | None:
 
     Notes
     -----
-    What was there before it is a rope as it was made ([1]_).
+    Before that step the rope is in its state of manufacture ([1]_).
 
     Examples
     --------
@@ -350,7 +350,7 @@ def _bedded_in(steps: Sequence[StepOfProgramme]) -> int | None:
 
 
 def _on_first_rise(rise: FirstRise | None, cycles: BeddingCycles) -> StepNumber | None:
-    """Strain where the rise first has the tension of the valleys; None where it nowhere has.
+    """Strain where the rise first reaches the tension of the valleys; None where it never does.
 
     NaN where the rise has a gap there: it was held, and the cycles begin from the hold.
     """
@@ -398,11 +398,11 @@ def change_in_length(
 
     Notes
     -----
-    Every number is that of a stage before, or one line of arithmetic with it.  An error that
-    samples share goes through that line with its sign, what is random by its square: a zero of
-    the load cell is in no chord, and its gain in no working strain.  The foot of the first cycle,
-    which is in both parts of a construction strain with opposite signs, adds nothing to it.
-    Construction strain holds what the polymer gained in the minutes of the bedding-in.
+    Every number is taken from an earlier stage, or by one line of arithmetic from it.  A shared
+    error goes through that line with its sign, a random one by its square: a zero of
+    the load cell cancels in a chord, and its gain in a working strain.  The foot of the first
+    cycle, which is in both parts of a construction strain with opposite signs, adds nothing to it.
+    Construction strain includes the polymer strain gained in the minutes of the bedding-in.
 
     Examples
     --------
@@ -447,13 +447,13 @@ def _over(one: ChangeInLength, strength: float, of_strength: Floats | None) -> C
 
 
 def _with_note(one: ChangeInLength, missing: str) -> ChangeInLength:
-    """Say which tests are missing, where the property may have been in one of them."""
+    """Name the missing tests, where the property may have been in one of them."""
     if not missing or one.step or np.isfinite(one.value):
         return one
     return replace(one, reason=f"{one.reason}; {missing}")
 
 
-# a curve of the first rise over less than this of the first cycle is of a few readings in it
+# if a first rise covers less of the first cycle than this, its curve rests on a few readings
 _LEAST_OF_RISE = 0.5
 
 
@@ -468,7 +468,7 @@ def _original(steps: Sequence[StepOfProgramme], before: str) -> ChangeInLength:
     rise, cycles = first.first_rise, first.bedding
     reason = "there is no curve of the first rise, which a log that begins slack gives"
     if rise is not None:
-        # a rope creeps on for a while as the load falls again: that is no part of its rise
+        # a rope creeps on for a while as the load falls again: that is not part of its rise
         top = max(int(np.argmax(rise.tension)), 1)
     if rise is not None and cycles is not None:
         spanned = float(rise.tension[top] - rise.tension[0])
@@ -532,7 +532,7 @@ def _dynamic(steps: Sequence[StepOfProgramme]) -> tuple[ChangeInLength, ...]:
             reason="" if np.isfinite(level.stiffness.value) else "no cycle of it has a stiffness",
         )  # fmt: skip
         found.append(bare.with_number(level.stiffness))
-    # the cycles of bedding-in are of a rope that is still settling
+    # the cycles of bedding-in belong to a rope that is still settling
     none = "no step is of cycles of a settled rope"
     return tuple(found) or (ChangeInLength("dynamic stiffness", reason=none),)
 
@@ -577,7 +577,7 @@ def _working(steps: Sequence[StepOfProgramme], is_ordered: bool) -> tuple[Change
 
 
 def _working_of(one: ChangeInLength, pair: PairOfHolds) -> ChangeInLength:
-    """Rise over stiffness: a gain of the load cell is in both, and in the strain no more."""
+    """Rise over stiffness: a gain of the load cell is in both, and cancels in the strain."""
     rise = one.high_tension - one.low_tension
     strain = rise / one.value
     of_rise = pair.high_tension.contribution - pair.low_tension.contribution

@@ -5,7 +5,7 @@ r"""Pairs of holds of a quasi-static programme.
 .. math:: K_s(t) = \frac{T_h(t) - T_l}{\varepsilon_h(t) - \varepsilon_l}
           = K_{ref} + b \log_{10}(t / t_{ref})
 
-A rope that is held creeps, so the secant between two levels falls with the time for which
+A rope under load creeps, so the secant between two levels falls with the time for which
 the upper one has been held; a straight line in the logarithm of time is the usual summary.
 
 References
@@ -47,7 +47,7 @@ _FEWEST_POINTS = 4
 
 _SHORTEST_SPAN = 0.5
 
-# a stiffness at one time alone is of the readings within this factor of it
+# a stiffness at a single time uses the readings within this factor of it
 _BESIDE_REFERENCE = 10**0.1
 
 
@@ -80,16 +80,16 @@ class CreepOfHold:
     specimen : str
         Which specimen.
     creep_per_decade, creep_per_decade_standard_uncertainty : float
-        Strain gained in a tenfold time. [1]
+        Strain gained in a tenfold increase of time. [1]
     tension, tension_over_strength : float
-        Held tension, and over the rated break strength. [N], [1]
+        Held tension; the same over the rated break strength. [N], [1]
     creep_compliance_per_decade : float
-        Strain a decade over tension as a share of the strength: what is alike in ropes of
+        Strain per decade over tension as a fraction of the strength: similar for ropes of
         one construction and many sizes. [1]
     duration : float
-        Of the hold. [s]
+        Duration of the hold. [s]
     reason : str
-        Why there is no number; empty where there is.
+        Reason for a missing number; else empty.
     tension_standard_uncertainty : float
         Of the means at both ends of the hold (type A). [N]
     """
@@ -123,9 +123,9 @@ def _static_stiffness(
 
     Notes
     -----
-    Samples become means over equal steps of the logarithm of time first, so that the last
-    decade does not decide alone; their scatter about the line is widened by their likeness.
-    Levels and times are the laboratory's: [1]_ was read in its abstract only, and no standard.
+    Samples are first averaged over equal steps of the logarithm of time, so that the last
+    decade does not dominate; their scatter about the line is widened by their correlation.
+    Levels and times are the laboratory's: only the abstract of [1]_ was read, and no standard.
 
     Examples
     --------
@@ -146,7 +146,7 @@ def _static_stiffness(
     series = clock, load, stretch
     earliest, latest = RAMP_TIMES_LEFT_OUT * ramp_duration, np.inf
     end = finite_extremes(clock)[1]
-    # a plateau of a slow programme ends within these ramp times: the secant at one time it has
+    # a plateau of a slow programme ends within these ramp times: it has a secant at one time only
     is_of_ramp = bool(end < 10**_SHORTEST_SPAN * earliest and reference_time <= min(end, earliest))
     after_ramp = max(0.0, float(np.log10(end / earliest))) if is_of_ramp else 0.0
     if is_of_ramp:
@@ -178,7 +178,7 @@ def _static_stiffness(
     x, y = np.log10(blocks.elapsed / reference_time), blocks.value
     reaches = bool(clock[0] <= reference_time <= clock[-1])
     span = float(x[-1] - x[0])
-    # a short line says the stiffness amid its readings, and not how that goes on
+    # a short line gives the stiffness in the middle of its readings, but not its trend
     is_short = span < _SHORTEST_SPAN
     if x.size < _FEWEST_POINTS or (is_short and not reaches):
         raise FitError(
@@ -236,7 +236,7 @@ def _static_stiffness(
 
 
 def creep_of_hold(hold: HoldResult, *, rated_break_strength: float = float("nan")) -> CreepOfHold:
-    """Creep per decade of one hold at constant tension, with the tension as a share.
+    """Creep per decade of one hold at constant tension, with the tension as a fraction.
 
     Parameters
     ----------
@@ -248,7 +248,7 @@ def creep_of_hold(hold: HoldResult, *, rated_break_strength: float = float("nan"
     Returns
     -------
     creep : CreepOfHold
-        Rate, or NaN with the hold's own reason.
+        Rate, or NaN with the reason from the hold.
 
     Raises
     ------
@@ -292,7 +292,7 @@ def creep_of_hold(hold: HoldResult, *, rated_break_strength: float = float("nan"
     )
 
 
-# a hold is a step up where its tension is above the last one's by this share of it
+# a hold is a step up where its tension exceeds that of the last one by this fraction of it
 _LEAST_RISE = 0.05
 
 _FINAL_SHARE = 0.05
@@ -309,15 +309,15 @@ class HeldPair:
     low_hold, high_hold : int
         Numbers of the holds in the test, by time from 1.
     low_tension, high_tension : float
-        At the end of each hold. [N]
+        Tension at the end of each hold. [N]
     stiffness : StaticStiffness or None
-        Secant between them against the time for which the higher one was held.
+        Secant between them as a function of the time for which the higher one was held.
     reason : str
-        Why there is no stiffness; empty where there is.
+        Reason for a missing stiffness; else empty.
     low_tension_standard_uncertainty, high_tension_standard_uncertainty : float
         Of the means at the ends (type A). [N]
     low_strain : float
-        At the end of the lower hold, from which the stiffness counts; NaN where none is known. [1]
+        Strain at the end of the lower hold, from which the stiffness counts; NaN if unknown. [1]
     """
 
     specimen: str
@@ -340,7 +340,7 @@ def _end_of(values: Floats) -> tuple[float, float]:
 def _stiffness(
     low: Hold, high: Hold, *, strength: float, reference_time: float
 ) -> _StaticStiffness:
-    """Line in the logarithm of time, with what is not known of the end of the lower hold."""
+    """Line in the logarithm of time, with the uncertainty of the end of the lower hold."""
     if high.ramp is None:
         raise DataError(
             "the record does not show the ramp to the upper hold, so the time since loading is "
@@ -382,7 +382,7 @@ def held_pairs(
     rated_break_strength: ArrayLike,
     reference_time: float,
 ) -> tuple[HeldPair, ...]:
-    """Static stiffness from each hold to the next one, where that is at a higher tension.
+    """Static stiffness from each hold to the next one, if that is at a higher tension.
 
     Parameters
     ----------
@@ -397,7 +397,7 @@ def held_pairs(
     rated_break_strength : array_like, shape (n_specimens,)
         NaN where not stated. [N]
     reference_time : float
-        Time after the centre of the ramp at which the stiffness stands. [s]
+        Time after the centre of the ramp to which the stiffness refers. [s]
 
     Returns
     -------
@@ -412,15 +412,15 @@ def held_pairs(
 
     Notes
     -----
-    A hold counts as higher where its mean tension is above that of the hold before by 5 % of
-    it; a rest between the two parts them.  Tension and strain of the lower hold are means
-    over its last 5 %, and their type A uncertainty is in that of the stiffness; the time
-    counts from the centre of the ramp.  Levels and durations are the laboratory's: [1]_ was
-    read in its abstract only, and no standard.
+    A hold counts as higher if its mean tension exceeds that of the hold before by 5 % of
+    it; a rest between the two separates them.  Tension and strain of the lower hold are means
+    over its last 5 %, and their type A uncertainty is included in that of the stiffness; time
+    counts from the centre of the ramp.  Levels and durations are the laboratory's: only the
+    abstract of [1]_ was read, and no standard.
 
     Examples
     --------
-    A hold at 100 N, and one at 300 N of which the secant falls by 100 N a decade.
+    A hold at 100 N, and one at 300 N whose secant falls by 100 N a decade:
 
     >>> t = np.arange(0.0, 1200.0)
     >>> load = np.interp(t, [0, 10, 100, 102, 1200], [0, 100, 100, 300, 300])
@@ -482,5 +482,5 @@ def held_pairs(
 
 
 def _level(hold: Hold, mean: float) -> tuple[float, float]:
-    """Tension at the end of a hold; its mean where readings are too few for a scatter."""
+    """Tension at the end of a hold; its mean if readings are too few for a scatter."""
     return _end_of(hold.tension) if hold.tension.size > 2 else (float(mean), float("nan"))

@@ -10,16 +10,16 @@ With :math:`x = \omega\tau = 2\pi f \tau` and :math:`\tau = N / K_1`,
 
 As printed, and as computed.  Eq. 1 of [1]_ is the K_ap above.  Its eq. 4 prints
 :math:`H = K_1 (\Delta T)^2 \omega\tau / [K_0 + (K_0 + K_1)^2 (\omega\tau)^2]`: the pi and
-the square on K_0 are lost (K_0 beside a square of K_0 + K_1 has no unit), the integrand is
-the mean load T_m where the area of a loop is that of the tension T, and omega is called a
-frequency.  The numbers of [1]_ say which form was computed.  At the seven centre points the
+the square on K_0 are lost (K_0 beside a square of K_0 + K_1 is dimensionally wrong), the integrand
+is the mean load T_m where the area of a loop needs the tension T, and omega is called a
+frequency.  The numbers of [1]_ show which form was computed.  At the seven centre points the
 constant in front of K_1 has the geometric mean 3.166 with a 95 % interval of 2.82 to 3.56,
-which holds pi and neither 1, 2, 4 nor 2 pi; omega = 2 pi f gives K_ap within 0.966 to 1.013
-of the print, omega = f gives 0.55 to 0.80.  K_0 against its square moves H by 5 % at most
-there, so it is the unit that decides.
+which includes pi but not 1, 2, 4 or 2 pi; omega = 2 pi f gives K_ap within 0.966 to 1.013
+of the print, omega = f gives 0.55 to 0.80.  K_0 in place of its square changes H by 5 % at most
+there, so the unit decides.
 
-**Logarithmic sensitivities of the line's parameters to what was measured.** With :math:`A = E' -
-K_0` and :math:`x = A / E''`, small relative changes obey
+**Logarithmic sensitivities of the line's parameters to the measured quantities.** With
+:math:`A = E' - K_0` and :math:`x = A / E''`, small relative changes obey
 
 .. math::
 
@@ -54,15 +54,15 @@ error of H, twice that of the amplitude, and K_0/A times that of K_0.
     A = E' - K_0, \quad x = \frac{A}{E''}, \quad K_1 = A + \frac{E''^2}{A}, \quad
     \tau = \frac{x}{2 \pi f}
 
-There is one root with K_1 and x positive where E'' < K_ap and E' > K_0, and none elsewhere.
+There is one root with positive K_1 and x where E'' < K_ap and E' > K_0, and none elsewhere.
 
-As printed, and as computed.  [1]_ solves its eqs. 1 and 4 at once; eq. 4 is taken with pi
+As printed, and as computed.  [1]_ solves its eqs. 1 and 4 together; eq. 4 is taken with pi
 and the square on K_0 (see the forward model).  Eq. 4 alone has two roots, x and
-[K_0/(K_0 + K_1)]^2/x; eq. 1 decides between them, and the printed values are the higher.
+[K_0/(K_0 + K_1)]^2/x; eq. 1 decides between them, and the printed values are the higher ones.
 
-**Whether one relaxation time holds over frequency.** At equal loads a line of three parameters has
-one tau whatever the frequency; a material with a loss angle that does not change with frequency
-gives a tau that falls as 1/f.  With one intercept a load,
+**Test for a single relaxation time over frequency.** At equal loads a three-parameter line has
+one tau at all frequencies; a material with a loss angle that does not change with frequency
+gives a tau that falls as 1/f.  With one intercept per load,
 
 .. math:: \ln \tau = a_g - n \ln f, \qquad n = 0: \text{one } \tau, \qquad n = 1: \tau \propto 1/f
 
@@ -92,7 +92,7 @@ from reduction.stages.three_parameter_line.line_product import REASONS, LinePara
 
 
 def _at_least_zero(**named: ArrayLike) -> tuple[Floats, ...]:
-    """The inputs as float64, NaN let through; a negative one is refused by its name."""
+    """The inputs as float64; NaN is allowed, a negative input is refused by its name."""
     arrays = {name: np.asarray(values, dtype=np.float64) for name, values in named.items()}
     for name, array in arrays.items():
         bad = array < 0
@@ -158,12 +158,12 @@ def _storage_and_loss(
 
     Notes
     -----
-    Source: [1]_, eq. 1, whose modulus they are.  Small motions about a mean tension; the
+    Source: [1]_, eq. 1, which gives their modulus.  Small motions about a mean tension; the
     line does not go slack.  NaN in, NaN out.
 
     Examples
     --------
-    Far above and far below the frequency of relaxation the line is a spring (eqs. 2, 3).
+    Far above and far below the relaxation frequency the line is a spring (eqs. 2, 3).
 
     >>> stored, _ = _storage_and_loss(quasi_static_spring_constant=1.2,
     ...     dissipation_spring_constant=1.8, relaxation_time=1.0, frequency=[0.0, 1e6])
@@ -241,7 +241,7 @@ def hysteresis_energy(
     frequency: ArrayLike,
     tension_amplitude: ArrayLike,
 ) -> Floats:
-    r"""Energy lost in a cycle and unit length, for a tension amplitude.
+    r"""Energy lost per cycle and unit length, for a tension amplitude.
 
     .. math:: H = \oint T d\varepsilon
               = \pi \frac{(\Delta T)^2}{K_{ap}^2} E''
@@ -338,8 +338,8 @@ def line_sensitivities(
     Notes
     -----
     Derived from eqs. 1 and 4 of [2]_ (module).  Linear: where K_0/(E' - K_0) times the
-    relative uncertainty of K_0 is above about 0.3 the distribution of K_1 is skewed and
-    a standard uncertainty says little.
+    relative uncertainty of K_0 is above about 0.3, the distribution of K_1 is skewed and
+    a standard uncertainty is of little use.
 
     Examples
     --------
@@ -357,7 +357,7 @@ def line_sensitivities(
     table[0, 0] = table[1, 1] = 1
     with np.errstate(divide="ignore", invalid="ignore"):
         excess = stored - rest
-        # of A: storage, loss, frequency, K_0
+        # derivatives of A: storage, loss, frequency, K_0
         of_excess = np.zeros(table.shape[1:])
         of_excess[0], of_excess[3] = stored / excess, -rest / excess
         of_turn = of_excess.copy()
@@ -374,7 +374,7 @@ def amplitude_sensitivities(
     loss_spring_constant: ArrayLike,
     quasi_static_spring_constant: ArrayLike,
 ) -> Floats:
-    """Relative change of each parameter for one of K_ap, H, amplitude, f and K_0.
+    """Relative change of each parameter for a relative change of K_ap, H, amplitude, f and K_0.
 
     Parameters
     ----------
@@ -395,7 +395,7 @@ def amplitude_sensitivities(
 
     Notes
     -----
-    Derived from eqs. 1 and 4 of [2]_ (module); linear, as `line_sensitivities`.
+    Derived from eqs. 1 and 4 of [2]_ (module); linear, as in `line_sensitivities`.
 
     Examples
     --------
@@ -411,7 +411,7 @@ def amplitude_sensitivities(
     stored, lost = np.asarray(storage_spring_constant), np.asarray(loss_spring_constant)
     with np.errstate(divide="ignore", invalid="ignore"):
         wide = (lost / stored) ** 2
-        # of E' and E'': K_ap, H, amplitude
+        # derivatives of E' and E'': K_ap, H, amplitude
         of_lost = np.array([2.0, 1.0, -2.0]).reshape(3, *[1] * stored.ndim)
         of_stored = np.zeros((3, *stored.shape))
         of_stored[0] = 1 + wide
@@ -426,7 +426,7 @@ _UNKNOWN_REST, _BAD_REST, _MISSING, NOT_POSITIVE, TOO_WIDE, _NOT_ABOVE = range(1
 
 
 def refused_lines(reason: ArrayLike) -> tuple[Note, ...]:
-    """How many lines have no K_1 and tau, and why.
+    """Number of lines without K_1 and tau, and the reasons.
 
     Examples
     --------
@@ -492,11 +492,11 @@ def _line_of_loop(
     correlation: ArrayLike,
     reading: str,
 ) -> LineParameters:
-    """Give the parameters of a line, their uncertainties, and reasons where there are none.
+    """Compute the parameters of a line and their uncertainties, with reasons where refused.
 
     Notes
     -----
-    One root with K_1 and x positive where E' > K_0, and none elsewhere.
+    There is one root with positive K_1 and x where E' > K_0, and none elsewhere.
 
     Examples
     --------
@@ -516,10 +516,11 @@ def _line_of_loop(
         default=0,
     ).astype(np.int8)
     values = _solve(stored, lost, inputs, reason)
-    # E' and E'' feel no K_0; of the rest nothing is known where nothing is stated, as of draws
+    # E' and E'' do not depend on K_0; without stated uncertainties the rest is unknown, as for
+    # draws
     felt = np.full((len(OUTPUTS), len(relative), *[1] * rest.ndim), np.nan)
     felt[:2, -1] = 0.0
-    # an input that a parameter does not feel need not have its uncertainty stated;
+    # an input that does not affect a parameter may have an unstated uncertainty;
     # K_0 is the last input of either table
     random, shared, both = {}, {}, {}
     with np.errstate(invalid="ignore", over="ignore"):
@@ -527,7 +528,7 @@ def _line_of_loop(
             table = sensitivities(stored, lost, np.where(reason == 0, rest, np.nan))
             felt = np.where(table == 0, 0.0, table * relative)
         crossed = 2 * np.asarray(correlation) * felt[:, 0] * felt[:, 2]
-        # differences of nearly equal terms may fall a rounding error below zero
+        # differences of nearly equal terms may be negative by a rounding error
         random_part = np.sqrt(np.maximum((felt[:, :-1] ** 2).sum(axis=1) + crossed, 0))
         for row, name in enumerate(OUTPUTS):
             size = np.abs(values[name])
@@ -548,7 +549,7 @@ def _line_of_loop(
 def _solve(
     stored: Floats, lost: Floats, inputs: Mapping[str, Floats], reason: NDArray[np.int8]
 ) -> dict[str, Floats]:
-    """Fields of `LineParameters` but the uncertainties."""
+    """Fields of `LineParameters` except the uncertainties."""
     rest = inputs["quasi_static_spring_constant"]
     turn_rate = 2 * np.pi * inputs["frequency"]
     stands = reason == 0
@@ -598,7 +599,7 @@ def identify_by_amplitude(
     standard_uncertainty: Mapping[str, ArrayLike] | None = None,
     correlation: ArrayLike = 0.0,
 ) -> LineParameters:
-    r"""Parameters of the line from amplitudes and area of its loop.
+    r"""Parameters of the line from the amplitudes and the area of its loop.
 
     .. math:: x = A / E'', \qquad K_1 = A + E''^2 / A, \qquad A = E' - K_0
 
@@ -615,7 +616,7 @@ def identify_by_amplitude(
     quasi_static_spring_constant : array_like, shape (...)
         :math:`K_0` at the mean tension of the run; NaN where there is no slow pull. [N]
     standard_uncertainty : mapping of str to array_like, optional
-        By the names above; a name left out is not stated, and 0 is exact. [the input's]
+        By the names above; a missing name means not stated, and 0 means exact. [the input's]
     correlation : array_like, optional
         Correlation of the errors of K_ap and the tension amplitude, which share the
         tension's extremes. [1]
@@ -623,20 +624,20 @@ def identify_by_amplitude(
     Returns
     -------
     parameters : LineParameters
-        Of the broadcast shape; NaN with a reason where refused. [N], [s], [N s]
+        With the broadcast shape; NaN with a reason where refused. [N], [s], [N s]
 
     Raises
     ------
     DataError
-        If shapes do not broadcast, or an uncertainty is given for no input.
+        If shapes do not broadcast, or an uncertainty is given for an unknown input.
 
     Notes
     -----
-    Source: [1]_, eqs. 1 and 4 solved at once; as computed, see the module.  Holds for
-    sinusoidal cycles, whose loop is an ellipse.  A triangular cycle has fundamentals of
-    8/pi^2 of its amplitudes: E'' by H and amplitudes is then a third too low
-    (`identify_by_fundamental` is free of that).  All uncertainties are of one loop; the
-    part of K_0 is kept apart.
+    Source: [1]_, eqs. 1 and 4 solved together; for the computed form see the module.  Holds for
+    sinusoidal cycles, whose loop is an ellipse.  The fundamentals of a triangular cycle are
+    8/pi^2 of its amplitudes: E'' from H and amplitudes is then a third too low
+    (`identify_by_fundamental` does not have this error).  All uncertainties are those of one loop;
+    the part of K_0 is kept separate.
 
     Examples
     --------
@@ -661,7 +662,7 @@ def identify_by_amplitude(
     with np.errstate(all="ignore"):
         lost = energy * sound**2 / (np.pi * amplitude**2)
         bad = np.where((bad == 0) & ~(lost < apparent), np.int8(TOO_WIDE), bad)
-        # an area so small that its share of K_ap is no number any more
+        # an area so small that its ratio to K_ap underflows
         bad = np.where((bad == 0) & ~(lost > 0), np.int8(NOT_POSITIVE), bad)
         lost = np.where(bad == 0, lost, np.nan)
         stored = np.sqrt((sound - lost) * (sound + lost))
@@ -698,22 +699,22 @@ def identify_by_fundamental(
     quasi_static_spring_constant : array_like, shape (...)
         :math:`K_0` at the mean tension of the run; NaN where there is no slow pull. [N]
     standard_uncertainty : mapping of str to array_like, optional
-        By the names above; a name left out is not stated, and 0 is exact. [the input's]
+        By the names above; a missing name means not stated, and 0 means exact. [the input's]
 
     Returns
     -------
     parameters : LineParameters
-        Of the broadcast shape; NaN with a reason where refused. [N], [s], [N s]
+        With the broadcast shape; NaN with a reason where refused. [N], [s], [N s]
 
     Raises
     ------
     DataError
-        If shapes do not broadcast, or an uncertainty is given for no input.
+        If shapes do not broadcast, or an uncertainty is given for an unknown input.
 
     Notes
     -----
     Eqs. 1 and 4 of [1]_ in E' and E''; exact for any waveform of a linear line.  E' and E''
-    of a fit over a cycle have independent errors of one size.
+    from a fit over a cycle have independent errors of equal size.
 
     Examples
     --------
@@ -755,7 +756,7 @@ VERDICTS: dict[int, str] = {
 @dataclass(frozen=True)
 @read_only_arrays
 class SingleTimeCheck:
-    """How the relaxation time of lines changes with frequency; arrays have shape (...).
+    """Change of the relaxation time of lines with frequency; arrays have shape (...).
 
     Parameters
     ----------
@@ -764,10 +765,10 @@ class SingleTimeCheck:
     exponent_low, exponent_high : ndarray
         Interval of n. [1]
     p_one_time, p_inverse_frequency : ndarray
-        Probability of an estimate as far from exactly 0 (one tau), and from 1 (1/f). [1]
+        Probability of an estimate at least as far from exactly 0 (one tau), and from 1 (1/f). [1]
     time_ratio, time_ratio_low, time_ratio_high : ndarray
-        tau at the lowest over tau at the highest frequency, by the fit; 1 where one tau
-        holds and ``frequency_ratio`` where tau follows 1/f. [1]
+        tau at the lowest over tau at the highest frequency, from the fit; 1 for one tau
+        and ``frequency_ratio`` for tau proportional to 1/f. [1]
     frequency_ratio : ndarray
         Highest over lowest frequency. [1]
     degrees_of_freedom : ndarray of int
@@ -778,7 +779,7 @@ class SingleTimeCheck:
     verdict : ndarray of int8
         Key of `VERDICTS`.
     confidence, tolerance : float
-        Of the intervals, and by which they may miss 0 or 1. [1]
+        Of the intervals; distance from 0 or 1 that counts as equal. [1]
     """
 
     exponent: Floats
@@ -801,7 +802,7 @@ class SingleTimeCheck:
 
 
 def _membership(group: ArrayLike | None, n_runs: int) -> Floats:
-    """One row a group of runs at equal loads, 1 where a run belongs to it."""
+    """One row for each group of runs at equal loads, 1 where a run belongs to it."""
     labels = np.zeros(n_runs, dtype=np.int64) if group is None else np.asarray(group)
     if labels.shape != (n_runs,):
         raise DataError(
@@ -826,7 +827,7 @@ def _power_of_frequency(
 
     Notes
     -----
-    The check that [1]_ did not make on its runs.  Runs count alike: from the third run on,
+    A test that [1]_ did not make on its runs.  Runs have equal weight: from the third run on,
     their scatter about the line is the uncertainty, lack of fit included.
 
     Examples
@@ -853,7 +854,7 @@ def _power_of_frequency(
     y_own = y - (weight * y) @ member.T / present @ member
     power = (weight * x_own**2).sum(axis=-1)
     with np.errstate(divide="ignore", invalid="ignore"):
-        # runs at one frequency leave rounding errors of its logarithm
+        # runs at a single frequency leave rounding errors of its logarithm
         slope = np.where(power > 1e-12, (weight * x_own * y_own).sum(axis=-1) / power, np.nan)
         left = weight.sum(axis=-1) - (count > 0).sum(axis=-1) - 1
         residual = weight * (y_own - slope[..., None] * x_own)
@@ -868,13 +869,13 @@ def _power_of_frequency(
 
 
 def _quantile(degrees_of_freedom: Integers, confidence: float) -> Floats:
-    """Half width of an interval in standard uncertainties; normal where they were stated."""
+    """Half width of an interval in standard uncertainties; normal where these were stated."""
     t = scipy.special.stdtrit(np.maximum(degrees_of_freedom, 1), (1 + confidence) / 2)
     return np.where(degrees_of_freedom > 0, t, scipy.special.ndtri((1 + confidence) / 2))
 
 
 def _tail(distance: Floats, degrees_of_freedom: Integers) -> Floats:
-    """Probability of a distance as large, in standard uncertainties, on both sides."""
+    """Two-sided probability of a distance at least as large, in standard uncertainties."""
     t = 2 * scipy.special.stdtr(np.maximum(degrees_of_freedom, 1), -np.abs(distance))
     return np.where(degrees_of_freedom > 0, t, 2 * scipy.special.ndtr(-np.abs(distance)))
 
@@ -889,28 +890,28 @@ def check_single_time(
     confidence: float = 0.95,
     tolerance: float = 0.1,
 ) -> SingleTimeCheck:
-    r"""Whether one relaxation time holds over the frequencies of some runs.
+    r"""Test whether one relaxation time holds over the frequencies of some runs.
 
     .. math:: \ln \tau = a_g - n \ln f
 
     Parameters
     ----------
     frequency : array_like, shape (n_runs,)
-        Of each run. [Hz]
+        Frequency of each run. [Hz]
     relaxation_time : array_like, shape (..., n_runs)
-        tau of each run, of one line or of many; NaN is left out. [s]
+        tau of each run, for one line or many; NaN is left out. [s]
     loss_factor : array_like, shape (..., n_runs)
         Tangent of the loss angle of each run. [1]
     group : array_like, shape (n_runs,), optional
         Label of the loads of each run: only runs at equal loads are compared. [1]
     relative_standard_uncertainty : array_like, shape (..., n_runs), optional
-        Of tau, without the part of K_0, which runs at equal loads share; used where the
+        Of tau, without the part of K_0, which is common to runs at equal loads; used where the
         runs leave no degree of freedom, as two frequencies at one load do. [1]
     confidence : float, optional
         Of the intervals. [1]
     tolerance : float, optional
-        An exponent this near to 0 or 1 is as good as it: many runs would else tell 0.95
-        from 1, and no line is exactly either. [1]
+        An exponent this close to 0 or 1 counts as equal: otherwise many runs would distinguish
+        0.95 from 1, and no line is exactly either. [1]
 
     Returns
     -------
@@ -929,7 +930,7 @@ def check_single_time(
     Source: Table 17 of [1]_ prints tau with terms of frequency as large as its mean: at the
     centre loads tau(0.1 Hz)/tau(0.5 Hz) is 2.85 to 14, where 1/f gives 5.  A fifteen-run
     design has four pairs of extreme frequencies at equal loads; with its centre runs in a
-    group of their own that is 8 runs, 4 factors and 3 degrees of freedom.
+    group of their own this gives 8 runs, 4 factors and 3 degrees of freedom.
 
     Examples
     --------

@@ -40,21 +40,21 @@ _FEWEST_CYCLES = 3
 def relative_deviations(
     loops: Loops, names: Sequence[str], *, break_in_cycles: int
 ) -> tuple[Floats, Floats]:
-    """Means over the cycles that have every quantity, and how far each cycle is from them.
+    """Means over the cycles that have every quantity, and deviations of each cycle from them.
 
     Parameters
     ----------
     loops : Loops
         Table of loops.
     names : sequence of str, length n_inputs
-        Quantities.
+        Quantities of the loops.
     break_in_cycles : int
         Cycles left out at the start. [1]
 
     Returns
     -------
     means : ndarray, shape (n_inputs, n_specimens)
-        NaN where no cycle is whole. [of the quantity]
+        NaN where no cycle is complete. [of the quantity]
     deviations : ndarray, shape (n_inputs, n_specimens, n_cycles)
         Relative to the mean; NaN in cycles that lack a quantity. [1]
 
@@ -65,8 +65,8 @@ def relative_deviations(
 
     Notes
     -----
-    A cycle that lacks one quantity is left out of all, as type A of several quantities that are
-    read together asks ([1]_).
+    A cycle that lacks one quantity is left out of all, as required for type A of several quantities
+    that are measured together ([1]_).
 
     Examples
     --------
@@ -84,11 +84,11 @@ def relative_deviations(
 
 
 def relative_shared(loops: Loops, names: Sequence[str], *, break_in_cycles: int) -> Floats:
-    """Relative standard uncertainty that the cycles of a run share, shape (n_inputs, n_specimens).
+    """Relative standard uncertainty common to the cycles of a run, shape (n_inputs, n_specimens).
 
     Examples
     --------
-    A loop that drifts by a tenth of its energy, evenly or at a turn (triangular distribution).
+    A loop that drifts by a tenth of its energy, evenly or at a turn (triangular distribution):
 
     >>> one = {name: np.full((1, 3), 1.0) for name in Loops.__dataclass_fields__}
     >>> turns = dict.fromkeys(
@@ -104,7 +104,7 @@ def relative_shared(loops: Loops, names: Sequence[str], *, break_in_cycles: int)
 
 
 def covariance_of_means(deviations: Floats) -> tuple[Floats, Floats]:
-    """Relative covariance of the means over the cycles, neighbouring cycles being alike.
+    """Relative covariance of the means over the cycles, with neighbouring cycles correlated.
 
     Parameters
     ----------
@@ -125,8 +125,8 @@ def covariance_of_means(deviations: Floats) -> tuple[Floats, Floats]:
 
     Notes
     -----
-    [1]_.  Each quantity's own likeness of neighbours widens its row and column, so that the
-    matrix stays one of a covariance.
+    [1]_.  The correlation of neighbours in each quantity widens its row and column, so that the
+    matrix remains a covariance.
 
     Examples
     --------
@@ -152,18 +152,18 @@ def covariance_of_means(deviations: Floats) -> tuple[Floats, Floats]:
 
 Reading = Literal["amplitude", "fundamental"]
 
-# E'' by H and amplitudes over E'' of the fundamental: 1 for an ellipse, 0.66 for a triangle
+# E'' from H and amplitudes over E'' of the fundamental: 1 for an ellipse, 0.66 for a triangle
 _NOT_AN_ELLIPSE = 0.1
 
-# a relative uncertainty of E' - K_0 beyond which linear propagation says little
+# relative uncertainty of E' - K_0 beyond which linear propagation is unreliable
 _SKEWED = 0.3
 
-# a valley below this share of the peak is where a line goes slack
+# a line goes slack where the valley is below this fraction of the peak
 _SLACK_SHARE = 0.01
 
 
 def _quasi_static_part(loops: Loops, name: str, values: ArrayLike) -> Floats:
-    """One value a specimen, or one a specimen and cycle, as an array that broadcasts."""
+    """One value per specimen, or per specimen and cycle, as an array that broadcasts."""
     array = np.asarray(values, dtype=np.float64)
     shape = loops.frequency.shape
     if array.shape == shape[:1] and array.ndim == 1:
@@ -181,7 +181,7 @@ def _amplitude_correlation(loops: Loops) -> Floats:
     """Correlation of the errors of K_ap and tension amplitude.
 
     K_ap is the ratio of the amplitudes a and b, so that with relative variances the
-    covariance of ln K_ap and ln a is (v_a - v_b + v_K)/2, whatever a and b share.
+    covariance of ln K_ap and ln a is (v_a - v_b + v_K)/2, whatever the correlation of a and b.
     """
     with np.errstate(divide="ignore", invalid="ignore"):
         of_tension, of_strain, of_ratio = (
@@ -194,12 +194,12 @@ def _amplitude_correlation(loops: Loops) -> Floats:
 
 
 def _remarks(loops: Loops, line: LineParameters, break_in_cycles: int = 0) -> tuple[Note, ...]:
-    """What is odd about the loops for a line of three parameters."""
+    """Features of the loops that are unusual for a line of three parameters."""
     remarks = list(line.notes)
     known = line.reason == 0
     if line.reading == "amplitude" and known.any():
         own = np.broadcast_to(line.loss_spring_constant, known.shape)[known]
-        # one line a run is held against the mean of the cycles that it was made from
+        # a single line for a run is compared with the mean of the cycles from which it was made
         lost = loops.loss_over_time
         if lost.shape != known.shape:
             lost = np.nanmean(lost[:, break_in_cycles:], axis=1)
@@ -240,8 +240,8 @@ def identify_cycles(
     quasi_static_standard_uncertainty : array_like, same shape
         Its standard uncertainty, which the cycles share. [N]
     reading : {"amplitude", "fundamental"}
-        From K_ap and H of the loop, as [2]_, or from E' and E'' of its fundamental, which
-        cycles that are not sinusoidal need. [-]
+        From K_ap and H of the loop, as in [2]_, or from E' and E'' of its fundamental, as
+        needed for cycles that are not sinusoidal. [-]
 
     Returns
     -------
@@ -255,8 +255,8 @@ def identify_cycles(
 
     Notes
     -----
-    Source: [2]_, sec. 4.3.  A cycle carries its own noise only; for a number of a run see
-    `identify_run`.
+    Source: [2]_, sec. 4.3.  The uncertainty of a cycle is its own noise only; for results of a run
+    see `identify_run`.
 
     Examples
     --------
@@ -292,7 +292,7 @@ def identify_cycles(
 
 
 def _scatter(deviations: Floats) -> Floats:
-    """Standard uncertainty of the mean of each row, neighbouring cycles being alike."""
+    """Standard uncertainty of the mean of each row, with neighbouring cycles correlated."""
     result = np.full(deviations.shape[0], np.nan)
     for row, series in enumerate(deviations):
         kept = series[np.isfinite(series)]
@@ -324,7 +324,7 @@ def identify_run(
     quasi_static_standard_uncertainty : array_like, shape (n_specimens,)
         Its standard uncertainty. [N]
     reading : {"amplitude", "fundamental"}
-        From K_ap and H of the loop, as [2]_, or from E' and E'' of its fundamental. [-]
+        From K_ap and H of the loop, as in [2]_, or from E' and E'' of its fundamental. [-]
     break_in_cycles : int, optional
         Cycles left out at the start. [1]
 
@@ -340,12 +340,12 @@ def identify_run(
 
     Notes
     -----
-    Source: [2]_, sec. 4.3: one K_ap and H a run, then K_1 and tau.  Means go in, so that a
+    Source: [2]_, sec. 4.3: one K_ap and H per run, then K_1 and tau.  Means are used, so that a
     cycle whose noise hides K_1 is not left out of one side of the distribution.  The
-    random part is from the scatter of the cycles, carried by the sensitivities at the mean
-    and so with all correlations between K_ap, H and amplitude, and widened by the likeness
-    of neighbouring cycles (type A); it needs three cycles.  What the loops have alike
-    (`Loops.shared_by_cycles`) is beside it; the part of K_0 is as large as for one cycle.
+    random part is from the scatter of the cycles, propagated by the sensitivities at the mean
+    and so with all correlations between K_ap, H and amplitude, and widened by the correlation
+    of neighbouring cycles (type A); it needs three cycles.  Errors common to the loops
+    (`Loops.shared_by_cycles`) are added; the part of K_0 is as large as for one cycle.
 
     Examples
     --------

@@ -27,25 +27,25 @@ REASONS: dict[int, str] = {
     5: "the loop is too wide: the loss spring constant reaches the apparent one",
     6: "the storage spring constant does not exceed the quasi-static one",
 }
-"""Why a line has no K_1 and tau; the first that holds, in the order 3, 4, 5, 1, 2, 6."""
+"""Why a line has no K_1 and tau; the first that applies, in the order 3, 4, 5, 1, 2, 6."""
 
 
 @dataclass(frozen=True)
 @read_only_arrays
 class LineParameters:
-    """Parameters of the line; every array has one shape, (n_specimens, n_cycles) for loops.
+    """Parameters of the line; all arrays have one shape, (n_specimens, n_cycles) for loops.
 
-    A number that the loop does not support is NaN and ``reason`` says why.  ``storage`` and
-    ``loss`` stand wherever the loop alone gives them, with K_0 or without.
+    A number that the loop does not support is NaN, and ``reason`` says why.  ``storage`` and
+    ``loss`` are given wherever the loop alone yields them, with or without K_0.
 
     Parameters
     ----------
     quasi_static_spring_constant : ndarray
-        As used. [N]
+        The value used. [N]
     storage_spring_constant, loss_spring_constant : ndarray
-        As used: from K_ap and H, or of the fundamental (``reading``). [N]
+        The values used: from K_ap and H, or from the fundamental (``reading``). [N]
     loss_angle : ndarray
-        By which tension leads strain. [rad]
+        Angle by which tension leads strain. [rad]
     dissipation_spring_constant : ndarray
         K_1. [N]
     relaxation_time : ndarray
@@ -55,21 +55,21 @@ class LineParameters:
     angular_frequency : ndarray
         2 pi f. [rad s-1]
     angular_frequency_relaxation_time : ndarray
-        omega tau; the loop is widest for a strain amplitude at 1. [1]
+        omega tau; at 1 the loop is widest for a given strain amplitude. [1]
     conditioning : ndarray
-        K_0 over (E' - K_0): how many times a relative error of K_0 enters E' - K_0. [1]
+        K_0 over (E' - K_0): the factor by which a relative error of K_0 enters E' - K_0. [1]
     reason : ndarray of int8
-        0 where the parameters stand, else a key of `REASONS`.
+        0 where the parameters are given, else a key of `REASONS`.
     random_uncertainty, shared_uncertainty, uncertainty : dict of str to ndarray
-        Standard uncertainties by the field's name, same shape and unit, of
+        Standard uncertainties by field name, same shape and unit, of
         storage_spring_constant, loss_spring_constant, dissipation_spring_constant,
-        relaxation_time and dashpot_coefficient: from the loop, which a mean over cycles makes
-        smaller; from K_0, which all cycles of a test share and no mean makes smaller; both.
-        NaN where an uncertainty that goes in is not stated.
+        relaxation_time and dashpot_coefficient: from the loop, reduced by a mean over
+        cycles; from K_0, which all cycles of a test share and no mean reduces; and both together.
+        NaN where an uncertainty that enters is not stated.
     reading : str
         ``amplitude`` or ``fundamental``.
     notes : tuple of Note
-        What a reader of the numbers has to know.
+        What a reader of the numbers needs to know.
     """
 
     quasi_static_spring_constant: Floats
@@ -104,17 +104,17 @@ class SlowPull:
     coefficient : ndarray, shape (4,)
         Of 1, u, u^2, u^3. [1]
     covariance : ndarray, shape (4, 4)
-        Of the coefficients, from the residuals and their likeness to their neighbours
-        (type A); no part of load cell or gauge length. [1]
+        Of the coefficients, from the residuals and the correlation between neighbours
+        (type A); load cell and gauge length are not included. [1]
     strain_misfit : float
-        Root mean square of what a cubic misses of the strain, by a polynomial of sixth degree; 0
-        where noise explains it. [1]
+        Root mean square of what the cubic misses of the strain, from a polynomial of sixth degree;
+        0 where noise explains it. [1]
     curve_coefficient : ndarray, shape (n_pieces + 3,)
-        Of the cubic B-splines over -1 to 1 on equal knots: strain, whose slope is 1/K_0. [1]
+        Of the cubic B-splines over -1 to 1 on equal knots, giving strain; its slope is 1/K_0. [1]
     curve_covariance : ndarray, shape (n_pieces + 3, n_pieces + 3)
-        Of these coefficients, as ``covariance``. [1]
+        Of these coefficients, obtained like ``covariance``. [1]
     curve_misfit : ndarray, shape (81,)
-        What the curve misses of strain at u from -1 to 1. [1]
+        What the curve misses of the strain at u from -1 to 1. [1]
     slope_misfit : ndarray, shape (81,)
         What the curve misses of its slope in u, from -1 to 1. [1]
     tension_low, tension_high : float
@@ -122,18 +122,19 @@ class SlowPull:
     residual_deviation : float
         Standard deviation of the block means about the cubic. [1]
     variance_inflation : float
-        By which the likeness of neighbouring residuals makes every variance larger. [1]
+        Factor by which correlation between neighbouring residuals increases every variance. [1]
     n_samples, n_blocks : int
-        Readings of the loading part, and means over equal steps of tension that were fitted.
+        Readings of the loading part, and number of means over equal steps of tension that were
+        fitted.
     first_sample, last_sample : int
-        Rows of the record between which the loading part lies.
+        Rows of the record at the ends of the loading part.
     strain_rate, strain_rate_slowest, strain_rate_fastest : float
-        Mean of the loading part, and of the slowest and fastest quarter of its tension
-        range; K_0 grows with it. [s-1]
+        Mean over the loading part, and over the slowest and fastest quarter of its tension
+        range; K_0 grows with the rate. [s-1]
     tension_rate : float
-        Mean of the loading part. [N s-1]
+        Mean over the loading part. [N s-1]
     waiting_time : float
-        Since the last dynamic test, on which K_0 depends; NaN where not given. [s]
+        Time since the last dynamic test, on which K_0 depends; NaN where not given. [s]
     waiting : str
         The same in the laboratory's words.
     reference_length : float
@@ -145,7 +146,7 @@ class SlowPull:
     polynomial_deviation : float
         Greatest distance of that form from the slope over the range of use, as a share. [1]
     notes : tuple of Note
-        What a reader of the numbers has to know.
+        What a reader of the numbers needs to know.
     """
 
     specimen: str
@@ -219,12 +220,12 @@ def one_a_specimen(rated_break_strength: ArrayLike, n_specimens: int) -> Floats:
     Returns
     -------
     strength : ndarray, shape (n_specimens,)
-        As given. [N]
+        One value for each specimen. [N]
 
     Raises
     ------
     DataError
-        If a strength is not positive, or their number does not fit.
+        If a strength is not positive or their number does not match.
 
     Examples
     --------
@@ -242,7 +243,7 @@ def one_a_specimen(rated_break_strength: ArrayLike, n_specimens: int) -> Floats:
 
 
 def mean_of_rows(values: Floats) -> Floats:
-    """Mean over the last axis of what is known.
+    """Mean of the known values over the last axis.
 
     Examples
     --------

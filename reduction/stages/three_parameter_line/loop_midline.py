@@ -1,21 +1,21 @@
-r"""Tension of the midline of a loop at its mean strain: where the slow spring of a cycle stands.
+r"""Tension of the midline of a loop at its mean strain: the level of the slow spring of a cycle.
 
 The mean tension of a cycle is the mean of its greatest and its least.  Where the slow spring of a
-line is bent, :math:`T_0 + K_0 \varepsilon + c \varepsilon^2` about the mean strain, the mean is
+line is curved, :math:`T_0 + K_0 \varepsilon + c \varepsilon^2` about the mean strain, that mean is
 above :math:`T_0` by up to :math:`c \varepsilon_a^2`, and the slope of the slow pull there is not
-the one over which the cycle goes.  A loop shows its own bend,
+the one that applies over the cycle.  A loop shows its own curvature,
 
 .. math:: T = a_0 + a_1 s + a_2 s^2 + a_3 s^3 \pm b \sqrt{1 - s^2}, \qquad
           s = (\varepsilon - \bar\varepsilon) / \varepsilon_a
 
 with plus on the rising branch: :math:`a_0` is the tension of the spring.  K_0 of the cycle is the
-chord of the spring about it, between the strains at which the tension has its peak and its valley,
+chord of the spring about it, between the strains at the peak and the valley of tension,
 :math:`\varepsilon_a \cos\varphi` to either side, with the loss angle :math:`\varphi`: there the
-dashpot adds as much to the one as it takes from the other.  Waves that are no sine are read by
-their fundamentals, whose spring is between that chord and the slope (`spring_of_wave`).  K_0
+dashpot adds as much to the one as it takes from the other.  Waves other than sines are read by
+their fundamentals, whose spring lies between that chord and the slope (`spring_of_wave`).  K_0
 "must be calculated at the mean
-load level" and be used "for small perturbations around that mean load" ([1]_); this is what a large
-one takes.
+load level" and be used "for small perturbations around that mean load" ([1]_); this module gives
+what a large perturbation needs.
 
 References
 ----------
@@ -35,25 +35,25 @@ from reduction.record.settings import Control, Waveform
 
 _LEAST_SAMPLES = 12  # of a cycle, for five numbers
 
-_MOST_CYCLES = 50  # evenly over the run
+_MOST_CYCLES = 50  # spread evenly over the run
 
 
 def tension_above_midline(
     strain: ArrayLike, tension: ArrayLike, *, first: Integers, turn: Integers, last: Integers
 ) -> tuple[float, float]:
-    """Mean tension of the cycles above their midline at the mean strain, and its uncertainty.
+    """Mean height of tension above the midline at the mean strain, and its uncertainty.
 
     Parameters
     ----------
     strain, tension : array_like, shape (n_samples,)
         Of one specimen. [1], [N]
     first, turn, last : ndarray of int, shape (n_cycles,)
-        First and last sample of each cycle, and the first behind its turn. [1]
+        First and last sample of each cycle, and the first sample after its turn. [1]
 
     Returns
     -------
     difference, standard_uncertainty : float
-        Mean over the cycles, and scatter of the mean; NaN with fewer than three cycles of 12
+        Mean over the cycles, and scatter of that mean; NaN with fewer than three cycles of 12
         samples. [N]
 
     Raises
@@ -63,11 +63,11 @@ def tension_above_midline(
 
     Notes
     -----
-    See the module.  Each cycle is fitted by itself, so that a drift and creep bend nothing.
+    See the module.  Each cycle is fitted separately, so that drift and creep add no curvature.
 
     Examples
     --------
-    A spring that is bent by 30 N at the ends of the stroke, with a dashpot:
+    A spring curved by 30 N at the ends of the stroke, with a dashpot:
 
     >>> phase = np.linspace(0, 8 * np.pi, 801)
     >>> strain = 0.02 - 0.01 * np.cos(phase)
@@ -95,7 +95,7 @@ def tension_above_midline(
         apart = np.where(rises, 1.0, -1.0) * np.sqrt(np.maximum(1 - s**2, 0.0))
         design = np.stack([np.ones(s.size), s, s**2, s**3, apart], axis=1)
         series = np.linalg.lstsq(design, load, rcond=None)[0]
-        # of the fitted loop: noise makes the greatest reading greater
+        # from the fitted loop: noise raises the greatest reading
         fitted = design @ series
         found.append((fitted.max() + fitted.min()) / 2 - series[0])
     if len(found) < 3:
@@ -103,13 +103,13 @@ def tension_above_midline(
     return float(np.mean(found)), float(np.std(found, ddof=1) / np.sqrt(len(found)))
 
 
-_BENT = 3.0  # standard uncertainties by which a loop has to be bent
+_BENT = 3.0  # standard uncertainties by which a loop must be curved
 
-_LEAST_BEND = 0.005  # of its amplitude: a load cell and a clock may bend it as much
+_LEAST_BEND = 0.005  # of its amplitude: a load cell and a clock may curve it as much
 
 
 def is_bent(above: float, standard_uncertainty: float, amplitude: float) -> bool:
-    """Whether a loop is bent, by `tension_above_midline` and its tension amplitude.
+    """Whether a loop is curved, from `tension_above_midline` and its tension amplitude.
 
     Examples
     --------
@@ -122,7 +122,7 @@ def is_bent(above: float, standard_uncertainty: float, amplitude: float) -> bool
 def chord_of_spring(
     constant_at: Callable[[Floats], Floats], tension: ArrayLike, half_strain: ArrayLike
 ) -> tuple[Floats, Floats]:
-    r"""Chord of a bent spring about a tension, and the mean of its ends above that tension.
+    r"""Chord of a curved spring about a tension, and how far the mean of its ends is above it.
 
     .. math:: \frac{dT}{d\varepsilon} = K_0(T), \qquad
               K = \frac{T_+ - T_-}{2 \varepsilon}, \qquad \frac{T_+ + T_-}{2} - T
@@ -132,9 +132,9 @@ def chord_of_spring(
     constant_at : callable
         K_0 at tensions, NaN where it is not known. [N]
     tension : array_like, shape (...)
-        In the middle of the strains. [N]
+        At the middle of the strains. [N]
     half_strain : array_like, shape (...)
-        From there to either end. [1]
+        From the middle to either end. [1]
 
     Returns
     -------
@@ -144,11 +144,11 @@ def chord_of_spring(
     Raises
     ------
     ValueError
-        If the shapes do not fit.
+        If the shapes do not match.
 
     Notes
     -----
-    One step of Runge and Kutta of fourth order to either side.
+    One fourth-order Runge-Kutta step to either side.
 
     Examples
     --------
@@ -181,13 +181,13 @@ def spring_of_wave(
     waveform: Waveform = "sinusoidal",
     control: Control = "position",
 ) -> float:
-    r"""K_0 of a bent loop: chord of its spring, or what the fundamental of another wave has. [N].
+    r"""K_0 of a curved loop: chord of its spring, or for other waves that of the fundamental. [N].
 
-    A sine is read by its peaks, which are on the chord.  Other waves are read by their fundamentals
-    over time; of the way from the slope about the mean of the driven channel to the chord these go
-    the share of :math:`s^3` in the fundamental over that of s: :math:`3 (1 - 8 / \pi^2)` of a
-    triangle, 3/4 of a sine, which stands for others.  Without a chord, as far as the pull goes, the
-    slope at the midline.
+    A sine is read by its peaks, which lie on the chord.  Other waves are read by their fundamentals
+    over time: from the slope about the mean of the driven channel towards the chord, they go the
+    share that :math:`s^3` has in the fundamental relative to s: :math:`3 (1 - 8 / \pi^2)` for a
+    triangle, 3/4 for a sine, which stands for all others.  Where the pull does not reach far enough
+    for a chord, the slope at the midline.
 
     Examples
     --------
@@ -211,13 +211,13 @@ def spring_of_wave(
 
 _CUBIC_IN_FUNDAMENTAL = {"sinusoidal": 1.0, "triangular": 3 * (1 - 8 / np.pi**2), "other": 0.75}
 
-_ROUNDS = 12  # each makes what is left smaller by the bend of the cycle, a tenth or so
+_ROUNDS = 12  # each reduces the remainder by the curvature of the cycle, a tenth or so
 
 
 def spring_of_cycle(
     constant_at: Callable[[Floats], Floats], mean_tension: ArrayLike, half_strain: ArrayLike
 ) -> Floats:
-    """Chord of a bent spring between ends whose mean tension is given. [N].
+    """Chord of a curved spring between ends whose mean tension is given. [N].
 
     NaN where K_0 is not known as far as the ends.
 

@@ -1,8 +1,8 @@
 """Steps of a rope laboratory's programme: bedding-in, stiffness, failure, tensile tests.
 
-**Programmes of a rope laboratory, from loops: bedding-in and dynamic stiffness.** Each number also
-stands divided by the rated break strength.  What a programme asks for (levels, numbers of cycles)
-is the laboratory's; nothing here is taken from a standard.
+**Programmes of a rope laboratory, from loops: bedding-in and dynamic stiffness.** Each number is
+also given divided by the rated break strength.  The requirements of a programme (levels, numbers of
+cycles) are the laboratory's; nothing here is taken from a standard.
 
 References
 ----------
@@ -36,7 +36,7 @@ _FEWEST_CYCLES = 3
 @dataclass(frozen=True)
 @read_only_arrays
 class BeddingIn:
-    """How a new rope settles over its first cycles; arrays have shape (n_specimens,).
+    """Settlement of a new rope over its first cycles; arrays have shape (n_specimens,).
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ class BeddingIn:
     stiffening : ndarray
         Last over first stiffness. [1]
     permanent_strain, permanent_strain_standard_uncertainty : ndarray
-        By which the foot of the loop moved, at equal tension. [1]
+        Shift of the foot of the loop, at equal tension. [1]
     n_cycles : int
         Cycles in the table.
     """
@@ -76,14 +76,14 @@ class DynamicStiffness:
     level : ndarray of int, shape (n_levels,)
         Labels, in the order of the cycles.
     n_cycles : ndarray of int
-        Cycles that were used.
+        Number of cycles used.
     dynamic_stiffness, dynamic_stiffness_standard_uncertainty : ndarray
-        Mean apparent spring constant, and its standard error with the likeness of
+        Mean apparent spring constant, and its standard error with the correlation of
         neighbouring cycles (type A); NaN below three cycles. [N]
     drift_per_cycle, drift_per_cycle_standard_uncertainty : ndarray
         Slope of the stiffness against the cycle over the same cycles. [N]
     frequency, mean_tension, tension_amplitude : ndarray
-        Means over the same cycles, each with its standard error as that of the stiffness in
+        Means over the same cycles, each with a standard error, found like that of the stiffness, in
         ``..._standard_uncertainty``. [Hz], [N], [N]
     dynamic_stiffness_over_strength, dynamic_stiffness_over_strength_standard_uncertainty : ndarray
         Over the rated break strength, which counts as exact. [1]
@@ -127,7 +127,7 @@ def summarise_bedding_in(
     rated_break_strength : array_like, shape (n_specimens,)
         NaN where not stated. [N]
     begin_tension : array_like, shape (n_specimens,), optional
-        Reading at the begin of the first cycle. [N]
+        Reading at the beginning of the first cycle. [N]
 
     Returns
     -------
@@ -141,11 +141,11 @@ def summarise_bedding_in(
 
     Notes
     -----
-    The permanent strain is between the feet (v) of the first and the last loop, brought to
+    The permanent strain is that between the feet (v) of the first and the last loop, brought to
     one tension along the last secant; the elongation of the first rise, before the first
     valley, is not in it.  [1]_, sec. 4.3 leaves break-in cycles out and prints none.  The first
-    secant is that of the first way up, from begin to peak: what a new rope gains on it is its
-    answer, where loops leave out the drift of steady cycles.
+    secant is that of the first way up, from begin to peak: the elongation that a new rope gains
+    on it is part of its response, whereas loops exclude the drift of steady cycles.
 
     Examples
     --------
@@ -167,7 +167,8 @@ def summarise_bedding_in(
         of_way_up = (loops.peak_tension[:, 0] - foot_tension) / way_up
     secant[:, 0] = np.where(np.isfinite(secant[:, 0]) & (of_way_up > 0), of_way_up, secant[:, 0])
     u_secant = loops.uncertainty["apparent_spring_constant"][:, [0, -1]].copy()
-    # by its foot, what creep leaves open of the wave is not in it: the noise is that of the others
+    # by its foot, it is free of the uncertainty of the wave due to creep: noise is as for the
+    # others
     by_noise = secant[:, 0] * u_secant[:, 1] / secant[:, 1]
     u_secant[:, 0] = np.fmin(u_secant[:, 0], by_noise)
     foot = loops.foot_strain[:, [0, -1]]
@@ -221,11 +222,11 @@ def dynamic_stiffness(
     loops : Loops
         Table of loops.
     last_cycles : int
-        Cycles at the end of each level that count. [1]
+        Number of cycles at the end of each level that are used. [1]
     rated_break_strength : array_like, shape (n_specimens,)
         NaN where not stated. [N]
     level : array_like of int, shape (n_cycles,), optional
-        Level of each cycle; left out, all cycles are one level. [1]
+        Level of each cycle; by default all cycles are one level. [1]
 
     Returns
     -------
@@ -241,9 +242,9 @@ def dynamic_stiffness(
 
     Notes
     -----
-    A drift that is large against its uncertainty says that the level has not settled; the
-    standard error then holds the drift too.  The dynamic stiffness is K_ap of [1]_, sec. 4.3, force
-    per unit strain, which the field calls dynamic EA.
+    A drift that is large compared with its uncertainty means that the level has not settled; the
+    standard error then includes the drift.  The dynamic stiffness is K_ap of [1]_, sec. 4.3, force
+    per unit strain, usually called dynamic EA.
 
     Examples
     --------
@@ -289,7 +290,7 @@ def dynamic_stiffness(
             values = getattr(loops, quantity)[:, cycles]
             means[row, :, column] = mean_of_rows(values)
             errors[row, :, column] = [_mean_and_drift(one)[1] for one in values]
-        # what a turn between two readings may hold is alike in all of them
+        # the error from a turn between two readings is common to all of them
         alike = loops.shared_by_cycles(cycles)
         numbers[1, :, column] = np.hypot(numbers[1, :, column], alike["apparent_spring_constant"])
         for row, quantity in ((1, "mean_tension"), (2, "tension_amplitude")):
@@ -318,7 +319,7 @@ def dynamic_stiffness(
 @dataclass(frozen=True)
 @read_only_arrays
 class CyclesToFailure:
-    """How long a rope lasted; arrays have shape (n_specimens,).
+    """Life of a rope in cycles; arrays have shape (n_specimens,).
 
     Parameters
     ----------
@@ -331,7 +332,7 @@ class CyclesToFailure:
     peak_tension_over_strength : ndarray
         Over the rated break strength. [1]
     how : tuple of str, length n_specimens
-        What says that it failed or not.
+        Evidence that it failed or not.
     """
 
     cycles: Integers
@@ -351,7 +352,7 @@ def cycles_to_failure(
     parted_in: ArrayLike | None = None,
     failure_share: float = 0.5,
 ) -> CyclesToFailure:
-    """Cycles that a rope lasted, by the fall of its peak or by the laboratory's word.
+    """Cycles that a rope lasted, by the fall of its peak or as the laboratory states.
 
     Parameters
     ----------
@@ -360,14 +361,14 @@ def cycles_to_failure(
     rated_break_strength : array_like, shape (n_specimens,)
         NaN where not stated. [N]
     failed : array_like of bool, shape (n_specimens,), optional
-        Whether it broke, as the laboratory says; left out, the peaks alone decide. [1]
+        Whether it broke, as the laboratory states; by default the peaks alone decide. [1]
     cycle_number : array_like of int, shape (n_cycles,), optional
-        Of each row, where a machine logs some cycles only or an earlier log began. [1]
+        Number of each row, where a machine logs only some cycles or an earlier log began. [1]
     parted_in : array_like of int, shape (n_specimens,), optional
-        Index of the cycle in which the record shows that it parted, the number of cycles
-        where it did after the last; -1 where the record shows nothing. [1]
+        Index of the cycle in which the record shows that it parted, or the number of cycles
+        if it parted after the last; -1 where the record shows nothing. [1]
     failure_share : float, optional
-        A peak below this share of the median peak before it is a failure. [1]
+        A peak below this fraction of the median peak before it is a failure. [1]
 
     Returns
     -------
@@ -384,9 +385,9 @@ def cycles_to_failure(
     Notes
     -----
     A rope that parts within a cycle leaves that cycle incomplete, so the last whole cycle
-    looks sound: the loops alone cannot tell it from a run-out, and the text says so.  A cycle
-    in which it parted is not one that it lasted, whatever its peak; ``parted_in`` says so.
-    Source of the record: [1]_, sec. 5, cycles against the peak as a share of the strength.
+    looks sound: the loops alone cannot distinguish it from a run-out, and the text says so.  A
+    cycle in which it parted does not count as lasted, whatever its peak; ``parted_in`` gives it.
+    Source of the record: [1]_, sec. 5, cycles against the peak as a fraction of the strength.
 
     Examples
     --------
@@ -421,7 +422,7 @@ def cycles_to_failure(
     levels = np.full((2, n_specimens), np.nan)
     how = []
     for row, peak in enumerate(loops.peak_tension):
-        # a failure lasts to the end of the record; one low peak before sound ones is none
+        # a failure lasts to the end of the record; a single low peak before sound ones is not one
         known = np.flatnonzero(np.isfinite(peak))
         limit = failure_share * np.median(peak[known]) if known.size else 0.0
         sound = known[peak[known] >= limit]
@@ -455,18 +456,18 @@ def cycles_to_failure(
     )
 
 
-# a machine that goes back by more than this share of its travel has unloaded the line
+# a machine that returns by more than this fraction of its travel has unloaded the line
 _GIVEN_BACK = 0.05
 
 _FALLEN = 0.5
 
 _FEWEST_SAMPLES = 3
 
-_HIDES = 2.0  # noises of a reading, within which a strain may stand still
+_HIDES = 2.0  # times the noise of a reading, within which a strain may stand still
 
 _LAST_STEPS = 9
 
-_MAY_BE_GREATEST = 4.0  # noises below the greatest reading: one more than that may be the greatest
+_MAY_BE_GREATEST = 4.0  # times the noise, below the greatest reading: any of these may be greatest
 
 _LEAST_TOP = 4  # readings that show whether a load still rises
 
@@ -479,17 +480,17 @@ class TensilePull:
     Parameters
     ----------
     peak_tension, peak_tension_standard_uncertainty : ndarray
-        Greatest reading; what noise and codes make of it, and what the line gains from one reading
-        to the next, as it may have parted or turned just before that. [N]
+        Greatest reading; its uncertainty by noise and codes, and by the gain of the line from one
+        reading to the next, as it may have parted or turned just before that. [N]
     strain_at_peak, strain_at_peak_standard_uncertainty : ndarray
-        Of the last reading of a load that rises to its end, else of the greatest reading; and
+        Strain at the last reading if the load rises to its end, else at the greatest reading; and
         half the range of the readings that may be the greatest. [1]
     is_break : ndarray of bool
         True where the line broke.
     peak_tension_over_strength, peak_tension_over_strength_standard_uncertainty : ndarray
         Over the rated break strength, which counts as exact. [1]
     how : tuple of str, length n_specimens
-        What says that it broke or not.
+        Evidence that it broke or not.
     """
 
     peak_tension: Floats
@@ -512,18 +513,18 @@ def parting_sample(
     position : array_like, shape (n_samples,)
         Crosshead position. [m]
     tension : array_like, shape (n_samples,)
-        Of one specimen; NaN where missing. [N]
+        Tension of one specimen; NaN where missing. [N]
     last : int
-        Sample after which it is looked for. [1]
+        Sample after which the search begins. [1]
     least_position : float
-        At or beyond which a sound line is taut. [m]
+        Position at or beyond which a sound line is taut. [m]
     tension_low : float
-        A reading below it there is no sound line's. [N]
+        A sound line does not read below this there. [N]
 
     Returns
     -------
     sample : int
-        -1 where fewer than three readings say so. [1]
+        -1 where fewer than three readings show it. [1]
 
     Raises
     ------
@@ -532,8 +533,8 @@ def parting_sample(
 
     Notes
     -----
-    A line that is unloaded is slack because the crosshead went back, a line that has parted
-    though it did not; [1]_ gives no rule, since a person stood by.
+    An unloaded line is slack because the crosshead went back, a parted line although
+    it did not; [1]_ gives no rule, since a person stood by.
 
     Examples
     --------
@@ -570,12 +571,12 @@ def tensile_pull(
     rated_break_strength : array_like, shape (n_specimens,)
         NaN where not stated. [N]
     broke : bool, optional
-        As the laboratory says, of every specimen; left out, the record decides. [1]
+        As the laboratory states for every specimen; by default the record decides. [1]
 
     Returns
     -------
     pull : TensilePull
-        With type A uncertainties alone.
+        With type A uncertainties only.
 
     Raises
     ------
@@ -585,10 +586,10 @@ def tensile_pull(
 
     Notes
     -----
-    A break: after its greatest the tension falls below half of it while the crosshead has
-    gone back by less than a twentieth of its travel, for three readings.  A pull that was
+    A break: after its greatest value the tension falls below half of it, for three readings, while
+    the crosshead has gone back by less than a twentieth of its travel.  A pull that was
     stopped gives a lower bound.  [1]_ (sec. 6, Tables 10 and 21) prints strength and strain at
-    failure of each pull and no uncertainty.  The greatest of readings with noise reads high: by
+    failure of each pull and no uncertainty.  The greatest of noisy readings is biased high: by
     less than the noise of one reading where the record rises by more than that from reading to
     reading, and by up to two and a half times the noise where thousands are nearly as great.
 
@@ -653,24 +654,24 @@ def tensile_pull(
 
 
 def _gain(series: Floats) -> float:
-    """What a series gains from reading to reading at its end, noise evened out."""
+    """Gain of a series from reading to reading at its end, smoothed."""
     steps = np.diff(series[np.isfinite(series)][-_LAST_STEPS - 1 :])
     return float(np.abs(np.median(steps))) if steps.size else 0.0
 
 
 def _at_the_top(load: Floats, stretch: Floats, end: int) -> tuple[float, float, float, float]:
-    """Greatest tension, its standard uncertainty, and the same of the strain there.
+    """Greatest tension, its standard uncertainty, and the same for the strain there.
 
-    Noise makes an early reading the greatest: where the load rises until it ends, the strain is
-    the greatest of the readings that may be it.  Line and turn lie up to a reading beyond the last
-    one.
+    Noise may make an early reading the greatest: where the load rises until it ends, the strain is
+    the greatest of the candidate readings.  The line may part or turn up to a reading after the
+    last one.
     """
     peak = int(np.nanargmax(load))
     rise = stretch[: peak + 1]
     noise, step = reading_noise(load[: peak + 1]), step_of_codes(load[: peak + 1])
     hidden = _MAY_BE_GREATEST * noise + step
     top = np.flatnonzero(load[:end] >= load[peak] - hidden)
-    # of many readings that noise may make the greatest, one is by more than the noise of one
+    # of many readings that noise may make the greatest, one exceeds the noise of a single reading
     excess = np.sqrt(1 + np.log1p(top.size / _MAY_BE_GREATEST**2))
     spread = np.sqrt((excess * noise) ** 2 + (step**2 + _gain(load[: peak + 1]) ** 2) / 3)
     top = top[np.isfinite(stretch[top])]
@@ -678,7 +679,7 @@ def _at_the_top(load: Floats, stretch: Floats, end: int) -> tuple[float, float, 
         return float(load[peak]), float(spread), np.nan, np.nan
     reached, missed = stretch[top], _gain(rise)
     width = float(np.ptp(reached))
-    # nothing is strained by more than a reading further while it is sound
+    # while it is sound, the strain grows by no more than one reading further
     rises = np.nanmax(stretch[:end]) <= reached.max() + 2 * missed
     before = np.flatnonzero(np.isfinite(load[: top[-1] + 1] + stretch[: top[-1] + 1]))
     before = before[-max(top.size, _LEAST_TOP) :]
@@ -686,7 +687,7 @@ def _at_the_top(load: Floats, stretch: Floats, end: int) -> tuple[float, float, 
         gain = np.polyfit(stretch[before], load[before], 1)[0] * np.ptp(stretch[before])
         rises = bool(gain > hidden / 2)
     by_peak = top[top <= peak]
-    # as a laboratory has it, where its load is greatest
+    # as a laboratory defines it, where its load is greatest
     strain = float(reached.max() if rises else stretch[by_peak[-1] if by_peak.size else top[0]])
     beyond = missed if rises else missed + width / 2
     strain_spread = np.sqrt(
@@ -700,7 +701,7 @@ _STOOD_STILL = 0.02  # of the greatest load, gained without strain
 
 def _stands_still(load: Floats, rise: Floats, reached: float) -> bool:
     """Whether the load rose on to its peak while the strain did not: an extensometer taken off."""
-    # what noise and the steps of a converter hide of the last part of a rise
+    # change in the last part of a rise that noise and the steps of a converter may hide
     hidden = _HIDES * reading_noise(rise) + step_of_codes(rise)
     known = np.flatnonzero(np.isfinite(rise) & np.isfinite(load))
     below = np.flatnonzero(rise[known] < reached - hidden)
@@ -712,9 +713,9 @@ def _stands_still(load: Floats, rise: Floats, reached: float) -> bool:
 
 @dataclass(frozen=True)
 class RopeStep:
-    """One step: parts that it does not give are None, or empty.
+    """One step; parts that it does not have are None, or empty.
 
-    ``name`` says what it gives, in words; ``dynamic`` has one level, the step; ``creep`` has
+    ``name`` describes it in words; ``dynamic`` has one level, the step; ``creep`` has
     one entry a hold, in the order of the holds of the test.
     """
 

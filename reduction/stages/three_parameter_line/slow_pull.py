@@ -1,17 +1,16 @@
 r"""Slow pulls: load-strain curve, its cubic, and quasi-static spring constant.
 
-**Cubic of strain against tension: its slope, where it rises, and the cubic of K_0**:
+**Cubic of strain against tension: its slope, range of rise, and the cubic of K_0**:
 
 .. math:: \varepsilon = A + B T + C T^2 + D T^3, \qquad K_0 = 1 / (B + 2 C T + 3 D T^2)
 
 As printed, and as computed.  [1]_ prints two forms that do not quite agree: cubics of strain
-(Tables 8 and 9) and cubics of K_0 (Tables 6 and 7).  Here both forms are given beside K_0, which
-is the local slope of the readings: a cubic spline of as many pieces as the readings ask for.  The
-cubic of K_0 is fitted to that slope, with its greatest distance from it.  Table 6 heads its form
+(Tables 8 and 9) and cubics of K_0 (Tables 6 and 7).  Both forms are given here beside K_0, which
+is the local slope of the readings: a cubic spline with as many pieces as the readings need.  The
+cubic of K_0 is fitted to that slope, and its greatest deviation is given.  Table 6 heads its form
 A + B T^2 + C T^3 + D T^4, times 1e-4; the form that gives its numbers is Table 7's
 A + B T + C T^2 + D T^3, times 1e4.  Signs and powers are lost in Tables 6, 7 and 9 (nylon double
-braid D 3.26 for 32.6, nylon plaited C, polyester C), and polyester plaited line has no K_0 row at
-all.
+braid D 3.26 for 32.6, nylon plaited C, polyester C), and polyester plaited line has no K_0 row.
 
 References
 ----------
@@ -48,14 +47,14 @@ from reduction.stages.three_parameter_line.loop_midline import (
     spring_of_wave,
 )
 
-# a rise out of slack shows above this many standard deviations of a reading
+# a rise out of slack exceeds this many standard deviations of a reading
 _NOISE_FACTOR = 6.0
 
-# and above this share of the whole rise: the foot of the curve, where the line straightens
+# and this fraction of the whole rise: the foot of the curve, where the line straightens
 _FOOT = 0.005
 
-# share of the rise before the peak that shows how the pull goes on, and how many times the strain
-# that its last readings add by that is gained in a hold
+# last fraction of the rise before the peak, which shows the trend of the pull, and the ratio to
+# that trend above which further strain counts as gained in a hold
 _APPROACH, _HELD = 0.05, 1.5
 
 _FEWEST_SAMPLES = 8
@@ -80,12 +79,12 @@ def _find_loading(
 
     Notes
     -----
-    The last crossing of the start before the peak is taken, so that bedding-in cycles that
-    return to it are left out.  The start without a reference tension is the lowest reading
-    before the peak plus six standard deviations of a reading, or plus half a percent of
-    the rise where that is more.  What follows the peak (unloading, failure) is left out;
+    Loading starts at the last crossing of the start tension before the peak, so that bedding-in
+    cycles that return to it are left out.  Without a reference tension the start is the lowest
+    reading before the peak plus six standard deviations of a reading, or plus half a percent of
+    the rise where that is more.  Samples after the peak (unloading, failure) are left out;
     [1]_, sec. 4.4.2 pulls to failure.  The greatest reading of a hold at the peak lies anywhere in
-    it: where strain goes on while tension stands, the pull ends as it reaches the hold.
+    it: where strain grows while tension stands, the pull ends where it reaches the hold.
 
     Examples
     --------
@@ -134,9 +133,9 @@ def _find_loading(
 
 
 BREAK_SHARES = (0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5)
-"""Shares of the rated break strength at which the strain of a pull is given. [1]"""
+"""Fractions of the rated break strength at which the strain of a pull is given. [1]"""
 
-_GRID_STEPS = 200  # straight lines between them miss a thousandth of the strain of a foot
+_GRID_STEPS = 200  # straight lines between them err by a thousandth of the strain of a foot
 
 
 def tension_grid(pulls: Sequence[SlowPull | None]) -> Floats:
@@ -145,12 +144,12 @@ def tension_grid(pulls: Sequence[SlowPull | None]) -> Floats:
     Parameters
     ----------
     pulls : sequence of SlowPull or None
-        None for a specimen without one. [SI]
+        Slow pulls; None for a specimen without one. [SI]
 
     Returns
     -------
     tension : ndarray, shape (201,)
-        From the lowest to the highest tension of use of any. [N]
+        From the lowest to the highest tension of use of any pull. [N]
 
     Raises
     ------
@@ -180,15 +179,15 @@ def tension_grid(pulls: Sequence[SlowPull | None]) -> Floats:
 N_BLOCKS = 300
 """Steps of tension between the ends of a pull. [1]."""
 
-# degree that a load-strain curve may ask for beyond the cubic, and blocks that it needs
+# degree of the polynomial by which the cubic is judged, and the number of blocks it needs
 _DEGREE_BEYOND = 6
 
 _FEWEST_BLOCKS_BEYOND = 20
 
-# share of a residual that a fit leaves free, below which it says nothing of its noise
+# fraction of a residual that a fit leaves free, below which it shows nothing of its noise
 _LEAST_FREE = 0.1
 
-# times the square that noise makes, which three more terms pass once in thirty
+# times the mean square due to noise; three more terms exceed it once in thirty
 _BEYOND_NOISE = 3.0
 
 
@@ -214,7 +213,7 @@ def _block_means(time: Floats, strain: Floats, tension: Floats) -> _PullBlocks:
     Notes
     -----
     A hold, or a slow stretch, falls into one block and counts once, however many readings
-    it has; and the cubic is fitted to means of powers, so that blocks cost it nothing.
+    it has.  The cubic is fitted to means of powers, so averaging over blocks does not bias it.
 
     Examples
     --------
@@ -248,7 +247,7 @@ def _covariance_of_blocks(powers: Floats, residual: Floats) -> Floats:
 
     Notes
     -----
-    Noise of tension moves strain by itself over K_0, more at the soft end of the curve.
+    Noise of tension changes strain by itself over K_0, more at the soft end of the curve.
 
     Examples
     --------
@@ -266,15 +265,15 @@ def _covariance_of_blocks(powers: Floats, residual: Floats) -> Floats:
 
 
 def _misfit_of_cubic(blocks: _PullBlocks, cubic: Floats, covariance: Floats) -> float:
-    """Root mean square of what a cubic misses of strain.
+    """Root mean square misfit of a cubic to strain.
 
     Notes
     -----
-    Judged by a polynomial of sixth degree, less what noise alone makes the two differ by.
+    Judged by a polynomial of sixth degree, less the difference between the two due to noise alone.
 
     Examples
     --------
-    A cubic through a cubic misses nothing.
+    A cubic through a cubic has no misfit.
 
     >>> load = np.linspace(0.0, 2000.0, 400)
     >>> blocks = _block_means(np.arange(400.0), 1e-4 * load, load)
@@ -286,7 +285,7 @@ def _misfit_of_cubic(blocks: _PullBlocks, cubic: Floats, covariance: Floats) -> 
         return 0.0
     beyond, *_ = np.linalg.lstsq(blocks.powers, blocks.strain, rcond=None)
     spread = _covariance_of_blocks(blocks.powers, blocks.strain - blocks.powers @ beyond)
-    # a polynomial of high degree is loose at its ends
+    # a polynomial of high degree is poorly determined at its ends
     rows = np.linspace(-0.9, 0.9, 61)[:, None] ** np.arange(_DEGREE_BEYOND + 1)
     apart = rows @ beyond - rows[:, :4] @ cubic
     known = ((rows[:, :4] @ covariance) * rows[:, :4]).sum(axis=1)
@@ -295,18 +294,18 @@ def _misfit_of_cubic(blocks: _PullBlocks, cubic: Floats, covariance: Floats) -> 
     return float(np.sqrt(square - noise)) if square > _BEYOND_NOISE * noise else 0.0
 
 
-_FINEST = 64  # pieces that a curve may have
+_FINEST = 64  # greatest number of pieces of a curve
 
-_BLOCKS_OF_PIECE = 4  # of each piece, at the least
+_BLOCKS_OF_PIECE = 4  # at least, in each piece
 
-_SPLIT = 4.0  # times the square that noise makes: a piece that is halved
+_SPLIT = 4.0  # times the mean square due to noise: such a piece is halved
 
 _DEGREE = 3
 
-_BLOCK_SAMPLES = 1 << 17  # whose rows are held at once
+_BLOCK_SAMPLES = 1 << 17  # whose rows are held in memory at once
 
-# of the difference to a curve of pieces twice as long: a smooth one misses a seventh of it ([7]:
-# of the errors e' and e = 8 e' the difference is 7 e'), beside a kink it is more
+# of the difference to a curve of pieces twice as long: the error of a smooth one is a seventh of it
+# (for errors e' and e = 8 e' the difference is 7 e'), near a kink it is more
 _SHARE_OF_COARSER = 1 / 3
 
 
@@ -320,7 +319,7 @@ def _spline(n_coefficients: int) -> scipy.interpolate.BSpline:
 
 
 def _rows_of_strain(scaled: Floats, n_coefficients: int) -> Floats:
-    """Rows whose product with the coefficients is strain, at u."""
+    """Rows whose product with the coefficients is strain at u."""
     rows: Floats = _spline(n_coefficients)(scaled)
     return rows
 
@@ -333,7 +332,7 @@ def _rows_of_slope(scaled: Floats, n_coefficients: int) -> Floats:
 
 @dataclass(frozen=True)
 class _PulledCurve:
-    """Cubic spline through the blocks, and what it and its slope miss at `MISFIT_AT`."""
+    """Cubic spline through the blocks, with its misfit and that of its slope at `MISFIT_AT`."""
 
     coefficient: Floats
     covariance: Floats
@@ -342,12 +341,12 @@ class _PulledCurve:
 
 
 MISFIT_AT = np.linspace(-1, 1, 81)
-"""Where what a curve and its slope miss is given, in u."""
+"""Points at which the misfit of a curve and of its slope is given, in u."""
 
 
 @cache
 def _to_finest() -> tuple[Floats, Floats]:
-    """Places, one of each of the finest splines, and what gives coefficients by values there."""
+    """Points, one per finest spline, and the matrix from values there to coefficients."""
     knots = _spline(_FINEST + _DEGREE).t[1:-1]
     along = np.convolve(knots, np.full(_DEGREE, 1 / _DEGREE), "valid")  # means of knots
     inverse = np.linalg.inv(_rows_of_strain(along, _FINEST + _DEGREE))
@@ -367,7 +366,7 @@ class _Pieces:
 
     @property
     def to_finest(self) -> Floats:
-        """Coefficients on the finest knots by strain of the blocks."""
+        """Matrix from strain of the blocks to coefficients on the finest knots."""
         return np.asarray(self.insertion @ self.inverse)
 
 
@@ -388,7 +387,7 @@ def _rows_of_finest(blocks: _PullBlocks) -> Floats:
 
 
 def _fitted(finest: Floats, breaks: Integers) -> _Pieces:
-    """Fit of pieces between breaks, which are counted in the finest ones."""
+    """Fit of pieces between breaks, which are counted in units of the finest pieces."""
     places = 2 * breaks / _FINEST - 1
     knots = np.concatenate([[-1.0] * _DEGREE, places, [1.0] * _DEGREE])
     coarse = scipy.interpolate.BSpline(knots, np.eye(knots.size - _DEGREE - 1), _DEGREE)
@@ -399,7 +398,7 @@ def _fitted(finest: Floats, breaks: Integers) -> _Pieces:
 
 
 def _halved(breaks: Integers, number: Floats) -> tuple[Integers, Bools]:
-    """Breaks with those of all pieces that have blocks for it, and which pieces these are."""
+    """Breaks after halving all pieces that have enough blocks, and a mask of these pieces."""
     middle = (breaks[:-1] + breaks[1:]) / 2
     edges = np.append(np.column_stack([breaks[:-1], middle]).ravel(), breaks[-1])
     fewest = np.histogram(number, edges)[0].reshape(-1, 2).min(axis=1)
@@ -408,20 +407,20 @@ def _halved(breaks: Integers, number: Floats) -> tuple[Integers, Bools]:
 
 
 def _curve_of_pull(blocks: _PullBlocks) -> _PulledCurve:
-    r"""Cubic spline of strain over tension, by which the slope at a tension is read.
+    r"""Cubic spline of strain over tension, from which the slope at a tension is read.
 
     Notes
     -----
-    Its pieces are short where the curve bends, at the foot and beside kinks, and long elsewhere:
-    one is halved as long as that changes the curve on it by more than noise does, and then all of
-    them once more, so that what they miss is small beside what noise does to them.  What they miss
-    of strain and slope is a share of what that last step changes, squared, less what noise makes
-    the two curves differ by, as a mean over one piece to both sides.  The coefficients are on the
-    finest knots, on which each choice of pieces is exact.
+    Its pieces are short where the curve bends, at the foot and near kinks, and long elsewhere.
+    A piece is halved as long as that changes the curve on it by more than noise does.  Then all
+    are halved once more, so that their misfit is small beside the effect of noise.  The misfit
+    of strain and slope is a fraction of the change by that last step: its square, less the
+    difference of the two curves due to noise, averaged over one piece to both sides.  The
+    coefficients are on the finest knots, on which each choice of pieces is exact.
 
     Examples
     --------
-    Strain as the root of tension has the slope :math:`1 / (2 \sqrt{T})`, and no cubic follows it:
+    Strain as the root of tension has the slope :math:`1 / (2 \sqrt{T})`, which no cubic follows:
 
     >>> load = np.linspace(100.0, 2000.0, 4000)
     >>> blocks = _block_means(np.arange(4000.0), 1e-3 * np.sqrt(load), load)
@@ -431,11 +430,11 @@ def _curve_of_pull(blocks: _PullBlocks) -> _PulledCurve:
     1.0
     """
     strain, finest = blocks.strain, _rows_of_finest(blocks)
-    # of a block, its place in the finest pieces
+    # position of each block, in units of the finest pieces
     number = np.clip((blocks.powers[:, 1] + 1) / 2, 0, 1) * _FINEST
     breaks = np.array([0, _FINEST])
     fit = _fitted(finest, breaks)
-    # noise is what all pieces leave that the blocks allow
+    # noise is the residual of the finest fit that the blocks allow
     shortest, may = _halved(breaks, number)
     while may.any():
         shortest, may = _halved(shortest, number)
@@ -458,7 +457,7 @@ def _curve_of_pull(blocks: _PullBlocks) -> _PulledCurve:
         middle = (breaks[:-1] + breaks[1:]) // 2
         breaks = np.sort(np.concatenate([breaks, middle[split]]))
         fit = _fitted(finest, breaks)
-    # one step finer than noise asks for, so that what pieces miss is small beside what it does
+    # one step finer than noise requires, so that the misfit of pieces is small beside noise
     residual = strain - finer.rows @ (finer.inverse @ strain)
     covariance = finer.insertion @ _covariance_of_blocks(finer.rows, residual) @ finer.insertion.T
     # rows of the strain, then of its slope
@@ -469,7 +468,7 @@ def _curve_of_pull(blocks: _PullBlocks) -> _PulledCurve:
     at = (MISFIT_AT + 1) / 2 * _FINEST
     here = np.clip(np.searchsorted(breaks, at, side="right") - 1, 0, breaks.size - 2)
     if not may.all() and breaks.size > 2:
-        # pieces that no block allows to be halved, against ones twice as long
+        # pieces whose blocks do not allow halving are compared with ones twice as long
         width = np.diff(breaks)
         odd = np.array([
             0 < one < _FINEST and one % (2 * width[max(place - 1, 0)]) != 0
@@ -486,7 +485,7 @@ def _curve_of_pull(blocks: _PullBlocks) -> _PulledCurve:
 
 
 def _own_noise(fit: _Pieces, strain: Floats) -> tuple[Floats, float]:
-    """What noise is in each block, and by how much its correlation adds to a variance."""
+    """Noise of each block, and the factor by which its correlation increases a variance."""
     residual = strain - fit.rows @ (fit.inverse @ strain)
     leverage = np.einsum("ij,ji->i", fit.rows, fit.inverse)
     return residual / np.maximum(1 - leverage, _LEAST_FREE), lag_one_inflation(residual)
@@ -562,7 +561,7 @@ def slope_of_cubic(tension: ArrayLike, coefficient: ArrayLike) -> Floats:
 
 
 def _inverse_of_positive(slope: Floats) -> Floats:
-    """1 over a slope, NaN where it is not positive."""
+    """Reciprocal of a slope, NaN where it is not positive."""
     with np.errstate(divide="ignore", invalid="ignore"):
         inverse: Floats = np.where(slope > 0, 1 / slope, np.nan)
     return inverse
@@ -573,8 +572,8 @@ def _rising_range(curve: _PulledCurve) -> tuple[float, float]:
 
     Notes
     -----
-    A slope that is not positive has no quasi-static spring constant ([1]_, sec. 4.4.2); one that
-    noise alone makes negative, where a line is stiff, leaves the rest of the pull what it is.
+    A slope that is not positive has no quasi-static spring constant ([1]_, sec. 4.4.2).  A slope
+    that is negative only by noise, where a line is stiff, does not end the range.
 
     Examples
     --------
@@ -605,8 +604,8 @@ def _printed_form(
 
     Notes
     -----
-    The form of Table 7 of [1]_.  Shares of K_0 count alike, since it spans a factor of
-    several over the range.
+    The form of Table 7 of [1]_.  Relative deviations of K_0 have equal weight, since it spans a
+    factor of several over the range.
 
     Examples
     --------
@@ -615,7 +614,7 @@ def _printed_form(
     >>> print(fit.round(3) + 0.0, round(deviation, 9))
     [40000. 0. 0. 0.] 0.0
     """
-    # an end of the range where the slope is just positive would rule the fit alone
+    # an end of the range where the slope is barely positive would dominate the fit
     kept = np.isfinite(constant)
     exact = constant[kept]
     powers = ((tension[kept] - centre) / half)[:, None] ** np.arange(4)
@@ -628,7 +627,7 @@ def _printed_form(
     return printed, deviation
 
 
-# rms of what a cubic misses, over the strain of the pull: above it the curve is none
+# rms misfit over the strain of the pull, above which the curve is not a cubic
 _MISFIT_NOTED = 0.01
 
 _FEWEST_BLOCKS = 8
@@ -637,18 +636,18 @@ _FALL_NOTED = 0.02
 
 _FALL_REFUSED = 0.25
 
-# a range of use below this share of the readings is no load-strain curve
+# a range of use below this fraction of the readings is not a load-strain curve
 _SHORTEST_RANGE = 0.5
 
 _UNEVEN_RATE = 2.0
 
-# strain at the reference tension, as a share of that of the pull, that is no zero
+# strain at the reference tension, as a fraction of that of the pull, that counts as nonzero
 _OFF_ZERO = 0.05
 
 # tensions to which the printed form of K_0 is fitted
 _STEPS_OF_FORM = 201
 
-_CLEARLY = 3.0  # standard uncertainties, by which a slope is below zero and not by noise
+_CLEARLY = 3.0  # standard uncertainties by which a slope must be below zero to be negative
 
 
 def _remarks(
@@ -698,16 +697,16 @@ def fit_pull(
     strain : array_like, shape (n_samples,)
         Nominal strain of the free length; NaN where missing. [1]
     tension : array_like, shape (n_samples,)
-        Of one specimen; NaN where missing. [N]
+        Tension of one specimen; NaN where missing. [N]
     specimen : str, optional
         Name, kept with the result.
     reference_tension : float, optional
-        Tension at which the reference length was read, from which the pull counts; left
-        out, the first rise out of slack. [N]
+        Tension at which the reference length was read and the pull begins; by default the first
+        rise out of slack. [N]
     reference_length : float, optional
         Length at which strain is zero. [m]
     waiting_time : float, optional
-        Since the last dynamic test. [s]
+        Time since the last dynamic test. [s]
     waiting : str, optional
         The same in the laboratory's words.
 
@@ -722,22 +721,22 @@ def fit_pull(
         If series do not pair up, have too few readings, tension does not rise, or it falls
         by more than a quarter of its rise on the way.
     FitError
-        If fewer than eight steps of tension have a reading, or the slope of the cubic is
+        If fewer than eight steps of tension have a reading, or the slope of the spline is
         not positive over half of the range.
 
     Notes
     -----
-    Source: [1]_, sec. 4.4.2 and 4.4.3.  Readings are first averaged over a hundredth of the
-    tension range each, and the residuals of those means carry the uncertainty, widened by
-    their likeness to their neighbours: thousands of readings would hide in a root of their
-    number what a fit leaves.  A curve that is no cubic has another slope than its cubic, so K_0
-    is the slope of a cubic spline, and strain is that of the same spline, each with what the spline
-    misses there.  The standard uncertainty holds these and no calibration.
+    Source: [1]_, sec. 4.4.2 and 4.4.3.  Readings are first averaged over 1/300 of the
+    tension range each.  The uncertainty follows from the residuals of those means, widened by
+    the correlation with their neighbours: averaging over thousands of readings would hide the
+    misfit of a curve.  A curve that is not a cubic has another slope than its cubic.  Both K_0, as
+    slope, and strain are therefore those of a cubic spline, each with the misfit of the spline
+    there.  The standard uncertainty holds these and no calibration.
 
     App. D of [1]_ finds 4.22, 6.33 and 7.71e4 lb for K_0 of one line: at 0.071 per minute
     a day after the dynamic test, at 0.23 per minute a day after, and at 0.23 per minute at
-    once, that is a factor of 1.5 to 1.8.  The rate and the waiting time stay with the
-    number for that reason, and it enters K_1 and tau in full.
+    once, a factor of 1.5 to 1.8.  For this reason the rate and the waiting time are stored with
+    the number, which enters K_1 and tau in full.
 
     Examples
     --------
@@ -753,7 +752,7 @@ def fit_pull(
     clock, stretch, load = clock[rows], stretch[rows], load[rows]
     low, high = float(load[0]), float(load.max())
     blocks = _block_means(clock, stretch, load)
-    # falls of single readings are noise
+    # falls of single readings count as noise
     fall = max(_greatest_fall(load) - _NOISE_FACTOR * reading_noise(load), 0.0) / (high - low)
     if fall > _FALL_REFUSED:
         raise DataError(
@@ -785,7 +784,7 @@ def fit_pull(
         )
     centre, half = (low + high) / 2, (high - low) / 2
     is_cut = stop - start < 2
-    # the pull begins where its readings stay above a level, which chooses their noise
+    # the pull begins where its readings stay above a level; noise biases this choice of readings
     chosen = _NOISE_FACTOR * reading_noise(load) / half
     if chosen > _FOOT:
         start = max(start, min(chosen + 2 * _BEYOND - 1, stop))
@@ -847,15 +846,15 @@ def fit_pull(
     )
 
 
-# a pull that ends at a level reads a hair above or below it
+# a pull that ends at a level reads slightly above or below it
 _BEYOND = 0.01
 
-# a drift of the mean tension over a run that changes K_0 by more than this is said
+# a drift of the mean tension over a run that changes K_0 by more than this is noted
 _DRIFT_NOTED = 0.05
 
 
 def _scaled(pull: SlowPull, tension: ArrayLike) -> tuple[Floats, Bools]:
-    """Tension as u of the fit, NaN outside the range of use."""
+    """Tension as the fit variable u, NaN outside the range of use."""
     load = np.asarray(tension, dtype=np.float64)
     margin = _BEYOND * 2 * pull.tension_half_range
     inside = (load >= pull.tension_low - margin) & (load <= pull.tension_high + margin)
@@ -886,7 +885,7 @@ def quasi_static_spring_constant(pull: SlowPull, tension: ArrayLike) -> tuple[Fl
     Returns
     -------
     quasi_static_spring_constant, standard_uncertainty : ndarray, shape (...)
-        NaN outside the range of use, of which a hundredth of the range may be missing, and
+        NaN outside the range of use, extended by a hundredth of the range, and
         where the slope is not positive. [N]
 
     Raises
@@ -898,7 +897,7 @@ def quasi_static_spring_constant(pull: SlowPull, tension: ArrayLike) -> tuple[Fl
     -----
     Source: [1]_, sec. 4.4.2: it "must be calculated at the mean load level of interest and
     used for small perturbations around that mean load".  The slope is that of the cubic spline
-    through the readings, and the uncertainty of this fit, with what it misses there.
+    through the readings; its uncertainty holds that of the fit and the misfit there.
 
     Examples
     --------
@@ -942,7 +941,7 @@ def strain_at_tension(pull: SlowPull, tension: ArrayLike) -> tuple[Floats, Float
     Returns
     -------
     strain, standard_uncertainty : ndarray, shape (...)
-        By the spline, from the reference length; NaN outside the range of use. [1]
+        From the spline, relative to the reference length; NaN outside the range of use. [1]
 
     Raises
     ------
@@ -973,7 +972,7 @@ def strain_at_tension(pull: SlowPull, tension: ArrayLike) -> tuple[Floats, Float
 def strain_at_break_share(
     pull: SlowPull, share: ArrayLike, *, rated_break_strength: float
 ) -> tuple[Floats, Floats]:
-    """Strain of the slow pull at a share of the rated break strength.
+    """Strain of the slow pull at a fraction of the rated break strength.
 
     Parameters
     ----------
@@ -1020,7 +1019,7 @@ def spring_constant_ratio(
     Parameters
     ----------
     pull, other : SlowPull
-        For instance of one line at two rates, or after two waiting times.
+        For instance pulls of one line at two rates, or after two waiting times.
     tension : array_like, shape (...)
         Tension. [N]
 
@@ -1058,7 +1057,7 @@ _EVEN = 1.5  # fastest over slowest rate of strain of a pull at constant rate of
 _STEPS_OF_PULL = 400
 
 
-_SHORT = 10.0  # relaxation times of the loops, below which a pull is slow by no reading of them
+_SHORT = 10.0  # relaxation times of the loops: a shorter pull is not slow in comparison
 
 
 def is_short_pull(pull: SlowPull, relaxation_time: float) -> bool:
@@ -1078,19 +1077,19 @@ def is_short_pull(pull: SlowPull, relaxation_time: float) -> bool:
 def error_of_pull_rate(
     pull: SlowPull, tension: float, *, spring_constant: float, relaxation_time: float
 ) -> float:
-    r"""What a pull that is not slow beside the relaxation of the line makes K_0 wrong by. [N].
+    r"""Error of K_0 from a pull that is not slow compared with the relaxation of the line. [N].
 
-    The spring and the dashpot that the loops show pull along: their tension q obeys
-    :math:`\dot q + q / \tau = K_1 \dot\varepsilon`.  K_0 is the slope of what is left of the pull.
-    Its share by which the two slopes differ, as a root mean square along the pull, is the error at
-    any tension: its sign changes on the way.  Zero where the loops have no K_1 and tau.
+    The spring and dashpot found from the loops add a tension q to the pull that obeys
+    :math:`\dot q + q / \tau = K_1 \dot\varepsilon`.  K_0 is the slope of the pull without q.
+    The relative difference of the two slopes, as a root mean square along the pull, is the error at
+    any tension, since its sign changes on the way.  Zero where the loops have no K_1 and tau.
 
     Notes
     -----
-    No correction: the tau of real lines grows with the period ([1]_, sec. 4.4.2, 4.4.3 and App. D),
-    and loops do not show it at the rate of a pull.  An uncertainty of a pull that is short beside
-    it (`is_short_pull`); K_0 of longer ones is that of their stated rate, and this is told.  K_1
-    and tau hold the error that they are to tell.
+    No correction is made: the tau of real lines grows with the period ([1]_, sec. 4.4.2, 4.4.3 and
+    App. D), and loops do not show it at the rate of a pull.  The error is an uncertainty of a pull
+    that is short in comparison (`is_short_pull`); K_0 of longer ones is that at their stated rate,
+    which a note says.  K_1 and tau themselves contain the error that they are to estimate.
 
     Examples
     --------
@@ -1122,7 +1121,7 @@ def error_of_pull_rate(
     for row in range(1, load.size):
         pulled[row] = left[row - 1] * pulled[row - 1] + gained[row - 1]
     alone = np.maximum.accumulate(load - pulled)
-    # at the ends of the range of use a slope has one neighbour, and what is left is not read there
+    # at the ends of the range a slope has one neighbour only, and the difference is not read there
     rows = slice(load.size // 10, -load.size // 10)
     at = load[rows][load[rows] < alone[-1]]
     of_pull = quasi_static_spring_constant(pull, at)[0]
@@ -1175,19 +1174,19 @@ def quasi_static_of_run(
     break_in_cycles : int, optional
         Cycles left out of the mean at the start. [1]
     above_midline : sequence of tuple of float, length n_specimens, optional
-        How far the mean tension of the loops is above their midline at the mean strain, with its
+        Mean tension of the loops less that of their midline at the mean strain, and its
         standard uncertainty, from `reduction.stages.three_parameter_line.loop_midline`. [N]
     waveform : {"sinusoidal", "triangular", "other"}, optional
-        Of the driven channel. [-]
+        Waveform of the driven channel. [-]
     control : {"load", "position"}, optional
-        Which that is. [-]
+        Driven channel. [-]
 
     Returns
     -------
     quasi_static_spring_constant, standard_uncertainty : ndarray, shape (n_specimens,)
         NaN without a pull, or with a mean tension outside its range of use. [N]
     notes : tuple of Note
-        Why a specimen has none, and a drift of the mean tension that matters.
+        Reason why a specimen has none, and a drift of the mean tension that matters.
 
     Raises
     ------
@@ -1196,14 +1195,14 @@ def quasi_static_of_run(
 
     Notes
     -----
-    Source: [1]_, sec. 4.4.2.  One K_0 a run, so that all its cycles share its error.
+    Source: [1]_, sec. 4.4.2.  A run has one K_0, so that all its cycles share its error.
 
-    [1]_, sec. 4.4.2, 4.4.3 and App. D means small cycles.  The slow spring of a large one is bent,
-    and its slope over the cycle is not that of the pull at the mean tension: 1 % in K_0, at a
-    twentieth of a hertz, is 8 % in K_1 and 10 % in tau.  Where the loops themselves are bent, by
-    more than K_0 is uncertain, K_0 is the chord of the pull about the tension of their midline
-    (`spring_of_wave`), or its slope there where the pull does not reach the ends; straight loops
-    keep the slope at the mean.
+    [1]_, sec. 4.4.2, 4.4.3 and App. D refers to small cycles.  The slow spring of a large cycle is
+    curved, and its slope over the cycle differs from that of the pull at the mean tension: 1 % in
+    K_0, at a twentieth of a hertz, is 8 % in K_1 and 10 % in tau.  Where the loops themselves are
+    curved by more than the uncertainty of K_0, K_0 is the chord of the pull about the tension of
+    their midline (`spring_of_wave`), or its slope there where the pull does not reach the ends;
+    for straight loops it is the slope at the mean.
 
     Examples
     --------
