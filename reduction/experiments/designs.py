@@ -188,7 +188,8 @@ def plackett_burman(n_factors: int, *, n_runs: int | None = None) -> Design:
     Notes
     -----
     Every column is orthogonal to every other, and half high, half low.  Two-factor
-    interactions are partly aliased with the main effects (`reduction.experiments.screening.alias_matrix`).
+    interactions are partly aliased with the main effects
+    (`reduction.experiments.screening.alias_matrix`).
 
     Examples
     --------
