@@ -42,7 +42,7 @@ _BEYOND_SCATTER = 3.0
 
 _DRIFT_TOLD = 0.02  # of the energy
 
-_FEWEST_CYCLES, _SETTLING = 24, 0.1  # for a drift of clocks; fraction of cycles omitted at first
+_FEWEST_DRIFTING, _SETTLING = 24, 0.1  # for a drift of clocks; fraction of cycles omitted at first
 
 _EVEN = 0.5  # least ratio of the slopes of both halves of the cycles
 
@@ -425,7 +425,7 @@ def _drift_of_lag(loops: Loops, row: int, *, stated: float) -> tuple[float, floa
     with np.errstate(divide="ignore", invalid="ignore"):
         lag = energy / (2 * np.pi**2 * swing)
     known = np.flatnonzero(np.isfinite(lag) & np.isfinite(stiffness))
-    if known.size < _FEWEST_CYCLES:
+    if known.size < _FEWEST_DRIFTING:
         return np.nan, np.nan
     known = known[int(_SETTLING * known.size) :]
     time, lag = loops.cycle_start_time[row, known], lag[known]
