@@ -235,12 +235,12 @@ class RunningStatistics:
         return np.sqrt(self.squares / freedom)
 
     def standard_uncertainty(self) -> Floats:
-        """Type A of the mean without a trend (`variance_of_a_cycle`); for one curve, its own."""
+        """Type A of the mean without a trend (`_variance_of_a_cycle`); for one curve, its own."""
         n_curves = np.maximum(self.n_curves, 1)
         own = self.variance / n_curves
         # the first and last curve deviate from the line through the next two by twice the bend
         (head, n_head), (tail, n_tail) = _bends(self.head), _bends(self.tail)
-        many = variance_of_a_cycle(
+        many = _variance_of_a_cycle(
             self.scatter() ** 2, bends=self.bends + head + tail,
             n_bends=self.n_bends + n_head + n_tail, own=own,
         )  # fmt: skip
@@ -269,7 +269,9 @@ _TREND = 4.0  # least ratio of the variances with and without the trend
 _OF_A_BEND = 1.5  # variance of a value minus the mean of two others, over that of one value
 
 
-def variance_of_a_cycle(variance: Floats, *, bends: Floats, n_bends: Floats, own: Floats) -> Floats:
+def _variance_of_a_cycle(
+    variance: Floats, *, bends: Floats, n_bends: Floats, own: Floats
+) -> Floats:
     r"""Variance of one of several cycles about their trend.
 
     .. math:: s^2 = \frac{2}{3 n} \left(b_2^2 + b_{n-1}^2 + \sum_{i = 2}^{n - 1} b_i^2\right),
@@ -309,7 +311,7 @@ def variance_of_a_cycle(variance: Floats, *, bends: Floats, n_bends: Floats, own
     Of a variance of 13, and twelve bends with squares of 0.04 each or of 40:
 
     >>> for bend in (0.04, 40.0):
-    ...     print(variance_of_a_cycle(
+    ...     print(_variance_of_a_cycle(
     ...         np.array(13.0), bends=12 * bend, n_bends=np.array(12), own=np.array(0.01)).round(3))
     0.027
     13.0

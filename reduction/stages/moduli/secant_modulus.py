@@ -252,11 +252,18 @@ def late_change(values: Floats) -> float:
     change : float
         [SI]
 
+    Raises
+    ------
+    ValueError
+        If the values are of more than one specimen.
+
     Examples
     --------
     >>> late_change(np.array([106.0, 102.0, np.nan, 100.0, 100.0]))
     -2.0
     """
+    if values.ndim != 1:
+        raise ValueError(f"cycles of one specimen are needed, not values of shape {values.shape}")
     known = values[np.isfinite(values)]
     if known.size < _FEWEST_TO_SETTLE:
         return np.nan
@@ -390,7 +397,7 @@ def summarise_amplitude(
 
     Uncertainty is type A: scatter over the cycles over the root of their number; for a
     single cycle, its own. It is the uncertainty of the mean of these cycles: a trend is not scatter
-    (`reduction.stages.moduli.local_regression.variance_of_a_cycle`), and `late_change` is the
+    (`reduction.stages.moduli.local_regression._variance_of_a_cycle`), and `late_change` is the
     distance of the mean from the later cycles. Cycles with NaN are left out.  Errors
     common to all cycles are added: a turn missed between two samples in means, amplitudes, K_ap,
     K', loss and loss factor, the place of the drift within its cycle in energy and loss, and in the

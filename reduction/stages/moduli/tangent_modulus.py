@@ -378,7 +378,7 @@ def tangent_curves(
     *Uncertainty* is type A only: the scatter over the cycles over the root of
     their number, or, for a single curve, from its regression residuals. Errors
     common to all cycles (area, calibration, splice strain) are not included. A trend over
-    the cycles is not scatter (`variance_of_a_cycle`); the mean is over slopes of single
+    the cycles is not scatter (`_variance_of_a_cycle`); the mean is over slopes of single
     cycles (or of groups of consecutive ones), so that loss of tension from one to
     the next does not enter a slope.
 
