@@ -8,6 +8,7 @@ from math import comb, sqrt
 from typing import Any
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from reduction.record.arrays import run_blocks
@@ -878,6 +879,8 @@ _NO_BEND = 0.02  # second differences below this fraction of the larger ones are
 
 _STRAIGHT = 0.1  # minimum share of the moving rows that lie on straight lines
 
+_AS_FAST = 0.5  # minimum step over the greatest step beside it; less is a turn or a stop
+
 _LEVELS = 0.5  # minimum share of fifty levels of second difference; a coarse converter has fewer
 
 _FEWEST_BENDS = 500
@@ -890,6 +893,7 @@ def _is_interpolated(values: Floats) -> bool:
 
     Between two readings the rows lie exactly on a line; at the readings the second difference shows
     their noise. White noise has few second differences this small, or many that are little larger.
+    The ramps of a triangular wave are lines too, so rows at turns and stops are not considered.
 
     Examples
     --------
@@ -903,12 +907,15 @@ def _is_interpolated(values: Floats) -> bool:
     moves = (step[1:] != 0) & (step[:-1] != 0) & np.isfinite(bend)
     if np.count_nonzero(moves) < _FEWEST_BENDS:
         return False
-    large = float(np.quantile(bend[moves], 0.95))
-    is_line = moves & (bend <= _NO_BEND * large)
-    is_bent = moves & ~is_line
+    on_stroke = moves & ~_at_turns(step)
+    if np.count_nonzero(on_stroke) < _FEWEST_BENDS:
+        return False
+    large = float(np.quantile(bend[on_stroke], 0.95))
+    is_line = on_stroke & (bend <= _NO_BEND * large)
+    is_bent = on_stroke & ~is_line
     n_lines = np.count_nonzero(is_line)
     if (
-        n_lines < _STRAIGHT * np.count_nonzero(moves)
+        n_lines < _STRAIGHT * np.count_nonzero(on_stroke)
         or np.count_nonzero(is_bent & (bend <= 4 * _NO_BEND * large)) > n_lines / 2
     ):
         return False
@@ -918,9 +925,24 @@ def _is_interpolated(values: Floats) -> bool:
         return False
     whole = bend.size // _BLOCK * _BLOCK
     lines, bends = (one[:whole].reshape(-1, _BLOCK).sum(axis=1) for one in (is_line, is_bent))
-    full = lines + bends == _BLOCK
+    full = moves[:whole].reshape(-1, _BLOCK).all(axis=1)
     mixed = (lines >= _OF_BLOCK) & (bends >= _OF_BLOCK)
     return bool(full.any()) and bool(np.mean(mixed[full]) >= _REGULAR)
+
+
+def _at_turns(step: Floats) -> Bools:
+    """Rows between two steps that lie within a step of a turn, stop or start of a wave.
+
+    Examples
+    --------
+    >>> _at_turns(np.array([1.0, 1.0, 1.0, 1.0, 0.3, -1.0, -1.0, -1.0, -1.0])).astype(int)
+    array([0, 0, 1, 1, 1, 1, 0, 0])
+    """
+    around = sliding_window_view(np.pad(step, 1, mode="edge"), 4)
+    greatest = np.abs(around).max(axis=1)
+    way = np.sign(around.sum(axis=1))[:, None]
+    found: Bools = (around * way).min(axis=1) < _AS_FAST * greatest
+    return found
 
 
 def _interpolation_notes(record: Record, resampled: Sequence[str]) -> list[Note]:

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from reduction.pipeline.reduce_test import _with_late_readings
-from reduction.readers.sample_flags import flag_record
+from reduction.readers.sample_flags import _is_interpolated, flag_record
 from reduction.record.contributions import InstrumentErrors
 from reduction.record.errors import DataError
 from reduction.record.measurement import Quality, Record
@@ -283,3 +283,19 @@ def test_a_channel_that_was_interpolated_before_it_was_logged_is_told(ratio):
         plain = 4 + 0.5 * np.sin(0.7 * time) + RANDOM.normal(0, noise, time.size)
         found = flagged(record(time=time, position=np.round(plain / step) * step, load=load))
         assert "interpolated-by-logger" not in [one.code for one in found.notes]
+
+
+@pytest.mark.parametrize("readings", [22.7, 43.7, 61.3])
+@pytest.mark.parametrize("rest", [0.0, 0.3])
+def test_ramps_from_turn_to_turn_were_not_interpolated(readings, rest):
+    turn = np.arange(6000) / readings % 1
+    ends = [0, (1 - rest) / 2, 0.5, 1 - rest / 2, 1]
+    wave = 4 + 0.5 * np.interp(turn, ends, [-1, 1, 1, -1, -1])
+    rng = np.random.default_rng(3)
+    # noise of one step of the converter, of a third of it, far below it, and of a thousandth
+    for noise, step in ((1e-4, 1e-4), (1e-4, 3e-5), (1e-5, 1e-4), (1e-3, 1e-7), (0.0, 1e-7)):
+        read = np.round((wave + noise * rng.normal(size=wave.size)) / step) * step
+        assert not _is_interpolated(read)
+    # the same wave, read every third row and interpolated, is told
+    rows = wave[::3] + 1e-3 * rng.normal(size=2000)
+    assert _is_interpolated(np.interp(np.arange(5998), 3.0 * np.arange(2000), rows))
