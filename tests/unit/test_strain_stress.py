@@ -60,9 +60,13 @@ def test_a_difference_beyond_reading_scatter_says_what_it_does_to_moduli():
     assert "10.8 % higher" in str(check_constant_volume(thin)[0])  # 1 / 0.95**2 - 1
 
 
-def test_one_stretched_reading_has_no_scatter_to_judge_by():
-    specimen = Specimen("a", diameter=(0.0264,), stretched_diameters=((1.0, 0.01),))
-    assert tuple(map(str, check_constant_volume(specimen))) == ()
+@pytest.mark.parametrize(
+    ("stretched", "is_sound"), [(0.0187, True), (0.0178, True), (0.0264, False)]
+)
+def test_one_stretched_reading_is_held_against_a_tenth_of_the_diameter(stretched, is_sound):
+    """26.4 mm at 100 % is 18.67 mm by constant volume; the last one was read stretched twice."""
+    specimen = Specimen("a", diameter=(0.0264,), stretched_diameters=((1.0, stretched),))
+    assert (check_constant_volume(specimen) == ()) == is_sound
 
 
 def test_stretched_diameters_without_one_before_stretch_are_refused():

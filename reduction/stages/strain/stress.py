@@ -22,6 +22,9 @@ from reduction.record.notes import Note, note
 
 _CONFIDENCE = 0.95
 
+# of the diameter: a single stretched reading has no scatter; twice what calipers squeeze
+_OF_ONE_READING = 0.1
+
 
 def nominal_stress(tension: ArrayLike, *, area: float) -> Floats:
     r"""Nominal (engineering) stress.
@@ -121,8 +124,8 @@ def check_constant_volume(specimen: Specimen) -> tuple[Note, ...]:
     -------
     notes : tuple of Note
         One where the two differ by more than the readings scatter
-        (Student's t, 95 %); empty where they agree, or where fewer than two
-        stretched readings give no scatter.
+        (Student's t, 95 %), or more than 10 % where a single stretched reading
+        gives no scatter; empty where they agree.
 
     Raises
     ------
@@ -147,14 +150,17 @@ def check_constant_volume(specimen: Specimen) -> tuple[Note, ...]:
     >>> print(str(check_constant_volume(new)[0])[:77])
     new: at constant volume the stretched diameters imply 26.37 mm before stretch
     """
-    if len(specimen.stretched_diameters) < 2:
+    if not specimen.stretched_diameters:
         return ()
     strain, stretched = np.array(specimen.stretched_diameters).T
     implied = constant_volume_diameter(strain, stretched)
-    scatter = float(np.std(implied, ddof=1))
     mean, stated = float(np.mean(implied)), specimen.mean_diameter
-    standard_error = scatter * sqrt(1 / implied.size + 1 / len(specimen.diameter))
-    allowed = float(stdtrit(implied.size - 1, (1 + _CONFIDENCE) / 2)) * standard_error
+    if implied.size > 1:
+        scatter = float(np.std(implied, ddof=1))
+        standard_error = scatter * sqrt(1 / implied.size + 1 / len(specimen.diameter))
+        allowed = float(stdtrit(implied.size - 1, (1 + _CONFIDENCE) / 2)) * standard_error
+    else:
+        allowed = _OF_ONE_READING * mean
     if abs(mean - stated) <= allowed:
         return ()
     return (
