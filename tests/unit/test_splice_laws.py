@@ -327,3 +327,18 @@ def test_a_refusal_names_the_mark():
     names = [f"mark {row}" for row in range(20)]
     with pytest.raises(DataError, match=r"Look at mark \d+, off by"):
         fit_splice_laws(marks_of_five_tests(*wrong), names=names)
+
+
+@pytest.mark.parametrize("row", [1, 5])
+def test_a_refusal_names_the_first_and_the_last_mark_and_not_the_one_beside_it(row):
+    """Splices that strain 22 % of what the free length does; one mark is 30 mm off."""
+    free = np.array([0.0, 0.75, 0.875, 1.0, 1.125, 1.25])
+    tension = np.array([0.0, 240.0, 275.0, 310.0, 345.0, 385.0])
+    splice = 0.22 * free
+    splice[row] += 0.03 / 1.17
+    given = SpliceReadings(
+        free, splice, tension, np.zeros(6, int), free == 0, 0.46, 1e-3, np.zeros((2, 2))
+    )
+    names = [f"mark {number}" for number in range(6)]
+    with pytest.raises(DataError, match=f"Look at mark {row}: without it"):
+        fit_splice_laws(given, names=names)

@@ -334,7 +334,7 @@ def fit_splice_laws(
         )
     passing = np.array([law.chance >= REJECTED for law in laws])
     if not passing.any():
-        raise _refusal(readings, laws, specimen, names)
+        raise _refusal(readings, found, specimen, names)
     n_loaded = int((~kept.is_slack).sum())
     has_spare = np.array([law.freedom > 0 for law in laws])
     is_sure = np.array([law.chance >= _DOUBT for law in laws])
@@ -779,20 +779,59 @@ def _outlier(readings: SpliceReadings, slip: float) -> int | None:
     return worst if agrees else None
 
 
+# of misfit and terms by which a row may be the wrong one as well as the likeliest
+_AS_LIKELY = 4.0
+
+_MOST_NAMED = 3
+
+
+def _misread(readings: SpliceReadings, slip: float) -> list[int]:
+    """Loaded rows without which a law with a mark to spare agrees with the others; likeliest first.
+
+    The row with the greatest residual need not be wrong: a law bends towards the first and the last
+    mark, and away from those beside them.
+    """
+    loaded = [int(row) for row in np.flatnonzero(~readings.is_slack)]
+    misfit = np.array([
+        min(
+            (
+                law.chi_square + 2 * law.n_terms
+                for law in _fitted(readings.without(row), slip)
+                if law.freedom > 0 and law.chance >= REJECTED
+            ),
+            default=np.inf,
+        )
+        for row in loaded
+    ])  # fmt: skip
+    least = misfit.min()
+    if np.isinf(least):
+        return []
+    return [loaded[at] for at in np.argsort(misfit) if misfit[at] <= least + _AS_LIKELY]
+
+
 def _refusal(
-    readings: SpliceReadings, laws: Sequence[FittedLaw], specimen: str, names: Sequence[str]
+    readings: SpliceReadings, judged: _Judged, specimen: str, names: Sequence[str]
 ) -> DataError:
+    laws = judged.laws
     best = max(laws, key=lambda law: law.chance)
     length = 1 / (1 + readings.share * np.maximum(best.values[1], 0.0))
     points = 100 * readings.share * length * np.abs(best.residual)
-    worst = int(np.argmax(points))
-    named = names[worst] if names else f"row {worst + 1} of its marks"
+
+    def named(row: int) -> str:
+        return names[row] if names else f"row {row + 1} of its marks"
+
+    suspects = _misread(readings, judged.slip)
+    if 0 < len(suspects) <= _MOST_NAMED:
+        look = f"{' or '.join(map(named, suspects))}: without it a law agrees with the others"
+    else:
+        worst = int(np.argmax(points))
+        look = f"{named(worst)}, off by {points[worst]:.2f} points"
     return DataError(
         f"no law of the splices of '{specimen}' agrees with its marks",
         found=f"{best.name}, the best of {len(laws)}, misses them by "
         f"{points[~readings.is_slack].mean():.2f} points of strain where the tape explains "
         f"{100 * readings.share * length * readings.tape * np.sqrt(3):.2f}",
         needed="marks that one of the laws passes within the stated error of the tape",
-        hint=f"Look at {named}, off by {points[worst]:.2f} points; at holds"
-        " whose tension is not that of the marks; or state the error of the tape.",
+        hint=f"Look at {look}; at holds whose tension is not that of the marks; or state the error "
+        "of the tape.",
     )
