@@ -784,6 +784,9 @@ _AS_LIKELY = 4.0
 
 _MOST_NAMED = 3
 
+# of more marks, one in six is set aside before: several are wrong
+_MOST_TRIED = 12
+
 
 def _misread(readings: SpliceReadings, slip: float) -> list[int]:
     """Loaded rows without which a law with a mark to spare agrees with the others; likeliest first.
@@ -792,6 +795,8 @@ def _misread(readings: SpliceReadings, slip: float) -> list[int]:
     mark, and away from those beside them.
     """
     loaded = [int(row) for row in np.flatnonzero(~readings.is_slack)]
+    if len(loaded) > _MOST_TRIED:
+        return []
     misfit = np.array([
         min(
             (
