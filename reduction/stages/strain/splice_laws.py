@@ -329,8 +329,8 @@ def fit_splice_laws(
     if not laws:
         raise DataError(
             f"the splices of '{specimen}' have no law",
-            found="no stretched mark",
-            needed="a stretched row of this specimen",
+            found="no stretched mark at a hold that was approached by loading",
+            needed="one at least: marks on the way down say the friction of the splices alone",
         )
     passing = np.array([law.chance >= REJECTED for law in laws])
     if not passing.any():
