@@ -287,6 +287,16 @@ def unlike(wave, *, step=0.05, last=120.0, noise=0.0):
     return unlike_neighbours(time, driven, cycles, stands)
 
 
+def test_a_reading_that_is_not_used_beside_the_middle_of_a_rise_is_passed_over():
+    def wave(time):
+        # of one cycle in the middle of the log the readings about the middle of its rise
+        is_lost = (np.abs(np.sin(time) + 1) < 0.005) & (np.abs(time - 60) < 4)
+        return np.where(is_lost, np.nan, np.cos(time))
+
+    assert np.isnan(wave(np.arange(0, 120, 0.05))).sum() >= 3
+    assert unlike(wave) == 0
+
+
 @pytest.mark.parametrize("ratio", [1.37, 2.7, 3.7, 10.3])
 @pytest.mark.parametrize("share", [0.2, 0.5])
 def test_a_wave_of_two_frequencies_does_not_repeat(ratio, share):

@@ -169,6 +169,32 @@ def test_creep_that_dies_away_behind_a_ramp_is_no_part_of_the_amplitude(waveform
     assert off[0] < 2 * stated[0, 0] < 4 * within[0]
 
 
+@pytest.mark.parametrize("control", ["position", "load"])
+@pytest.mark.parametrize("decay", [0.2, 0.4, 1.0, 5.0])  # of a cycle
+@pytest.mark.parametrize("n_cycles", [1, 2, 3, 5])
+def test_a_ramp_that_dies_away_in_the_first_cycles_is_not_their_loss(control, decay, n_cycles):
+    # what answers a sine of a linear viscoelastic line behind a ramp: the steady wave and a decay
+    turn = np.arange(n_cycles * 80 + 1) / 80
+    angle, behind = 2 * np.pi * turn, 0.3 * np.exp(-turn / decay)
+    driven = -np.cos(angle)
+    lead = 0.1 if control == "position" else -0.1
+    answer = -np.cos(angle + lead) + behind
+    force, stretch = (answer, driven) if control == "position" else (driven, answer)
+    loops = close_loops(
+        10 * turn, 500 + 100 * force[None], 1 + 0.1 * stretch[None],
+        cycles_of(80, n_cycles, turn.size), waveform="sinusoidal", control=control,
+    )  # fmt: skip
+    energy = np.pi * 100 * 0.1 * np.sin(0.1)
+    for name, expected, floor in (
+        ("hysteresis_energy", energy, 0.02 * energy), ("apparent_spring_constant", 1000, 2),
+        ("storage_spring_constant", 1000 * np.cos(0.1), 2),
+        ("loss_spring_constant", 1000 * np.sin(0.1), 2),
+    ):  # fmt: skip
+        found, stated = getattr(loops, name)[0], loops.uncertainty[name][0]
+        assert (np.abs(found - expected) < 2.6 * np.hypot(stated, floor)).all(), name
+    assert abs(loops.closed_loop_energy[0, 0] - energy) > 0.15 * energy
+
+
 @pytest.mark.parametrize("per_cycle", [12.3, 13.0, 19.7, 50.0])
 def test_a_slow_log_of_a_sine_has_the_stiffness_of_the_sine(per_cycle):
     # the turn of the strain lags that of the tension and neither is logged: by extremes K_ap is

@@ -243,7 +243,9 @@ def _spread(values: Integers) -> Integers:
 
 def _crossing(time: Floats, rise: Floats) -> float:
     """Time at which a rise first reaches its middle. [s]."""
-    level = (np.fmin.reduce(rise) + np.fmax.reduce(rise)) / 2
+    known = np.isfinite(rise)  # an unused reading may lie next to the middle
+    time, rise = time[known], rise[known]
+    level = (rise.min() + rise.max()) / 2
     after = max(int(np.argmax(rise >= level)), 1)
     return float(np.interp(level, rise[after - 1 : after + 1], time[after - 1 : after + 1]))
 

@@ -11,6 +11,7 @@ References
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -158,20 +159,22 @@ def _mean_drift(means: Floats, ends: Floats) -> Floats:
     return np.nan_to_num(found, nan=0.0)
 
 
-_CLEAR_CREEP = 3.0  # of its standard uncertainty
+def _own_drift(
+    driven: Floats,
+    answer: Floats,
+    cycles: Cycles,
+    of_neighbours: Floats,
+    of_driven: Floats,
+    *,
+    noises: tuple[float, float],
+) -> tuple[Floats, Bools]:
+    """Drift of the answering channel over each cycle, and whether it is the cycle's own.
 
-_OF_GAP = 8  # fraction of a cycle, from its first turn on, as its reciprocal
-
-
-def _gap_of_first(
-    tension: Floats, strain: Floats, cycles: Cycles, *, noises: tuple[float, float]
-) -> Floats:
-    """Creep over the first cycle of a run under a driven load; NaN for others or if unclear.
-
-    The first eighth is compared with that of the next cycle, at the same tension, so that a turn
-    found one sample off, or a valley that the machine misses, does not count as creep.  A cycle
-    after a ramp or a hold creeps more than its neighbours.  A driven position leaves no gap: the
-    area as logged is the work.
+    After a ramp or a hold the first cycles creep or relax more than later ones.  Their drift is
+    measured from the first eighth of a cycle to that of the next one, at the same level of the
+    driven channel, so that a turn found one sample off, or a valley that the machine misses, does
+    not count as drift.  A run of up to three cycles has no later ones: the drift of its last cycle
+    is measured from its first valley to its last.
 
     Examples
     --------
@@ -184,25 +187,102 @@ def _gap_of_first(
     >>> ends = np.column_stack([first, first + 20])
     >>> cycles = Cycles(first, first + 40, ends, ends + 20, np.ones((4, 2)),
     ...     np.zeros(161, np.int32), np.zeros(161, np.int8), np.zeros(161, bool), 0.1)
-    >>> print(_gap_of_first(tension, strain, cycles, noises=(1e-3, 1e-3)).round(1))
-    [0.9 nan nan nan]
+    >>> drift, own = _own_drift(tension, strain, cycles, np.full(4, 0.2), np.zeros(4),
+    ...     noises=(2e-2, 2e-2))
+    >>> print(drift[[0, 3]].round(2), own[[0, 3]])
+    [0.95 0.2 ] [ True False]
     """
-    found = np.full(cycles.n_cycles, np.nan)
-    follows = touching(cycles)
+    drifts, is_own = of_neighbours.copy(), np.zeros(cycles.n_cycles, dtype=bool)
     length = cycles.last - cycles.first
-    for place in np.flatnonzero(np.append(follows[1:], False) & ~follows).tolist():
-        count = int(length[place : place + 2].min()) // _OF_GAP + 1
-        load, stretch = (
-            np.stack([series[at : at + count] for at in cycles.first[place : place + 2]])
-            for series in (tension, strain)
+    begins = np.flatnonzero(~touching(cycles))
+    for start, stop in zip(begins.tolist(), [*begins[1:].tolist(), cycles.n_cycles], strict=True):
+        is_short = cycles.n_cycles <= _SHORT_RUN
+        if is_short:
+            drifts[start:stop] = 0.0
+        for place in range(start, min(start + _SHORT_RUN, stop if is_short else stop - 1)):
+            if place == stop - 1:
+                drift, slope, spread = _from_valley_to_valley(driven, answer, cycles, place)
+            else:
+                valleys = cycles.first[place : place + 2]
+                ahead = int(length[place : place + 2].min()) // _OF_GAP + 1
+                # over both sides of a valley the effect of a settling loss angle cancels
+                behind = ahead - 1 if place > start else 0
+                count = ahead + behind
+                level, other = (
+                    np.stack([series[at - behind : at + ahead] for at in valleys.tolist()])
+                    for series in (driven, answer)
+                )
+                slope = _slope(level - level.mean(axis=1, keepdims=True), other)
+                missed, drift = (float(np.diff(one.mean(axis=1))[0]) for one in (level, other))
+                drift = _at_one_level(drift, slope * (missed - of_driven[place]))
+                spread = np.sqrt(2 / count)
+            error = np.hypot(noises[1], slope * noises[0]) * spread
+            # curvature with readings elsewhere in the cycle; in later cycles, a settling loss
+            # angle raises the valley as it lowers the peak
+            is_later = place > start and not is_short
+            share = _OF_SETTLING if is_later else length[place] ** -2.0
+            error = np.hypot(
+                error, share * np.ptp(answer[cycles.first[place] : cycles.last[place] + 1])
+            )
+            beyond = np.abs(drift) - np.abs(drifts[place])
+            is_own[place] = beyond > 0 and _CLEAR_DRIFT * error < (
+                beyond if is_later else np.abs(drift)
+            )
+            if is_own[place]:
+                drifts[place] = drift
+            elif not is_short:
+                break
+    return drifts, is_own
+
+
+def _slope(apart: Floats, other: Floats) -> float:
+    """Of a series over another one, of which the mean is taken off."""
+    square = float(np.sum(apart**2))
+    return float(np.sum(apart * other)) / square if square > 0 else 0.0
+
+
+def _at_one_level(drift: float, of_driven: float) -> float:
+    """Without what the driven channel misses; NaN where most of it is a drift of that channel."""
+    found = drift - of_driven
+    return found if np.abs(of_driven) < _OF_DRIVEN * np.abs(found) else np.nan
+
+
+def _from_valley_to_valley(
+    driven: Floats, answer: Floats, cycles: Cycles, place: int
+) -> tuple[float, float, float]:
+    """Drift over one cycle by its own readings, slope of answer over driven, noise of the drift.
+
+    From a turn on and back from it, the way up and the way down are apart by what is odd in time;
+    what is left at the turn is the drift, or friction, which the peak has as well: then NaN.
+    """
+    begin, peak, end = cycles.first[place], cycles.branch_last[place, 0], cycles.last[place]
+    count = max(int(min(peak - begin, end - peak)) // _OF_CLOSING, _FEWEST_INSIDE)
+    away = np.arange(count)
+    odd = np.linalg.pinv((away[:, None] / count) ** [0, 1, 3])[0]
+    level, other, by_friction = (
+        float(odd @ (series[np.clip(before - away, 0, None)] - series[after + away]))
+        for series, before, after in (
+            (driven, end, begin), (answer, end, begin), (answer, peak, peak),
         )
-        apart = load - load.mean(axis=1, keepdims=True)
-        square = np.sum(apart**2)
-        slope = np.sum(apart * stretch) / square if square > 0 else 0.0
-        creep = np.diff(stretch.mean(axis=1) - slope * load.mean(axis=1))[0]
-        error = np.hypot(noises[1], slope * noises[0]) * np.sqrt(2 / count)
-        found[place] = creep if np.abs(creep) > _CLEAR_CREEP * error else np.nan
-    return found
+    )  # fmt: skip
+    moved = driven[begin : end + 1]
+    slope = _slope(moved - moved.mean(), answer[begin : end + 1])
+    drift = _at_one_level(other, slope * level)
+    drift = drift if np.abs(by_friction) < _OF_DRIFT * np.abs(other) else np.nan
+    return drift, slope, np.sqrt(2) * float(np.linalg.norm(odd))
+
+
+_CLEAR_DRIFT = 3.0  # of its standard uncertainty
+
+_SHORT_RUN = 3  # cycles
+
+_OF_GAP = 8  # part of a cycle, from its first turn on
+
+_OF_CLOSING = 2  # part of a branch, beside its turns
+
+_OF_DRIFT, _OF_DRIVEN = 0.6, 0.8  # that friction, or the driven channel, may seem to have
+
+_OF_SETTLING = 0.003  # of the range
 
 
 _OF_PERIOD = ("rise", "turn", "fall")
@@ -302,7 +382,7 @@ def _shape_of_wave(
     known = known[np.abs(amplitude[known] - middle) < _OF_ONE_WAVE * middle]
     if known.size > _FEWEST_INSIDE:
         known = known[1:-1]  # neighbours of cycles of another amplitude may hold part of them
-    elif known.size > 2:
+    elif known.size > 1:
         known = known[1:]  # drift after a ramp dies away within the cycle, unlike harmonics
     if not known.size:
         return _Shape()
@@ -392,7 +472,7 @@ def _quantities_of_cycles(
     rise_shares: tuple[Floats | float, Floats | float] = (0.5, 0.5),
     control: Control = "position",
     shapes: tuple[_Shape, _Shape] | None = None,
-    gap: Floats | None = None,
+    own_drift: Callable[[Floats, Floats], tuple[Floats, Bools]] | None = None,
 ) -> tuple[dict[str, Floats], dict[str, Floats]]:
     """Quantities of each cycle of one specimen, and their standard uncertainties.
 
@@ -435,19 +515,27 @@ def _quantities_of_cycles(
         else _mean_drift(np.stack([row[f"{name}_{part}"] for part in parts]), ends)
         for name in ("force", "strain")
     )
-    of_neighbours, is_own = strain_drift, np.zeros(n_samples.size, dtype=bool)
-    if gap is not None and not is_parted:
-        is_own = np.abs(gap) > np.abs(strain_drift)
-        strain_drift = np.where(is_own, gap, strain_drift)
-    # of the creep after a ramp, the fall has at most its part of the creep of this cycle, and at
-    # least that part of the creep of the next one
-    falls = 1 - rise_shares[1]
-    on_fall = np.where(is_own, falls * (strain_drift + of_neighbours) / 2, np.nan)
-    of_ramp = np.where(is_own, falls * np.abs(strain_drift - of_neighbours) / 2, 0.0)
+    is_load = control == "load"
+    of_neighbours, is_own = strain_drift if is_load else force_drift, np.zeros(n_samples.size, bool)
+    drift_of_cycle = of_neighbours
+    if own_drift is not None and not is_parted:
+        drift_of_cycle, is_own = own_drift(of_neighbours, force_drift if is_load else strain_drift)
+    # of the drift after a ramp, the fall has at most its part of the drift of this cycle, and at
+    # least that part of the drift of the next one
+    falls = 1 - rise_shares[int(is_load)]
+    on_fall = np.where(is_own, falls * (drift_of_cycle + of_neighbours) / 2, np.nan)
+    share = 1 / np.pi if waveform == "sinusoidal" else falls / 2
+    of_ramp = np.where(is_own, share * np.abs(drift_of_cycle - of_neighbours), 0.0)
+    if is_load:
+        strain_drift = drift_of_cycle
+    else:
+        force_drift = drift_of_cycle
     # drift above the range comes from a jump among the neighbours: no steady cycle is left
-    force_drift[np.abs(force_drift) > peak - valley] = np.nan
-    for drift in (strain_drift, of_neighbours):
-        drift[np.abs(drift) > row["high"] - row["low"]] = np.nan
+    ranges = peak - valley, row["high"] - row["low"]
+    for drift, size in (
+        (force_drift, ranges[0]), (strain_drift, ranges[1]), (of_neighbours, ranges[int(is_load)])
+    ):  # fmt: skip
+        drift[np.abs(drift) > size] = np.nan
     force_sin = row["force_sine"] + force_drift / np.pi
     strain_sin = row["strain_sine"] + strain_drift / np.pi
     if waveform == "sinusoidal":
@@ -477,6 +565,9 @@ def _quantities_of_cycles(
                 )
         # a cycle stored without the next one may end before its valley
         ends_alone = np.append(cycles.first[1:] == cycles.last[:-1] + 1, False)
+        # the drift of a first cycle beyond its neighbours is not part of its wave
+        of_wave, falls_by = [force_drift, strain_drift], np.full((2, on_fall.size), np.nan)
+        of_wave[int(is_load)], falls_by[int(is_load)] = of_neighbours, on_fall
         turns = [row["force_top"], row["force_begin"], row["force_end_turn"]]
         peak, valley = np.max(turns, axis=0), np.min(turns, axis=0)
         (mean, amplitude), (mean_strain, strain_amplitude) = (
@@ -490,9 +581,8 @@ def _quantities_of_cycles(
                 way_down,
             )
             for name, drift, rise_share, way_down in (
-                ("force", force_drift, rise_shares[0], np.full_like(on_fall, np.nan)),
-                # the creep of a first cycle beyond its neighbours is not part of its wave
-                ("strain", of_neighbours, rise_shares[1], on_fall),
+                ("force", of_wave[0], rise_shares[0], falls_by[0]),
+                ("strain", of_wave[1], rise_shares[1], falls_by[1]),
             )
         )
     energy = without_drift(
@@ -548,8 +638,15 @@ def _quantities_of_cycles(
                 u_energy / energy, np.sqrt(2) * strain_noise / strain_amplitude
             )
         u_ramp, u_foot = of_ramp / np.sqrt(12), np.sqrt(2) * u_strain
-        u_apparent = np.hypot(u_apparent, apparent * u_ramp / strain_amplitude)
-        u_strain = np.hypot(u_strain, u_ramp)
+        # a transient that dies away within its cycle has a fundamental in phase as well
+        by_ramp = u_ramp / (strain_amplitude if is_load else amplitude)
+        u_storage = np.hypot(u_storage, storage * by_ramp)
+        u_over_time = np.hypot(u_over_time, over_time * by_ramp)
+        u_apparent = np.hypot(u_apparent, apparent * by_ramp)
+        if is_load:
+            u_strain = np.hypot(u_strain, u_ramp)
+        else:
+            u_half = np.hypot(u_half, u_ramp)
         if waveform == "sinusoidal":  # the foot is the mean less the amplitude
             u_foot = np.sqrt(2) * u_strain
         factor = loss / storage
@@ -577,8 +674,8 @@ def _quantities_of_cycles(
             "closed_loop_energy": row["energy"],
             "storage_over_time": over_time,
             "loss_over_time": lost_over_time,
-            "tension_turn_missed": row["force_missed"],
-            "strain_turn_missed": np.hypot(row["strain_missed"], of_ramp),
+            "tension_turn_missed": np.hypot(row["force_missed"], 0.0 if is_load else of_ramp),
+            "strain_turn_missed": np.hypot(row["strain_missed"], of_ramp if is_load else 0.0),
             "energy_turn_missed": row["energy_missed"],
             "foot_strain": begin,
         }
@@ -1007,8 +1104,10 @@ def close_loops(
             measured[index], cycles, ends, waveform=waveform, noise=noise,
             strain_noise=strain_noise, rise_shares=rise_shares, control=control,
             shapes=shapes,
-            gap=_gap_of_first(force, stretch, cycles, noises=noises[index])
-            if control == "load" else None,
+            own_drift=partial(
+                _own_drift, *((force, stretch) if control == "load" else (stretch, force)), cycles,
+                noises=noises[index] if control == "load" else noises[index][::-1],
+            ),
         )  # fmt: skip
         for name, column in values.items():
             tables[name][index] = column
