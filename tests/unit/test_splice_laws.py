@@ -344,3 +344,12 @@ def test_a_refusal_names_the_first_and_the_last_mark_and_not_the_one_beside_it(r
     names = [f"mark {number}" for number in range(6)]
     with pytest.raises(DataError, match=f"Look at mark {row}: without it"):
         fit_splice_laws(given, names=names)
+
+
+def test_marks_on_the_way_down_alone_are_refused_with_what_they_lack():
+    slack = np.zeros(1)
+    given = SpliceReadings(
+        slack, slack, slack, np.zeros(1, int), np.array([True]), 0.46, 1e-3, np.zeros((2, 2))
+    )
+    with pytest.raises(DataError, match=r"found no stretched mark .* approached by loading"):
+        fit_splice_laws(given)
