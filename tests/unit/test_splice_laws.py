@@ -297,9 +297,7 @@ def test_a_mark_below_a_kink_is_not_set_aside_for_a_law_that_the_others_hardly_p
         np.zeros((2, 2)),
         tension_uncertainty=np.array([0, 0.0143, 0.009, 0.0097, 0.0077, 0.0063, 0.0087]),
     )  # fmt: skip
-    with pytest.raises(
-        DataError, match=r"no law; found no stretched mark .* approached by loading"
-    ):
+    with pytest.raises(DataError, match="no law"):
         fit_splice_laws(given)
 
 
