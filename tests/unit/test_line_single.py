@@ -65,6 +65,14 @@ def test_one_relaxation_time_is_seen_as_one():
     assert check.p_inverse_frequency < 0.001 < check.p_one_time
 
 
+@pytest.mark.filterwarnings("error")
+def test_relaxation_times_that_are_hardly_known_have_no_upper_ratio():
+    tau = np.array([2.0, 1e-200, 2.0, 1e200, 2.0, 1e-200])
+    check = check_single_time(FREQUENCY, tau, np.full(6, 0.1))
+    assert check.time_ratio_high == np.inf
+    assert VERDICTS[int(check.verdict)].startswith("not decided")
+
+
 def test_a_constant_loss_angle_is_seen_as_one_over_frequency_by_way_of_the_inversion():
     # a rope whose loss angle stays 7 degrees while |K| grows a little with frequency
     rng = np.random.default_rng(7)

@@ -975,6 +975,8 @@ def check_single_time(
         ).astype(np.int8)
         p_none = _tail(exponent / uncertainty, left)
         p_inverse = _tail((exponent - 1) / uncertainty, left)
+    with np.errstate(over="ignore"):  # of an exponent that is hardly known there is no upper limit
+        ratio, ratio_low, ratio_high = (span**one for one in (exponent, low, high))
     return SingleTimeCheck(
         exponent=exponent,
         exponent_standard_uncertainty=uncertainty,
@@ -982,9 +984,9 @@ def check_single_time(
         exponent_high=high,
         p_one_time=p_none,
         p_inverse_frequency=p_inverse,
-        time_ratio=span**exponent,
-        time_ratio_low=span**low,
-        time_ratio_high=span**high,
+        time_ratio=ratio,
+        time_ratio_low=ratio_low,
+        time_ratio_high=ratio_high,
         frequency_ratio=span,
         degrees_of_freedom=left,
         loss_exponent=loss_slope,
