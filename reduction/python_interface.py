@@ -152,7 +152,7 @@ def look_up(
     )  # fmt: skip
     if rank and population is not None:
         raise SettingsError(
-            "a look-up has one way to put lines together", found="population and rank",
+            "only one option that combines lines is allowed", found="population and rank",
             needed="one of them",
         )  # fmt: skip
     if rank:

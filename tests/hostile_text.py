@@ -455,13 +455,13 @@ TABLES = (
         "tests.csv with a cell of a megabyte",
         table("tests.csv", "id,file,note\nT-1,log.csv," + "x" * 1_000_000 + "\n"),
         2,
-        "cannot be parted into cells",
+        "cannot be split into cells",
     ),
     Case(
         "tests.csv with a quote that is never closed",
         table("tests.csv", 'id,file,note\nT-1,log.csv,"open\nT-2,log.csv,\nT-3,log.csv,\n'),
         2,
-        "tests.csv:2: a row of the table of tests cannot be parted into cells",
+        "tests.csv:2: a row of the table of tests cannot be split into cells",
     ),
     Case(
         "tests.csv with a quote over two rows",
@@ -506,7 +506,7 @@ TABLES = (
         "marks with a quote that is never closed",
         table("marks.csv", MARKS + 'T-1,"new,min,1,9,10\nT-1,new,max,1,9,10\n'),
         3,
-        "marks.csv:2: a row of the marks file cannot be parted",
+        "marks.csv:2: a row of the marks file cannot be split",
     ),
     Case(
         "results with 1e400",
@@ -518,7 +518,7 @@ TABLES = (
         "results with a cell of a megabyte",
         table("results.csv", RESULTS + f"B-1,tensile_strength,new,{'9' * 1_000_000},lbf\n"),
         3,
-        "cannot be parted into cells",
+        "cannot be split into cells",
     ),
     Case("a table of runs that is a device", opened(["surface", "/dev/zero"]), 3, "found a device"),
     Case("a table of runs that is a pipe", opened(["surface", "pipe"]), 3, "found a pipe"),
@@ -568,11 +568,11 @@ NAMES = (
         Case(f"test {name!r}", test_id(name), 2, "a device on Windows")
         for name in ("CON", "nul", "Com1", "LPT9")
     ),
-    Case("tests a and A", test_id("a", "A"), 2, "differ in capital letters only"),
+    Case("tests a and A", test_id("a", "A"), 2, "differ only in capital letters"),
     Case("test Surfaces", test_id("Surfaces"), 2, "the name of another archive"),
     Case("steps that differ in capital letters", added(
         '[[tests.T-1.steps]]\nname = "a b"\nfrom = 1\nto = 2\n'
-        '[[tests.T-1.steps]]\nname = "A-b"\nfrom = 3\nto = 4\n'), 2, "have one name"),
+        '[[tests.T-1.steps]]\nname = "A-b"\nfrom = 3\nto = 4\n'), 2, "have the same name"),
 )  # fmt: skip
 # too long for the tests
 SLOW = (

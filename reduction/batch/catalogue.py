@@ -309,13 +309,13 @@ def condition_of(text: str) -> _Condition:
             f"--where names no quantity: '{name}'",
             found=repr(text),
             needed="a name of the vocabulary",
-            hint="`reduction catalogue --list` names those that there are, tables/columns.csv of a "
-            "campaign what each means.",
+            hint="`reduction catalogue --list` lists them; tables/columns.csv of a campaign "
+            "explains them.",
         )
     if not row.unit:
         if operator not in ("=", "!="):
             raise SettingsError(
-                f"'{name}' is a text, which is no greater or less",
+                f"'{name}' is text, which can only be equal or different",
                 found=repr(text),
                 needed=f'"{name} = ..." or "{name} != ..."',
             )
@@ -412,7 +412,7 @@ def _with_quantity(table: pd.DataFrame, catalogue: Catalogue, name: str) -> pd.D
     places = _places(part, name)
     if places:
         raise SettingsError(
-            f"'{name}' stands in several places of a test",
+            f"'{name}' has several values in a test",
             found=f"one number for each {' and '.join(places)}",
             needed=f"--quantity {name}, so that each place is a row",
         )
@@ -532,8 +532,8 @@ def needed_quantities(query: Query) -> tuple[str, ...]:
                 raise SettingsError(
                     f"{option} names no quantity: '{name}'",
                     needed="a name of the vocabulary",
-                    hint="`reduction catalogue --list` names those that there are, "
-                    "tables/columns.csv of a campaign what each means.",
+                    hint="`reduction catalogue --list` lists them; tables/columns.csv of a "
+                    "campaign explains them.",
                 )
     others = (query.column(name) for name in (*(one.name for one in query.where), *query.sort))
     return (*query.asked, *(name for name in dict.fromkeys(others) if name not in query.asked))
@@ -671,7 +671,7 @@ def check_ending(path: Path) -> None:
     """
     if path.suffix.lower() not in (".csv", ".parquet"):
         raise SettingsError(
-            "--export does not know the ending of the file",
+            "--export does not know this file ending",
             found=repr(path.name),
             needed="FILE.csv or FILE.parquet",
         )

@@ -53,7 +53,7 @@ def _look(client: Client) -> None:
         "no worker is left",
         found=f"none, and no test ended for {PATIENCE:.0f} s",
         needed="a worker at the scheduler",
-        hint="Archives that were finished are kept; start workers, and run again to go on.",
+        hint="Archives that were finished are kept; start workers, and run again to continue.",
     )
 
 

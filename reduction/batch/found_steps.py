@@ -85,12 +85,12 @@ def _refuse_one_name(
     ]
     if named:
         raise DataError(
-            f"the log of test '{plan.id}' holds several levels, and {named[0]} names it as one",
+            f"the log of test '{plan.id}' contains several levels, but {named[0]} uses it as one",
             found=", ".join(
                 f"{one.last - one.first + 1} cycles from {one.start:g} to {one.stop:g} s"
                 for one in levels
             ),
-            needed=f"the level that is meant, as a step of [tests.{plan.id}], and its name there",
+            needed=f"that level as a step of [tests.{plan.id}], and the name of this step instead",
             hint=f"Found: {steps}",
         )
 

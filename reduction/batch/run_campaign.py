@@ -366,7 +366,7 @@ def _refuse_name(folder: Path) -> None:
     except UnicodeEncodeError as error:
         raise SettingsError(
             "archives cannot be written to this folder",
-            found=f"{name!a}, a name that {error.encoding} has no letters for",
+            found=f"{name!a}, a name that {error.encoding} cannot represent",
             needed="a path in the character set of this process",
             hint="Rename the folder, or choose another with --processed.",
         ) from error

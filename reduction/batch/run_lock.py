@@ -58,10 +58,10 @@ class RunLock:
             text = error.strerror or type(error).__name__
         if text != self.holder:
             raise ArchiveError(
-                f"{self.path} is not the lock of this run any more",
-                found=text or "that it was given back",
+                f"{self.path} is no longer the lock of this run",
+                found=text or "an empty lock",
                 needed="a folder that every worker can access, and one run at a time in it",
-                hint="Archives that were finished are kept; run again to go on.",
+                hint="Archives that were finished are kept; run again to continue.",
             )
 
 

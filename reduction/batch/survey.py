@@ -100,7 +100,7 @@ def _step_record(record: Record, step: StepPlan, plan: TestPlan) -> Record:
         inside = np.flatnonzero((record.time >= low) & (record.time <= high))
         if inside.size == 0:
             raise DataError(
-                f"step '{step.name}' of test '{plan.id}' holds no row of the log",
+                f"step '{step.name}' of test '{plan.id}' contains no row of the log",
                 found=f"{record.time[0]:g} to {record.time[-1]:g} s in the log",
                 needed=f"rows from {low:g} to {high:g} s",
             )
@@ -109,7 +109,7 @@ def _step_record(record: Record, step: StepPlan, plan: TestPlan) -> Record:
     first, last = step.cycle_range or (1, 1)
     if whole.cycles is None or not 1 <= first <= last <= whole.cycles.n_cycles:
         raise DataError(
-            f"step '{step.name}' of test '{plan.id}' asks for cycles that the log lacks",
+            f"step '{step.name}' of test '{plan.id}' asks for cycles that are not in the log",
             found=f"cycles {first} to {last}",
             needed=f"1 to {0 if whole.cycles is None else whole.cycles.n_cycles}",
         )
@@ -553,7 +553,7 @@ def located_again(campaign: Campaign, survey: Survey) -> Located:
                 raise LogError(
                     campaign.file(survey.plan.files[0][0]),
                     "the file changed while the campaign ran",
-                    found=f"another content than the {survey.n_rows} rows that were read first",
+                    found=f"other content than the {survey.n_rows} rows read at first",
                     needed="raw files that stay as they are",
                 )
             return again.located

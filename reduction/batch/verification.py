@@ -172,8 +172,8 @@ class _Sources:
                 yield _Finding(
                     product, "raw_file", f"{name} is not the file from which it was made",
                     f"sha256 {found.sha256:.16}... of {found.size} bytes", needed,
-                    f"If {name} should not have changed, take a copy of it that is as it was; if "
-                    "it should, run the campaign again.",
+                    f"If {name} should not have changed, restore the original; if it should, run "
+                    "the campaign again.",
                 )  # fmt: skip
 
     def _place(self, archive: str, name: str) -> Path | None:
@@ -241,7 +241,7 @@ def _made_otherwise(
         problem = "another version of the software made it"
         yield _Finding(product, "settings", problem, version, __version__)
     elif settings is not None and before != settings:
-        problem = "it was made with other settings, marks or earlier tests than stand now"
+        problem = "it was made with other settings, marks or earlier tests than there are now"
         pair = json.loads(before or "{}"), json.loads(settings)
         yield _Finding(product, "settings", problem, "; ".join(_differing(*pair)))
 
@@ -264,10 +264,10 @@ def _of_tables(
         names = [path.name for path in made]
         _, other, missing = filecmp.cmpfiles(place, folder / "tables", names, shallow=False)
     findings = [
-        _Finding(f"tables/{name}", "table", "it is not what the archives give") for name in other
+        _Finding(f"tables/{name}", "table", "it differs from the archives") for name in other
     ]
     findings += [
-        _Finding(f"tables/{name}", "missing", "it is not there, and the archives fill it")
+        _Finding(f"tables/{name}", "missing", "it is missing, but the archives fill it")
         for name in missing
     ]
     return len(made), findings

@@ -30,9 +30,9 @@ Result = TypeVar("Result")
 PATIENCE = 60.0
 """Time to wait for a test to end before checking that workers remain. [s]."""
 
-_AGAIN = "Archives that were finished are kept; run again to go on."
+_AGAIN = "Archives that were finished are kept; run again to continue."
 
-_MEMORY = "Most often the memory did not suffice: take fewer workers, or workers with more memory."
+_MEMORY = "The usual cause is too little memory: use fewer workers, or workers with more memory."
 
 # a worker may have several threads, but the netCDF library supports one
 _AT_WORK = threading.Lock()
@@ -139,7 +139,7 @@ def _ended(
         return _Ended(test, value, worker=worker)
     except workers.deadly:
         died = WorkerError(
-            "every worker that began this test died at it",
+            "every worker that began this test died",
             found="more of them lost than the scheduler allows",
             needed="workers that live as long as a test takes",
             hint=_MEMORY,
@@ -162,7 +162,7 @@ def _ended(
 def _died(open_tasks: list[str], workers: Workers) -> WorkerError:
     return WorkerError(
         "a worker process died",
-        found=f"it at work on one of {', '.join(open_tasks[: workers.number])}",
+        found=f"it working on one of {', '.join(open_tasks[: workers.number])}",
         needed="workers that live as long as a test takes",
         hint=f"{_MEMORY} {_AGAIN}",
     )

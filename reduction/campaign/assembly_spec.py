@@ -182,7 +182,7 @@ def _tethers(path: Path, keys: _AssemblyKeys) -> tuple[int, tuple[float, ...]]:
     if keys.free_lengths is not None:
         if keys.free_length is not None:
             raise in_toml(
-                path, "assembly.free_length and free_lengths stand beside each other",
+                path, "assembly.free_length and free_lengths are both stated",
                 needed="one of them",
             )  # fmt: skip
         return len(keys.free_lengths), keys.free_lengths
@@ -198,13 +198,13 @@ def _check_tolerance(path: Path, keys: _AssemblyKeys, n_tethers: int, tolerance:
         )  # fmt: skip
     if keys.free_lengths is not None or n_tethers < 2:
         raise in_toml(
-            path, "assembly.tolerance is of tethers that are all alike",
+            path, "assembly.tolerance applies only to two or more identical tethers",
             found="free_lengths" if keys.free_lengths is not None else "one tether",
             needed="n_tethers = 2 or more",
         )  # fmt: skip
     if not keys.working:
         raise in_toml(
-            path, "assembly.tolerance has no tension at which loads could be shared",
+            path, "assembly.tolerance needs a working tension at which the load is shared",
             needed="[[assembly.working]]",
         )  # fmt: skip
 
@@ -216,7 +216,7 @@ def _splices(path: Path, keys: _SpliceKeys) -> StatedSplices:
         )
     if (keys.strain is None) != (keys.at_tension is None):
         raise in_toml(
-            path, "assembly.splices: a strain belongs to a tension",
+            path, "assembly.splices: strain and at_tension go together",
             found="strain alone" if keys.at_tension is None else "at_tension alone",
             needed="strain and at_tension",
         )  # fmt: skip
@@ -236,7 +236,7 @@ def _working(path: Path, number: int, keys: _WorkingKeys, *, equal: bool) -> Wor
         )  # fmt: skip
     if keys.strain is not None and not equal:
         raise in_toml(
-            path, f"{place}.strain: the tethers differ, and so do their strains",
+            path, f"{place}.strain: tethers of different length have no common strain",
             needed="tension or total_length",
         )  # fmt: skip
     return WorkingLevel(given[0], getattr(keys, given[0]), keys.tension_amplitude)

@@ -361,7 +361,7 @@ def load_spec(path: Path) -> ExperimentSpec:
             _response_unit(name, response.unit)
     twice = sorted(file.factors.keys() & file.responses.keys())
     if twice:
-        raise in_toml(path, "a factor is a response too", found=", ".join(twice))
+        raise in_toml(path, "a name is both a factor and a response", found=", ".join(twice))
     return ExperimentSpec(
         keys=file.experiment,
         factors=tuple(factors),
@@ -549,7 +549,7 @@ def _levels_of_factor(
     share = _SHARE_UNIT.fullmatch(unit)
     if share is not None:
         if basis != ("mean_tension" if share[1] == "of mean" else "rated_break_strength"):
-            refuse(f"{factor.name} is no such share in the plan", f"a unit as {factor.unit}")
+            refuse(f"{factor.name} is no such share in the plan", f"a unit such as {factor.unit}")
         strength = spec.keys.rated_break_strength if spec is not None and axis == "N" else None
         found = values / 100 * (1.0 if strength is None else strength)
     else:
@@ -579,7 +579,7 @@ def _check_levels(
     known = coded[np.isfinite(coded)]
     if known.size and abs(known.mean()) > _OFF_PLAN:
         raise DataError(
-            f"{sheet.path}:{sheet.row[0]} [{column.header}]: the levels of {name} lie beside the "
+            f"{sheet.path}:{sheet.row[0]} [{column.header}]: the levels of {name} are far off the "
             "plan",
             found=f"{known.min():.4g} to {known.max():.4g} coded",
             needed="about -1 to 1",
@@ -658,7 +658,7 @@ def _declared(
     if not factors:
         factors = tuple(_FactorSpec(column.name) for column in free)
         if not factors:
-            raise sheet.fault("the table has no factor", needed="a column a factor")
+            raise sheet.fault("the table has no factor", needed="one column per factor")
     return factors, responses
 
 
@@ -767,7 +767,7 @@ def _blocks(sheet: _CellSheet) -> tuple[tuple[str, ...] | None, list[str]]:
         )  # fmt: skip
     pairs = set(zip(*several.values(), strict=True))
     if len(several) > 1 and len(pairs) > len(set(labels)):
-        return labels, ["blocks are those of the column block; specimens in one are not told apart"]
+        return labels, ["blocks are those of the column block; specimens within one are pooled"]
     return labels, []
 
 

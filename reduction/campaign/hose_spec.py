@@ -165,20 +165,20 @@ def hose_of(path: Path, name: str, place: str, keys: _HoseKeys, cord: CordSectio
     given = keys.layer_diameters if keys.wrap_diameter is None else (keys.wrap_diameter,) * 2
     if given is None or None not in (keys.wrap_diameter, keys.layer_diameters):
         raise in_toml(
-            path, f"{place} does not say once where its cords lie",
+            path, f"{place} needs the position of its cords, stated once",
             found="wrap_diameter and layer_diameters" if given else "neither",
             needed="wrap_diameter, the mean of the two layers, or layer_diameters, one of each",
         )  # fmt: skip
     if keys.dead_length is not None and keys.length is None:
         raise in_toml(
-            path, f"{place}.dead_length stands without length",
+            path, f"{place}.dead_length is stated without length",
             needed='length = "2.4 m", relaxed, stretch-limited ends included',
         )  # fmt: skip
     length = np.nan if keys.length is None else keys.length
     if max(cord.strain, default=0.0) > _MOST_CORD_STRAIN:
         where = "cord" if place == "hose" else f"{place}.cord"
         raise in_toml(
-            path, f"{where}.strain goes beyond what a cord can be stretched",
+            path, f"{where}.strain is more than a cord can stretch",
             found=f"{100 * max(cord.strain):g} %", needed=f"at most {100 * _MOST_CORD_STRAIN:g} %",
             hint='A bare number is a share: 22 % is 0.22 or "22 %".',
         )  # fmt: skip
@@ -200,7 +200,7 @@ def hose_of(path: Path, name: str, place: str, keys: _HoseKeys, cord: CordSectio
         ) from error  # fmt: skip
     if not 0 < keys.strain_step < 1:
         raise in_toml(
-            path, f"{place}.strain_step is not a step", found=f"{keys.strain_step:g}",
+            path, f"{place}.strain_step is out of range", found=f"{keys.strain_step:g}",
             needed='above 0 and below 1, such as "1 %"',
         )  # fmt: skip
     return HosePlan(
@@ -217,7 +217,7 @@ def hose_of(path: Path, name: str, place: str, keys: _HoseKeys, cord: CordSectio
 def _layer(path: Path, place: str, layer: LayerSection) -> HelicalLayer:
     if not 0 < layer.wrap_angle < pi / 2:
         raise in_toml(
-            path, f"{place}.wrap_angle lies across the axis or along it",
+            path, f"{place}.wrap_angle is out of range",
             found=f"{math.degrees(layer.wrap_angle):g} deg",
             needed="between 0 and 90 deg, from the hose axis",
         )  # fmt: skip
@@ -228,7 +228,7 @@ def _layer(path: Path, place: str, layer: LayerSection) -> HelicalLayer:
     # comparison with NaN is false, so unstated limits cause no error
     if limits[0] < 0 or limits[1] < 0 or limits[1] >= 1:
         raise in_toml(
-            path, f"{place} has a limit that no layer has",
+            path, f"{place} has an impossible strain limit",
             found=f"{limits[0]:g} in tension, {limits[1]:g} in compression",
             needed="positive numbers, compression below 100 %",
         )  # fmt: skip
@@ -244,12 +244,12 @@ def _uncertainties(
         where = f"{place}.standard_uncertainty.{key}"
         if key not in _DIMENSIONS:
             raise in_toml(
-                path, f"{where} is not a number of a hose that can have an uncertainty",
+                path, f"{where} is not a hose parameter that can have an uncertainty",
                 needed="one of " + ", ".join(_DIMENSIONS),
             )  # fmt: skip
         if key in ("wrap_diameter", "layer_diameters") and getattr(keys, key) is None:
             raise in_toml(
-                path, f"{where} stands without {key}",
+                path, f"{where} is stated without {key}",
                 needed="the key that the hose has",
             )  # fmt: skip
         name = _PARAMETERS.get(key, key)

@@ -64,8 +64,8 @@ def _check_names(path: Path, campaign: str, tests: Mapping[str, TestPlan]) -> No
     for name in (campaign, *tests):
         if _DEVICE.fullmatch(name):
             raise in_toml(
-                path, "a name is that of a device on Windows", found=repr(name),
-                needed="another name: it becomes one of a file or of a folder",
+                path, "a name is reserved for a device on Windows", found=repr(name),
+                needed="another name: it is used for a file or a folder",
             )  # fmt: skip
     seen = dict.fromkeys(OF_CAMPAIGN, "")
     for name in tests:
@@ -77,15 +77,15 @@ def _check_names(path: Path, campaign: str, tests: Mapping[str, TestPlan]) -> No
             )  # fmt: skip
         if other != name:
             raise in_toml(
-                path, "the names of two tests differ in capital letters only",
-                found=f"'{other}' and '{name}'", needed="names that are two on every disk",
+                path, "the names of two tests differ only in capital letters",
+                found=f"'{other}' and '{name}'", needed="names that are different on every disk",
             )  # fmt: skip
     for name, test in tests.items():
         if len({step.product(name).casefold() for step in test.steps}) < len(test.steps):
             raise in_toml(
-                path, f"two steps of test '{name}' have one name",
-                needed="names that are two on every disk",
-                hint="Blanks and hyphens, small and capital letters count as equal.",
+                path, f"two steps of test '{name}' have the same name",
+                needed="names that are different on every disk",
+                hint="Blanks count as hyphens, and small letters as capitals.",
             )  # fmt: skip
 
 
@@ -164,19 +164,19 @@ def _cross_section(path: Path, place: str, section: SpecimenSection) -> tuple[fl
         )  # fmt: skip
     if bool(width) != bool(thickness):
         raise in_toml(
-            path, f"{place}.{'width' if width else 'thickness'} stands alone",
+            path, f"{place}.{'width' if width else 'thickness'} is stated alone",
             needed="width and thickness",
         )  # fmt: skip
     if width:
         if len(width) != len(thickness) and 1 not in (len(width), len(thickness)):
             raise in_toml(
                 path, f"{place}: readings of width and thickness are not of the same places",
-                found=f"{len(width)} and {len(thickness)}", needed="as many of one as of the other",
+                found=f"{len(width)} and {len(thickness)}", needed="the same number of both",
             )  # fmt: skip
         return tuple((np.array(width) * np.array(thickness)).tolist())
     if section.density is not None:
         if section.linear_density is None:
-            raise in_toml(path, f"{place}.density stands alone", needed="linear_density beside it")
+            raise in_toml(path, f"{place}.density is stated alone", needed="linear_density too")
         return (section.linear_density / section.density,)
     return _readings(section.area)
 
@@ -193,12 +193,12 @@ def _specimen_of(path: Path, name: str, section: SpecimenSection) -> Specimen:
         )  # fmt: skip
     if section.gauge_length is None and section.gauge_length_standard_uncertainty is not None:
         raise in_toml(
-            path, f"{place}.gauge_length_standard_uncertainty stands alone",
+            path, f"{place}.gauge_length_standard_uncertainty is stated alone",
             needed="gauge_length beside it",
         )  # fmt: skip
     if section.gauge_length is None and section.reference_tension is not None:
         raise in_toml(
-            path, f"{place}.reference_tension stands alone",
+            path, f"{place}.reference_tension is stated alone",
             needed="gauge_length beside it, the length under that tension",
         )  # fmt: skip
     sizes = {"area", "width", "thickness", "density"}
@@ -207,7 +207,7 @@ def _specimen_of(path: Path, name: str, section: SpecimenSection) -> Specimen:
     given["cross_section"] = _cross_section(path, place, section)
     if section.stretched_diameter and not section.diameter:
         raise in_toml(
-            path, f"{place}.stretched_diameter stands alone",
+            path, f"{place}.stretched_diameter is stated alone",
             needed="diameter beside it, the readings before stretch",
         )  # fmt: skip
     stretched = [
@@ -704,9 +704,9 @@ def _addresses(path: Path, tests: Mapping[str, TestSection]) -> dict[str, str]:
             name = shown_address(entry)
             if found.setdefault(name, entry) != entry:
                 raise in_toml(
-                    path, "two addresses of logs differ only in what is not shown of them",
+                    path, "two addresses of logs differ only in parts that are not stored",
                     found=repr(name), needed="another path for each log",
-                    hint="User, password and what stands behind ? or # are not kept.",
+                    hint="User, password and everything after ? or # are not stored.",
                 )  # fmt: skip
     return found
 

@@ -340,7 +340,7 @@ def report_details(
         )  # fmt: skip
     if section.limits and section.decision_rule is None:
         raise in_toml(
-            path, "report.limits are given, but no rule by which conformity is decided",
+            path, "report.limits are given, but no decision rule for conformity",
             needed='report.decision_rule = "simple acceptance" or "guard band"',
         )  # fmt: skip
     return ReportDetails(

@@ -185,7 +185,7 @@ def _value(
         raise row.fault(
             "a row has no value" if not filled else "a row has two values",
             (filled or columns)[-1].header, needed="one value",
-            hint=None if filled else "A test that gave none has valid = no.",
+            hint=None if filled else "For a test that gave no value, set valid = no.",
         )  # fmt: skip
     (column,) = filled
     unit = row.cells.get("unit", "").strip() if column.unit is None else column.unit

@@ -77,7 +77,7 @@ def read_csv_rows(
         cells = split_row(line)
         if cells is None:
             raise fault(
-                path, f"a row of {what} cannot be parted into cells", row=number,
+                path, f"a row of {what} cannot be split into cells", row=number,
                 found=repr(cut(line, 60)),
                 needed="one line per row, with every quote closed, no cell of 131,072 characters",
             )  # fmt: skip

@@ -39,7 +39,7 @@ def list_budgets(path: Path, *, output: CommandOutput) -> None:
         output.show(table)
     else:
         output.say(
-            f"{path.name} has no errors that its numbers share, and no budgets: what it has is of "
+            f"{path.name} has no shared errors, and so no budgets: its uncertainties are of "
             "scatter alone"
         )
     output.answer(
@@ -78,7 +78,7 @@ def show_budget(path: Path, quantity: str, places: Sequence[str], *, output: Com
     if drawn is not None:
         output.say(
             f"the archive states {short(drawn * scale, 3)} {unit}, by Monte Carlo: this budget is "
-            "of first order, which does not hold here"
+            "of first order, which is not accurate here"
         )
     output.answer(_document(budget, synthetic))
 

@@ -519,7 +519,7 @@ def _say_run(result: CampaignResult, name: str, output: CommandOutput) -> None:
         )
     for path in result.superseded:
         output.error(
-            f"{path}: nothing in this campaign makes it now; moved there, and no answer rests on it"
+            f"{path}: this campaign no longer makes it; moved there, and no answer uses it"
         )
     has_failed = bool(result.tests) and all(one.status == "failed" for one in result.tests)
     output.say(f"archives: {'none; all tests failed' if has_failed else result.processed}")
@@ -527,7 +527,7 @@ def _say_run(result: CampaignResult, name: str, output: CommandOutput) -> None:
         number, folder = len(result.tables) - 1, result.tables[0].parent
         output.say(f"tables:   {folder}: {number} tables, and columns.csv, which explains them")
     if result.report is None:
-        output.say("report:   none; nothing was made that could be shown")
+        output.say("report:   none; there is nothing to show")
     else:
         output.say(f"report:   {result.report}{', which says why' if has_failed else ''}")
         _say_client_report(_client_report(result.report), output)

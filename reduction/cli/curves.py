@@ -462,7 +462,7 @@ def _model(path: Path, case: AssemblyCase, source: PieceSource) -> StrainModel:
     if case.splices is None:
         if source.model is None or source.model.method == "extensometer":
             raise in_toml(
-                path, f"assembly.splices: the tests of {source.name} do not know the splices",
+                path, f"assembly.splices: the tests of {source.name} do not give the splices",
                 found="no strain method with a length" if source.model is None
                 else "strain of an extensometer",
                 needed="[assembly.splices], with length = \"0 m\" where there are none",
@@ -472,7 +472,7 @@ def _model(path: Path, case: AssemblyCase, source: PieceSource) -> StrainModel:
     length = case.free_lengths[0] if case.free_lengths else tested
     if not np.isfinite(length):
         raise in_toml(
-            path, f"assembly.free_length: the tests of {source.name} do not know it",
+            path, f"assembly.free_length: the tests of {source.name} do not give it",
             needed="free_length, or free_lengths",
         )  # fmt: skip
     return stated_model(case.splices, length, name=source.name)

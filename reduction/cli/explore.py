@@ -23,7 +23,7 @@ def serve(
     """Serve the page of a campaign until Ctrl-C or a request of the system to end."""
     if output.quiet and not opens:
         raise SettingsError(
-            "the address would be shown nowhere",
+            "the address would not be shown anywhere",
             found="--quiet and --no-browser",
             needed="at most one of them",
         )

@@ -81,7 +81,7 @@ def lines_of_source(source: str) -> list[LineSource]:
         if not lines:
             contains = "archives contain" if path.is_dir() else "archive contains"
             raise ArchiveError(
-                f"the {contains} nothing that can be looked up", found=str(path),
+                f"the {contains} nothing to look up", found=str(path),
                 needed="moduli of a cyclic test, a slow pull, or surfaces of an experiment",
             )  # fmt: skip
         return lines

@@ -445,7 +445,7 @@ def lookup(
             asked = [name for name, said in ways.items() if said is not None]
             if len(asked) > 1 or (rank and (table or out is not None)):
                 raise SettingsError(
-                    "a look-up has one way to put lines together",
+                    "only one option that combines lines is allowed",
                     found=" and ".join([*asked, *(["--table or --out"] if rank else [])]),
                     needed="one of them, and of --rank a single load on the screen",
                 )

@@ -125,7 +125,7 @@ def predict_hose(path: Path, *, out: Path | None, output: CommandOutput) -> None
     if target is not None:
         _show_designs(designs, target, output)
         if all(one.refusal for one in designs):
-            output.error(f"{path}: target: no hose like this one does that")
+            output.error(f"{path}: target: no hose of this design reaches it")
             output.raise_status(SettingsError.exit_status)
     if out is not None:
         write_hoses(

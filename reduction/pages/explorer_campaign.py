@@ -98,18 +98,18 @@ _SHARE = _Slider(0.5, 1.0, 0.005)
 SETTINGS: tuple[Setting, ...] = (
     Setting(
         "cycles.trim_threshold", "Trim and cycles",
-        "rate over plateau that keeps a sample: higher cuts more of both ends",
+        "share of the plateau rate above which a sample is kept: higher trims more of both ends",
         slider=_SHARE, kinds=_CYCLIC,
     ),
     Setting(
-        "cycles.break_in_cycles", "Trim and cycles", "first cycles left out of every mean",
+        "cycles.break_in_cycles", "Trim and cycles", "first cycles not used in any mean",
         slider=_Slider(0, 20, 1), kinds=_CYCLIC,
     ),
     Setting(
-        "cycles.band", "Trim and cycles", "smallest range that makes a reversal", kinds=_CYCLIC
+        "cycles.band", "Trim and cycles", "smallest range that counts as a reversal", kinds=_CYCLIC
     ),
     Setting(
-        "waveform", "Trim and cycles", "how ends are trimmed and the loop area is taken",
+        "waveform", "Trim and cycles", "how ends are trimmed and the loop area is computed",
         choices=("triangular", "sinusoidal", "other"), kinds=_CYCLIC,
     ),
     Setting(
@@ -125,7 +125,7 @@ SETTINGS: tuple[Setting, ...] = (
         slider=_Slider(0.5, 30.0, 0.5, "%"),
     ),
     Setting(
-        "modulus.minimum_count", "Modulus windows", "fewest samples in a window that give a slope"
+        "modulus.minimum_count", "Modulus windows", "fewest samples in a window for a slope"
     ),
     Setting(
         "modulus.maximum_segments", "Modulus windows", "most straight segments tried",
@@ -150,7 +150,7 @@ SETTINGS: tuple[Setting, ...] = (
     Setting("phases.minimum_duration", "Phases", "shortest standstill"),
     Setting("phases.position_tolerance", "Phases", "range of position inside a standstill"),
     Setting("phases.tension_tolerance", "Phases", "range of tension inside a hold at one tension"),
-    Setting("phases.slack_tension", "Phases", "a standstill at or below it is a rest"),
+    Setting("phases.slack_tension", "Phases", "tension at or below which a standstill is a rest"),
     Setting("holds.minimum_duration", "Holds", "shortest hold for relaxation results"),
     Setting(
         "holds.maximum_terms", "Holds", "most Prony terms tried", slider=_Slider(1, 5, 1)
@@ -158,15 +158,15 @@ SETTINGS: tuple[Setting, ...] = (
     Setting("holds.times", "Holds", "times after the ramp at which tension is given"),
     Setting("rope.last_cycles", "Rope", "last cycles that give the dynamic stiffness"),
     Setting("rope.reference_time", "Rope", "time after loading of the static stiffness"),
-    Setting("rope.failure_share", "Rope", "share of the median peak below which it failed"),
+    Setting("rope.failure_share", "Rope", "share of the median peak below which it has failed"),
     Setting("slip.minimum_cycles", "Slips", "shortest test that is searched for slips",
             kinds=_CYCLIC),
     Setting("slip.false_alarm", "Slips", "chance that a sound specimen shows a slip",
             kinds=_CYCLIC),
-    Setting("quality.stuck_samples", "Flags", "equal values that are stuck"),
-    Setting("quality.spike_factor", "Flags", "deviations off both neighbours that are a spike"),
-    Setting("quality.gap_factor", "Flags", "median steps that are a gap"),
-    Setting("quality.rate_tolerance", "Flags", "share by which a step may differ"),
+    Setting("quality.stuck_samples", "Flags", "number of equal values that count as stuck"),
+    Setting("quality.spike_factor", "Flags", "deviation from both neighbours that is a spike"),
+    Setting("quality.gap_factor", "Flags", "number of median time steps that count as a gap"),
+    Setting("quality.rate_tolerance", "Flags", "share by which a time step may vary"),
 )  # fmt: skip
 
 _BY_KEY = {one.key: one for one in SETTINGS}
@@ -216,8 +216,8 @@ def _edited(text: str, changes: Mapping[Keys, Value | None]) -> str:
             is_meant = False
         if not is_meant:
             raise SettingsError(
-                "campaign.toml is written in a way that is not changed here",
-                needed=f"the line taken out by hand: {_dotted(path)}"
+                "campaign.toml is written in a way that cannot be edited here",
+                needed=f"the line removed by hand: {_dotted(path)}"
                 if value is None
                 else f"the line written by hand: {_line(path, value)}",
             )

@@ -307,7 +307,7 @@ def _with_separators(path: Path, lines: _BlockLines, layout: Layout) -> Layout:
             "the first line does not state a decimal mark",
             row=1,
             found=f"'{first}'",
-            needed="MTS793|MPT|ENU|1|2|.|/|: and so on, the mark in the sixth place",
+            needed="MTS793|MPT|ENU|1|2|.|/|: ..., with the mark in the sixth field",
         )
     if "decimal" in layout.model_fields_set and layout.decimal != mark:
         raise LogError(
@@ -316,7 +316,7 @@ def _with_separators(path: Path, lines: _BlockLines, layout: Layout) -> Layout:
             row=1,
             found=f"'{mark}'",
             needed=f"'{layout.decimal}', as the layout declares",
-            hint="Leave decimal out of the layout: an MTS file says it itself.",
+            hint="Leave decimal out of the layout: an MTS file states it itself.",
         )
     changes = {"decimal": mark}
     if layout.thousands == mark:

@@ -369,8 +369,8 @@ def propose_channels(columns: Sequence[SeenColumn]) -> _Proposal:
     if n_tests > 1:
         columns = columns[: len(columns) // n_tests]
         remarks.append(
-            f"guess: {n_tests} tests stand side by side: this layout is that of the first, columns"
-            f" 1 to {len(columns)}; each of the others needs a layout with its own columns"
+            f"guess: {n_tests} tests are side by side: this layout is for the first, columns 1 to"
+            f" {len(columns)}; each of the others needs a layout with its own columns"
         )
     first = columns[0] if columns and not any(column.name for column in columns) else None
     if first is not None and first.values.size > 1 and np.all(np.diff(first.values) > 0):
@@ -445,8 +445,8 @@ def propose_channels(columns: Sequence[SeenColumn]) -> _Proposal:
         if key == "crosshead_position" or key.startswith("tension.")
     ):
         remarks.append(
-            f"guess: {_label(extremes[0])} and {_label(extremes[1])} are extremes of each cycle, by"
-            " their names: such a table has no loops, so take the log of the readings"
+            f"guess: by their names, {_label(extremes[0])} and {_label(extremes[1])} are extremes"
+            " of each cycle: such a table has no loops, so use the log of the readings"
         )
     lines += [
         f"# not used: column {column.number}{_described(column)}"

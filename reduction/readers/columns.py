@@ -133,9 +133,9 @@ def _order_to_set(texts: Sequence[str]) -> str | None:
     if orders is None:
         return None
     if len(orders) == 1:
-        return f'Set date_order = "{orders[0]}" for the time: no other order makes dates of them.'
+        return f'Set date_order = "{orders[0]}" for the time: no other order gives valid dates.'
     return (
-        'Set date_order = "month first" or "day first" for the time: of a date with slashes or '
+        'Set date_order = "month first" or "day first" for the time: in a date with slashes or '
         "dashes, the first number may be either."
         if orders
         else "Neither number of these dates is a month in every row."
@@ -267,7 +267,7 @@ def find_column(
     if places:
         raise LogError(
             path,
-            f"column '{wanted.column}' is {len(places)} times in {where}",
+            f"column '{wanted.column}' appears {len(places)} times in {where}",
             row=row,
             channel=wanted.key,
             found="numbers " + ", ".join(str(place + 1) for place in places),
@@ -290,14 +290,14 @@ def _why_not_there(wanted: str, names: Sequence[str], *, is_text: bool) -> str |
     for mark in ";,\t|":
         if any(wanted in map(str.strip, name.split(mark)) for name in names if mark in name):
             shown = {"\t": "\\t"}.get(mark, mark)
-            return f'The names are parted by "{shown}": set delimiter = "{shown}".'
+            return f'The names are separated by "{shown}": set delimiter = "{shown}".'
     alike = [name for name in names if name.casefold() == wanted.casefold()]
     if alike:
         return f"It is spelled '{alike[0]}' there."
     if is_text:
         return (
             "Lines above the names (a preamble of the logger) are skipped with preamble_rows = N,"
-            " or with comment where they begin with a mark."
+            " or with comment if they begin with a mark."
         )
     return None
 
@@ -341,8 +341,8 @@ def check_unit(path: Path, wanted: DeclaredColumn, found: str, *, row: int | Non
         channel=str(wanted.column),
         found=f"'{found.strip()}'",
         needed=f"'{wanted.unit}', as the layout declares",
-        hint=f"Declare the unit of the file, or, of a column in another quantity, such as % of the "
-        f"break strength or stress, state factor: what 1 of it is in {wanted.unit}.",
+        hint=f"Declare the unit of the file. For a column of another quantity, such as stress or % "
+        f"of break strength, state factor: the value of 1 of it in {wanted.unit}.",
     )
 
 
@@ -458,7 +458,7 @@ def _check_dimension_in_name(path: Path, want: DeclaredColumn, stated: str) -> N
         found=f"'{stated}'",
         needed=f"'{want.unit}' or another unit of {want.dimension}",
         hint=(
-            "Set unit and factor of the channel to what the amplifier gives for a volt."
+            "Set unit and factor of the channel to the value of one volt of the amplifier."
             if of == "voltage"
             else "Are two columns swapped in the layout? Otherwise give the column by its number."
         ),
@@ -647,7 +647,7 @@ def matrix_table(
     for what, texts in (("names", names), ("units", units)):
         if texts is not None and len(texts) != n_columns:
             raise LogError(
-                path, f"{where} has another number of columns than of {what}",
+                path, f"the number of columns of {where} is not its number of {what}",
                 found=f"{n_columns} columns, {what} {', '.join(texts)}",
                 needed=f"{n_columns} {what}",
             )  # fmt: skip

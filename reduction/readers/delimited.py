@@ -229,7 +229,7 @@ def _count_fields(path: Path, head: _Head, layout: Layout) -> int:
             f"the first data row has {n_fields} fields, the name row has {n_names}",
             row=head.first_row,
             found=f"'{head.first_line.strip()[:60]}'",
-            needed=f"{n_names} fields parted by {layout.delimiter!r}",
+            needed=f"{n_names} fields separated by {layout.delimiter!r}",
             hint="Check delimiter, decimal and preamble_rows of the layout.",
         )
     return n_fields

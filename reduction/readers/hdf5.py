@@ -136,11 +136,11 @@ def _plain(path: Path, dataset: h5py.Group | h5py.Dataset) -> h5py.Dataset:
     if not isinstance(dataset, h5py.Dataset):
         problem, found = "is a group, not a data set", "a group"
     elif (found := _no_type(dataset)) is not None:
-        problem = "has values of a type that is none"
+        problem = "has values of a type that cannot be read"
     elif dataset.shape is None or dataset.shape == ():
         problem, found = "is a single value, not a series", f"shape {dataset.shape}"
     elif dataset.is_virtual or dataset.external:
-        problem, found = "keeps its values in other files", "external storage"
+        problem, found = "stores its values in other files", "external storage"
     elif any(key in dataset.attrs for key in _PACKED):
         problem, found = "is packed", ", ".join(key for key in _PACKED if key in dataset.attrs)
     elif (found := _not_written(dataset)) is not None:

@@ -204,8 +204,8 @@ def _entry(path: Path, content: Any, key: str, setting: str) -> Any:
                 path,
                 f"there is no key '{key}'",
                 found=_keys(found),
-                needed=f"the key that the layout gives as {setting}, or the keys down to it, parted"
-                " by points",
+                needed=f"the key that the layout gives as {setting}, or the keys down to it,"
+                " separated by dots",
             )
     return found
 

@@ -203,7 +203,7 @@ class Layout(BaseModel):
         self._check_load_train()
         if self.ends_at and self.format not in ("delimited", "spreadsheet"):
             raise SettingsError(
-                f"ends_at says nothing of a layout of {self.format}",
+                f"ends_at does not apply to format {self.format}",
                 found=f"ends_at = {self.ends_at!r}",
                 needed="delimited or spreadsheet, or no ends_at",
             )
@@ -316,7 +316,7 @@ def check_regular(path: Path, mode: int) -> None:
     if not stat.S_ISREG(mode):
         raise LogError(
             path,
-            "this is not a file that can be read",
+            "this is not a readable file",
             found=_KINDS.get(stat.S_IFMT(mode), "something else"),
             needed="a regular file",
         )
@@ -372,7 +372,7 @@ most. If that is what was logged, raise columns under [limits] of campaign.toml.
         """
         if n_bytes > self.limits.unpacked_size:
             raise self._beyond(
-                "unpacked_size", f"{what} unpacks to more than the memory it may take",
+                "unpacked_size", f"{what} unpacks to more memory than is allowed",
                 f"{n_bytes:,} bytes", f"{self.limits.unpacked_size:,} bytes at most",
             )  # fmt: skip
 
@@ -400,14 +400,14 @@ most. If that is what was logged, raise columns under [limits] of campaign.toml.
     def too_much_memory(self) -> LogError:
         """Error for a file whose reader was refused more memory."""
         return self._beyond(
-            "unpacked_size", "the file takes more memory than it may", "more when it is read",
+            "unpacked_size", "the file takes more memory than is allowed", "more while it was read",
             f"{self.limits.unpacked_size:,} bytes at most", before=_DAMAGED,
         )  # fmt: skip
 
     def broken(self, found: str) -> LogError:
         """Error for a file that terminated the reader process."""
         return self._beyond(
-            "unpacked_size", "the library that reads this format broke at the file", found,
+            "unpacked_size", "the library that reads this format crashed on the file", found,
             f"an intact file that takes {self.limits.unpacked_size:,} bytes of memory at most",
             before=_DAMAGED,
         )  # fmt: skip

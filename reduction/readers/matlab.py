@@ -79,7 +79,7 @@ def _numbers(value: Any) -> Iterator[NDArray[Any]]:
 
 
 OF_MATLAB_ALONE = (
-    "A table or timetable can be read by MATLAB alone: save it as a struct of columns, "
+    "Only MATLAB can read a table or timetable: save it as a struct of columns, "
     "table2struct(T, 'ToScalar', true)."
 )
 """Advice for an object of one of MATLAB's own classes."""

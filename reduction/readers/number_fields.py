@@ -253,38 +253,36 @@ def _what_to_set(found: str, want: DeclaredColumn, layout: Layout) -> str:
     is_parted = not layout.thousands and _GROUPS[parted].fullmatch(found) is not None
     has_comma = layout.decimal == "." and _COMMA.fullmatch(found) is not None
     if is_parted and has_comma:
-        return (
-            'Set thousands = "," where the comma parts groups, or decimal = "," where it does not.'
-        )
+        return 'Set thousands = "," if the comma separates groups, or decimal = "," if it does not.'
     if is_parted:
-        return f'Set thousands = "{parted}" where it parts groups of three digits.'
+        return f'Set thousands = "{parted}" if it separates groups of three digits.'
     by_blanks = None if layout.thousands else _BY_BLANKS.fullmatch(found)
     if by_blanks:
         mark = by_blanks["mark"]
         written = mark if mark.isascii() else f"\\u{ord(mark):04x}"
-        return f'Set thousands = "{written}" where it parts groups of three digits.'
+        return f'Set thousands = "{written}" if it separates groups of three digits.'
     if has_comma:
         no_groups = ' and thousands = ""' if layout.thousands == "," else ""
-        return f'Set decimal = ","{no_groups} where the comma is a decimal mark.'
+        return f'Set decimal = ","{no_groups} if the comma is a decimal mark.'
     if want.key == "time" and _DATE.match(found):
         return (
-            'Set unit = "clock" where it is a time of day (09:45:30); of dates take another column '
-            "for the time, or sample_interval."
+            'Set unit = "clock" if it is a time of day (09:45:30); if it is a date, use another '
+            "column for the time, or sample_interval."
         )
     if found == str(want.column).strip():
         return (
             "This row repeats the names: the logger wrote its header a second time, so it was"
-            " started again. Make two logs of it, one from each header."
+            " restarted. Split the file into two logs, one from each header."
         )
     if layout.decimal == "," and re.fullmatch(r"[+-]?\d*\.\d+([eE][+-]?\d+)?", found):
         no_groups = ' and thousands = ""' if layout.thousands == "." else ""
-        return f'Set decimal = "."{no_groups} where the point is a decimal mark.'
+        return f'Set decimal = "."{no_groups} if the point is a decimal mark.'
     if _is_unit(found, want.dimension):
         return (
-            "Set has_unit_row = true where this is a row of units; preamble_rows = N skips rows "
+            "Set has_unit_row = true if this is a row of units; preamble_rows = N skips rows "
             "above the names."
         )
-    missing = "Add it to the missing marks of the layout where it means missing."
+    missing = "Add it to the missing marks of the layout if it means missing."
     if want.key == "time" and found[:1].isalpha():
         return f"{missing} {_table_ends_at(found)}"
     return missing
@@ -292,7 +290,7 @@ def _what_to_set(found: str, want: DeclaredColumn, layout: Layout) -> str:
 
 def _table_ends_at(text: str) -> str:
     """Advice for a line of words below the table."""
-    return f'Where the table ends above this line, set ends_at = "{cut(text, 30)}" in the layout.'
+    return f'If the table ends above this line, set ends_at = "{cut(text, 30)}" in the layout.'
 
 
 AT_A_TIME = 2

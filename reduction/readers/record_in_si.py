@@ -464,11 +464,11 @@ def _check_slip(piece: _Piece, last: int, top: float) -> None:
         "the log has two time bases: time starts again",
         found=f"{after[0]:g} s after {time[last]:g} s"
         + ("" if place else f" at {piece.row_of(last + 1)}"),
-        needed="one time that goes on",
+        needed="one time that keeps rising",
         hint=f"The clock restarts every {wraps[0]:g} s: at each restart, add that much to the time "
         "of all later rows."
         if wraps
-        else "Split the log, and give each part a test of its own.",
+        else "Split the log, and make each part a separate test.",
         **place,
     )
 
@@ -655,8 +655,8 @@ def _check_order(pieces: Sequence[_Piece]) -> None:
                 "the pieces of a record have two time bases",
                 found=f"{after.log.source.name} from {start:g} s, "
                 f"{before.log.source.name} to {end:g} s",
-                needed="pieces in order, whose time goes on",
-                hint="Give pieces that each count from zero tests of their own.",
+                needed="pieces in order, in which time keeps rising",
+                hint="If each piece counts time from zero, make it a separate test.",
             )
         if set(before.values) != set(after.values):
             raise SettingsError(
@@ -696,11 +696,11 @@ def _check_size(part: Floats, piece: _Piece, key: str) -> None:
     )
     if absurd.size:
         raise DataError(
-            f"{key} has {absurd.size} values that nothing measures, "
+            f"{key} has {absurd.size} values that no instrument can read, "
             f"first at {piece.row_of(int(absurd[0]))}",
             found=f"{part[absurd[0]]:g} in SI",
             needed=f"at most {_ABSURD:g}",
-            hint="Check the unit and the column; a value that stands for none belongs to missing.",
+            hint="Check the unit and the column; add a value that means missing to missing.",
         )
 
 
@@ -710,7 +710,7 @@ def _check_clock(piece: _Piece) -> None:
     if low < -_ABSURD_TIME or high > _ABSURD_TIME:
         value = low if low < -_ABSURD_TIME else high
         raise DataError(
-            f"the time of {piece.log.source.name} has values that no clock shows",
+            f"the time of {piece.log.source.name} has values that no clock can show",
             found=f"{value:g} s",
             needed=f"at most {_ABSURD_TIME:g} s",
             hint="Check the unit and the column of the time channel.",

@@ -93,7 +93,7 @@ def fetch(address: str, target: Path, *, fault: Fault = LogError) -> None:
             )  # fmt: skip
         elif before[0] not in (None, size):
             told = fault(
-                shown, "the transfer broke off", found=f"{size} bytes",
+                shown, "the transfer was interrupted", found=f"{size} bytes",
                 needed=f"{before[0]} bytes", hint="Run again.",
             )  # fmt: skip
     except Exception as error:
@@ -162,11 +162,11 @@ def _fault_of(error: Exception, address: str, fault: Fault) -> ReductionError:
         hint = "Free some space, or name another folder in the variable TMPDIR."
     elif status in (401, 403) or _is_any(chain, PermissionError) or _has_word(names, _CLOSED):
         problem = "there is no permission: it cannot be read"
-        needed = "credentials as the package of this kind of address takes them"
+        needed = "credentials for the package that reads this kind of address"
     elif isinstance(error, IsADirectoryError):
         problem, found, needed = "it is a folder", None, "the address of a file"
     elif _is_any(chain, ConnectionError, TimeoutError) or _has_word(names, _CUT_OFF):
-        problem = "its host cannot be reached, or the transfer broke off"
+        problem = "its host cannot be reached, or the transfer was interrupted"
     elif status == 404 or (status is None and isinstance(error, FileNotFoundError)):
         problem, found, needed = "there is no such file", None, "the address of a file"
     else:

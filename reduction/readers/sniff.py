@@ -235,7 +235,7 @@ def _decode(path: Path, head: bytes) -> tuple[str, str, str]:
     words = {name: _n_foreign(text) for name, text in texts.items()}
     best = max(words, key=lambda name: words[name])
     if words[best]:
-        return texts[best], best, f"guess: encoding {best}, in which words of a log are read"
+        return texts[best], best, f"guess: encoding {best}, because it gives words that logs use"
     return texts["latin-1"], "latin-1", "guess: encoding latin-1, because it is not UTF-8"
 
 
@@ -364,7 +364,7 @@ def _look_at_text(path: Path) -> _SeenTable:
     found = _best_table(_without_comments(lines, comment))
     if found is None:
         raise LogError(
-            path, "no table of numbers stands at the start of the file",
+            path, "no table of numbers at the start of the file",
             found=f"{len(lines)} lines", needed="rows of two or more numbers",
         )  # fmt: skip
     delimiter, decimal, table = found
@@ -465,7 +465,7 @@ def _look_at_sheet(path: Path, sheet: str | None, watch: Watch) -> _SeenTable:
     remarks = [f"guess: the log is on sheet '{name}'"] if sheet is None else []
     if sheet is None and len(found) > 1:
         others = ", ".join(repr(other) for other, _ in found if other != name)
-        remarks.append(f"sure: tables stand also on {others}")
+        remarks.append(f"sure: there are also tables on {others}")
     settings: dict[str, object] = {"sheet": name}
     top = table.start if table.name_row is None else table.name_row
     if top:
@@ -665,7 +665,7 @@ def _look_at_json(path: Path, watch: Watch) -> _SeenTable:
     if isinstance(rows, dict):
         settings = {"group": place} if place else {}
         columns = _columns_of(rows)
-        remark = "sure: columns stand in an object"
+        remark = "sure: the columns are in an object"
     elif isinstance(rows[0], dict):
         names = list(dict.fromkeys(key for row in rows[:_ROWS] for key in row))
         columns = _columns_of({name: [row.get(name) for row in rows[:_ROWS]] for name in names})
@@ -835,7 +835,7 @@ def sniff_layout(path: Path, *, name: str = "log", sheet: str | None = None) -> 
         lines.append(f'sample_interval = "{UNKNOWN}"  # or a time channel below')
         remarks.append("unknown: the time between rows, because no column looks like time")
         said = [line for line in seen.preamble if _RATES.search(line) and _OWN_NUMBER.search(line)]
-        remarks += [f"unknown: the log says of it: {line}" for line in said[:_MOST_SAID]]
+        remarks += [f"unknown: the log says about it: {line}" for line in said[:_MOST_SAID]]
     lines += [f"[layouts.{name}.channels]", *proposal.lines, ""]
     return SniffedLayout("\n".join(lines), tuple(remarks), proposal.keys, seen.preamble)
 

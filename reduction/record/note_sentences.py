@@ -115,26 +115,26 @@ _OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "interpolated-by-logger": (
         "warning",
-        "{channel} lies on straight lines from every few rows to the next: it was read less often"
-        " than it was logged, and interpolated. That cuts its peaks off, and noise looks less than"
-        " it is, so that intervals are too narrow: log at the channel's own rate",
+        "{channel} runs in straight lines over a few rows each: it was sampled less often than it"
+        " was logged, and interpolated. This clips its peaks and hides its noise, so intervals are"
+        " too narrow. Log at the channel's own rate",
     ),
     "read-less-often": (
         "warning",
         "{channel} has a new reading every {interval:.3g} s, which the log repeats in {every:.0f}"
-        " rows: of its {n_rows} rows only those with a new one are used. It may still be late by up"
-        " to a row, {step:.3g} s, which is in the interval as a lag: log at the channel's own rate",
+        " rows: of its {n_rows} rows only those with a new reading are used. A reading may still be"
+        " up to one row ({step:.3g} s) late; the interval includes this as a lag. Log at the"
+        " channel's own rate",
     ),
     "rows-sorted": (
         "note",
         lambda n_rows, n_twice, n_moved: (
-            "the log was written newest first, so that its time falls: its rows are taken from the"
-            " last to the first"
+            "the log was written newest first: its rows are read in reverse order"
             if n_moved == n_rows - n_twice - 1
-            else "the rows of the log are not in order of time: "
+            else "the rows of the log are not in time order: "
             + ", ".join(
-                [f"{n_twice} that it has twice are left out"] * bool(n_twice)
-                + [f"they are sorted (time goes back at {n_moved} of them)"] * bool(n_moved)
+                [f"{n_twice} duplicate row{_plural(n_twice)} left out"] * bool(n_twice)
+                + [f"rows sorted (time goes back at {n_moved} of them)"] * bool(n_moved)
             )
             + ". Check whether the logger wrote a buffer twice or late"
         ),
@@ -148,12 +148,12 @@ _OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "clock-changed": (
         "warning",
         lambda way, time: (
-            f"the clock is put {way} by one hour after {time:.6g} s, as at the "
+            f"the clock was set {way} by one hour after {time:.6g} s, as at the "
             + (
                 "end of daylight saving time: an hour is added to all later times"
                 if way == "back"
-                else "beginning of daylight saving time: an hour is taken off all later times."
-                " Check that the log did not stop for that hour"
+                else "beginning of daylight saving time: an hour is subtracted from all later"
+                " times. Check that the log did not stop for that hour"
             )
         ),
     ),
@@ -165,8 +165,8 @@ _OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "clock-coarse-uneven": (
         "warning",
         "the time is in steps of {tick:.3g} s, with {rows:.3g} rows at the same time on average,"
-        " but not evenly: the rows are spread within each reading, so that rates and frequency are"
-        " known no better than that. Export a finer time",
+        " but the number varies: the rows are spread over each step, so rates and frequency are"
+        " only as accurate as these steps. Export the time at a finer resolution",
     ),
     "record-of-pieces": ("note", "one record joined from {n_pieces} files: {files}"),
     "reference-length-elsewhere": (
@@ -218,8 +218,8 @@ _OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "clock-in-steps": (
         "note",
-        "time is written in steps of {step:.3g} s: readings are taken to follow each other evenly,"
-        " {every:.6g} s apart, as all of them allow",
+        "time is written in steps of {step:.3g} s: readings are treated as evenly spaced,"
+        " {every:.6g} s apart, which agrees with all logged times",
     ),
     "lines-not-kept": ("note", "{n_lines} further lines without data are not stored"),
     "blocks-read": ("note", "{n_blocks} blocks of data read"),
@@ -351,19 +351,19 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             f"the load cell reads {earlier:.3g} N at slack and later {later:.3g} N at no greater"
             f" length, {100 * abs(effect):.2g} % of the peak load: "
             + (
-                "its zero drifts; only a specimen that became shorter could pull there"
+                "its zero drifts (a specimen could pull there only if it had become shorter)"
                 if later > earlier
-                else "its zero drifts, or the specimen still pulled at the first of these rests and"
-                " has become longer"
+                else "its zero drifts, or the specimen was still taut at the first of these rests"
+                " and has become longer"
                 if not carried
-                else "its zero drifts, as no line pushes"
+                else "its zero drifts, since a line cannot push"
             )
-            + ". No single zero is right: subtract the drift from the log by its readings at"
-            " slack, or repeat the test. "
+            + ". No single zero is right: use the readings at slack to subtract the drift from the"
+            " log, or repeat the test. "
             + (
-                "The interval of every tension includes it"
+                "The interval of every tension includes the drift"
                 if carried
-                else "Until then every tension may be wrong by as much"
+                else "Until then every tension may be wrong by this much"
             )
         ),
     ),
@@ -377,8 +377,8 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "load-zero-drifted": (
         "note",
-        "the zero of the load cell moves by {drift:.4g} N during the log, more than is stated of"
-        " it; the interval of tension includes it",
+        "the zero of the load cell drifts by {drift:.4g} N during the log, more than its stated"
+        " uncertainty covers; the interval of tension includes the drift",
     ),
     "load-negative": (
         "warning",
@@ -396,17 +396,18 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         lambda what, size, unit, time: (
             f"{what} jumps by {100 * size if unit == '%' else size:+.3g} {unit} at {time:g} s, and"
             " the tension does not follow: it was reset, or something slipped. Strain after the"
-            " jump is off by that much; amplitudes and EA are not affected. Remove it from the log"
+            " jump is off by that much; amplitudes and EA are not affected. Correct the log for the"
+            " jump"
         ),
     ),
     "specimen-parted": (
         "warning",
-        "the load falls to zero at {time:g} s where the specimen was taut before, and does not come"
-        " back: it parted, or came loose. What follows is left out",
+        "the load falls to zero at {time:g} s, at a length where the specimen was taut before, and"
+        " does not recover: the specimen parted or came loose. The rest of the log is not used",
     ),
     "specimen-parted-as-meant": (
         "note",
-        "parted at {time:g} s; what follows is left out",
+        "parted at {time:g} s; the rest of the log is not used",
     ),
     "slipped-in-earlier-step": (
         "warning",
@@ -416,11 +417,11 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             + f" after cycle {number}, and the {'tension' if what == 'position' else 'position'}"
             " did not follow: something slipped"
             + (
-                ". Strain here, counted from before it, is off by that length; amplitudes and EA"
-                " are not"
+                ". Strain in this step is counted from before the jump and is off by that length;"
+                " amplitudes and EA are not affected"
                 if what == "position"
-                else ", or the load cell was knocked. Strain here is counted from before it, and"
-                " tension may be off by as much"
+                else ", or the load cell was knocked. Strain in this step is counted from before"
+                " the jump, and tension may be off by that much"
             )
         ),
     ),
@@ -439,9 +440,9 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "bent-at-rest": (
         "note",
-        "at the first rest the pins are {length:.4g} m apart, less than the gauge length, and the"
-        " specimen begins to pull near that: it hangs slack and bent at the rest, and strain is"
-        " zero at the gauge length of {gauge:.4g} m",
+        "at the first rest the pins are {length:.4g} m apart, less than the gauge length of"
+        " {gauge:.4g} m, near which the specimen starts to carry load: it hangs slack and bent at"
+        " the rest, and strain is zero at the gauge length",
     ),
     "strain-from-tension": (
         "note",
@@ -450,8 +451,8 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "reference-tension-elsewhere": (
         "warning",
-        "by the layout the reference tension of {tension:.4g} N is reached at {stated:.4g} m, in"
-        " the log first at {found:.4g} m; strain is zero at the latter",
+        "the layout puts the reference tension of {tension:.4g} N at {stated:.4g} m, but the log"
+        " first reaches it at {found:.4g} m; strain is zero at the latter",
     ),
     "gauge-length-from-reference": (
         "warning",
@@ -461,11 +462,11 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "marks-alike": (
         "warning",
         "the marks of holds '{first}' and '{second}' have the same three lengths: one row was"
-        " copied. Correct it, or take it out of the marks",
+        " copied. Correct it, or remove it from the marks",
     ),
     "tape-off-crosshead": (
         "warning",
-        "at the holds of {n_marks} marks crosshead and tape differ by {apart:+.4g} m, more than"
+        "crosshead and tape differ by {apart:+.4g} m at the holds of {n_marks} marks, more than"
         " their errors explain. Check the zero of the crosshead, and whether the tape was read from"
         " zero at the near thimble",
     ),
@@ -491,18 +492,18 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "splice-side-rejected": (
         "note",
         lambda is_strain: (
-            f"the marks follow a splice law of {'strain' if is_strain else 'tension'}, and none of"
-            f" {'tension' if is_strain else 'strain'}, but have so nearly one tension at each"
-            " strain that only the shape of the laws decides. The nearest law of"
-            f" {'tension' if is_strain else 'strain'} is in the mean and in the intervals; marks in"
-            " a test with another range would narrow them"
+            f"the marks fit a splice law of {'strain' if is_strain else 'tension'}, and none of"
+            f" {'tension' if is_strain else 'strain'}, but tension varies so little at each strain"
+            " that only the shape of the laws decides. The mean and the intervals include the"
+            f" nearest law of {'tension' if is_strain else 'strain'}; marks in a test with another"
+            " range would narrow the intervals"
         ),
     ),
     "splice-friction": (
         "note",
-        "by the marks read during unloading, the extension of the splices differs there from their"
-        " law by {share:+.1%} +- {spread:.1%}; strain is not corrected for it, and the intervals"
-        " include it",
+        "marks read during unloading show that the extension of the splices there differs from"
+        " their law by {share:+.1%} +- {spread:.1%}; strain is not corrected for this, but the"
+        " intervals include it",
     ),
     "splice-creep-unknown": (
         "note",
@@ -526,10 +527,9 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "marks-across-slip": (
         "warning",
-        "in test {test} the tension fell between two cycles, as by a slip of the splices, and marks"
-        " that were read before and after it are used together: strain and moduli may be off by"
-        " more than their intervals. Give the tests behind it a campaign of their own, with the"
-        " marks read there",
+        "in test {test} the tension fell between two cycles, as when splices slip, and marks read"
+        " before and after this are used together: strain and moduli may be off by more than their"
+        " intervals. Put the later tests in a campaign of their own, with the marks read in them",
     ),
     "gauge-length-exact": (
         "note",
@@ -602,8 +602,8 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "stored-from-peak": (
         "warning",
         "the cycle_counter skips {n_cycles} times, and it counts at the peaks: a cycle that was"
-        " stored alone has no whole way up or down, and is left out. Let the machine count at the"
-        " valleys, or store two cycles in a row",
+        " stored alone has no complete loading or unloading branch, and is not used. Set the"
+        " machine to count at the valleys, or store two cycles in a row",
     ),
     "counter-skips": (
         "note",
@@ -683,18 +683,18 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "note",
         lambda share: (
             f"the period changes by {100 * share:+.2g} % from cycle to cycle, as in a sweep of"
-            ' frequency: the loops are reduced as those of waveform = "other", since the cycles'
-            " have no sine in common"
+            ' frequency: the loops are reduced as those of waveform = "other", since no single sine'
+            " fits the cycles"
         ),
     ),
     "wave-not-periodic": (
         "warning",
         lambda share, is_open: (
-            f"the wave does not repeat from cycle to cycle (by {share:.0%} of half its range), as"
-            " of two frequencies at once: a cycle is no closed loop, and its stiffness is that of"
-            " no single frequency"
+            f"the wave does not repeat from cycle to cycle (it differs by {share:.0%} of half its"
+            " range), as when two frequencies are combined: a cycle is not a closed loop, and its"
+            " stiffness does not belong to one frequency"
             + (". Its energy and loss are not given" if is_open else "")
-            + ". Give each frequency a test of its own"
+            + ". Test each frequency separately"
         ),
     ),
     "loops-give-work": (
@@ -721,20 +721,21 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "loops-not-of-a-sine": (
         "warning",
         lambda share, effect: (
-            "the waveform is stated as sinusoidal, and the fundamentals in time would lose"
-            f" {share:.3g} times the energy of the loops: the log is not sinusoidal (a rise and a"
-            " fall of unequal duration?); stiffness, loss and amplitudes are those at equal phase"
-            " of the stroke, as of any other waveform"
+            "the waveform is stated as sinusoidal, but the loss computed from the fundamentals in"
+            f" time would be {share:.3g} times the energy of the loops: the log is not sinusoidal"
+            " (rise and fall of unequal duration?). Stiffness, loss and amplitudes are those at"
+            " equal phase of the stroke, as for any other waveform"
         ),
     ),
     "loops-widen-evenly": (
         "warning",
         lambda change, rate, first, last, **_: (
             f"the hysteresis energy {'rises' if change > 0 else 'falls'} evenly from {first:.3g} to"
-            f" {last:.3g} J/m over the test, while EA stays. If load and position come from two"
-            f" loggers, their clocks drift apart by about {float(f'{1e6 * abs(rate):.2g}'):g} ppm"
-            f" ({abs(change):.2g} s in all): put both on one clock. If not, the specimen heats or"
-            " wears, and the means over the cycles are of no single state"
+            f" {last:.3g} J/m over the test, while EA does not change. If load and position come"
+            " from two loggers, their clocks drift apart by about"
+            f" {float(f'{1e6 * abs(rate):.2g}'):g} ppm ({abs(change):.2g} s in all): log both on"
+            " one clock. If not, the specimen heats up or wears, and the means over the cycles"
+            " represent no single state"
         ),
     ),
     "drift-in-energy": (
@@ -752,9 +753,9 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "pushed-in-cycles": (
         "warning",
-        "the specimen is pushed in the cycles (down to {least:.4g} N, median): amplitudes and"
-        ' energies include that part. If it can carry compression, state kind = "other"; if it'
-        " cannot, the zero of the load is wrong",
+        "tension is negative in part of the cycles (down to {least:.4g} N, median): amplitudes and"
+        ' energies include that part. If the specimen can carry compression, state kind = "other";'
+        " if it cannot, the zero of the load is wrong",
     ),
     "no-snap-loads": (
         "note",
@@ -800,18 +801,19 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "inertia-left-at-turns": (
         "warning",
         lambda force, effect: (
-            f"at the turns, the inertia that is not taken off is {force:.3g} N, {effect:.1%} of the"
-            " tension amplitude: the machine turns faster than the log resolves. EA, energy and the"
-            " moduli near the turns may be off by this share. Test with a sine, or with a load cell"
-            " at the fixed end, or log faster"
+            f"the inertia that is not corrected at the reversals is {force:.3g} N, {effect:.1%} of"
+            " the tension amplitude: the machine reverses faster than the log resolves. EA, energy"
+            " and the moduli near the reversals may be off by this share. Test with a sine, or with"
+            " a load cell at the fixed end, or log faster"
         ),
     ),
     "specimen-near-resonance": (
         "warning",
         lambda share, effect: (
-            f"the test ran at {share:.2g} of the resonance frequency of the specimen (by its stated"
-            " mass), and faster at sharp turns: waves run along it, and after the correction for"
-            f" its mass EA and energy may be off by {effect:.1%}. Test more slowly, or with a sine"
+            f"the test ran at {share:.2g} of the resonance frequency of the specimen (from its"
+            " stated mass), and higher at sharp reversals: waves run along it, and even after the"
+            f" correction for its mass EA and energy may be off by {effect:.1%}. Test more slowly,"
+            " or with a sine"
         ),
     ),
     "own-mass-unknown": (
@@ -830,16 +832,18 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             f" {1e3 * spread:.0f} ms (k=1) after position, but"
             f" {f'a lag of 0 +- {1e3 * stated:g} ms is stated' if stated else 'no lag is stated'}."
             f" Damping makes tension {'stop' if is_of_stops else 'reverse'} before position, never"
-            " after it, so tension was logged late or through a filter, by at least this much; no"
-            " correction is made: the loops are too narrow, and their intervals include it"
+            " after it, so tension was delayed by at least this much, by late logging or a filter."
+            " No correction is made: loop energy and loss are too small, and their intervals"
+            " include this"
         ),
     ),
     "tension-filtered": (
         "warning",
         lambda lag, **_: (
-            f"its load has the noise that a low-pass filter leaves, which delays it by about"
-            f" {1e3 * lag:.0f} ms, and position has not: filter both alike, or state the lag. No"
-            " correction is made: the loops are too narrow, and their intervals include it"
+            "the noise of the load shows that it was low-pass filtered, which delays it by about"
+            f" {1e3 * lag:.0f} ms, and that position was not: filter both alike, or state the lag."
+            " No correction is made: loop energy and loss are too small, and their intervals"
+            " include this"
         ),
     ),
 }  # fmt: skip
@@ -866,23 +870,23 @@ _OF_MODULI: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "stiffness-changes-at-cycle": (
         "warning",
-        "the stiffness changes by {change:+.1%} from cycle {number} to the next, and the mean with"
-        " it: part of the specimen may have parted (a strand, a layer of cords). The means are over"
-        " both states",
+        "the stiffness changes by {change:+.1%} after cycle {number}, and the mean level with it:"
+        " part of the specimen may have parted (a strand, a layer of cords). The averages mix both"
+        " states",
     ),
     "strain-jumps": (
         "warning",
         "the mean strain jumps by {size:+.3%} after cycle {number} ({effect:.0%} of the amplitude),"
         " and the tension does not follow: an extensometer, a grip or a splice has slipped. Mean"
-        " strain and the place of every curve along the axis of strain are wrong by up to as much;"
-        " amplitudes and EA are not",
+        " strain and the position of every curve on the strain axis are off by up to this much;"
+        " amplitudes and EA are not affected",
     ),
     "tension-jumps": (
         "warning",
         "the mean tension jumps by {size:+.4g} N after cycle {number} ({effect:.0%} of the"
         " amplitude), and the strain does not follow: a grip or a splice has slipped, a part of the"
-        " specimen has failed, or the load cell was knocked. Mean tension and curves mix what lies"
-        " before it with what lies after it; reduce the two parts separately, as steps",
+        " specimen has failed, or the load cell was knocked. Mean tension and curves mix both"
+        " states: reduce the cycles before and after the jump separately, as steps",
     ),
     "bins-of-some-cycles": (
         "refusal",
@@ -902,8 +906,8 @@ _OF_MODULI: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             f" lost over a cycle: residual {effect:+.1%} of the modulus (standard error"
             f" {_share(error)}). "
             + (f"The stated channel lag explains up to {of_lag:.1%} of it" if of_lag else
-               "The readings at the turns explain it: in all cycles the turn lies between the same"
-               " two readings" if is_of_turns else
+               "The readings at the reversals explain it: in all cycles the reversal lies between"
+               " the same two readings" if is_of_turns else
                "Possible causes: channel lag, a dwell at the reversals, slip or slack"
                f"{', or too few samples for the curvature' if is_coarse else ''}")
         ),
@@ -1031,21 +1035,21 @@ _OF_MODULI: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "reading-of-odd-weight": (
         "warning",
-        "a weight of {weight:.5g} N is far from those before and after it, while the length goes on"
-        " as without it; the row gives no modulus. Check the weight",
+        "a weight of {weight:.5g} N is far from those before and after it, but the length is in"
+        " line with its neighbours; the row gives no modulus. Check the weight",
     ),
     "reading-of-odd-length": (
         "warning",
         lambda length, expected: (
             f"a length of {1e3 * length:.1f} mm is {abs(1e3 * (length - expected)):.0f} mm"
-            f" {'more' if length > expected else 'less'} than the readings beside it lead to; the"
+            f" {'more' if length > expected else 'less'} than the readings beside it suggest; the"
             " row gives no modulus. Check the weight and the length"
         ),
     ),
     "one-slope-of-weights": (
         "refusal",
-        "no modulus given: one slope between two readings says nothing of the modulus at a strain."
-        " Read the length under at least three weights",
+        "no modulus given: a single slope between two readings does not show the modulus at a given"
+        " strain. Read the length under at least three weights",
     ),
 }  # fmt: skip
 
@@ -1096,8 +1100,8 @@ _OF_HOLDS: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "hold-ramp-within-steps": (
         "warning",
-        "the ramp takes at most two steps of the log: what relaxed between its end and the first"
-        " reading of the hold is not in the log. The uncertainties of initial tension and drop"
+        "the ramp takes at most two steps of the log, so the relaxation between its end and the"
+        " first reading of the hold was not logged. The uncertainties of initial tension and drop"
         " allow for the loss in a decade of time. Log faster",
     ),
     "hold-start-contradicted": (
@@ -1108,12 +1112,12 @@ _OF_HOLDS: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "hold-load-late": (
         "warning",
         lambda rise, peak, delay, is_refused: (
-            ("refused: initial tension, drop, rate per decade, Prony series: " * is_refused)
+            ("initial tension, drop, rate per decade and Prony series not given: " * is_refused)
             + f"the load rises by {rise:.3g} N to {peak:.4g} N within {delay:.2g} s after the"
             " crosshead has stopped, although a specimen held at one length relaxes: the load lags"
             " (a filter, a slow load cell or another clock)"
             + (
-                "; take the filter out, or pull more slowly"
+                "; remove the filter, or pull more slowly"
                 if is_refused
                 else ". The uncertainty of initial tension and drop includes twice that rise"
             )
@@ -1121,10 +1125,11 @@ _OF_HOLDS: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "hold-begins-with-jerk": (
         "warning",
-        "tension dips from {before:.4g} to {lowest:.4g} N as the crosshead stops, and swings: the"
-        " crosshead stops with a jerk, and the mass between specimen and load cell swings on. The"
-        " first {settled:.2g} s are left out. The initial tension is that before the dip; its"
-        " uncertainty allows for {after:.4g} N, to which the readings after the swing lead back",
+        "tension dips from {before:.4g} to {lowest:.4g} N as the crosshead stops, and oscillates:"
+        " the crosshead stops abruptly, and the mass between specimen and load cell vibrates. The"
+        " first {settled:.2g} s are not used. The initial tension is that before the dip; its"
+        " uncertainty allows for {after:.4g} N, extrapolated back from the readings after the"
+        " oscillation",
     ),
     "prony-misses-ramp-end": (
         "refusal",
@@ -1164,9 +1169,9 @@ _OF_LINE: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "bent-loops": (
         "note",
-        "the loops are bent as the slow pull is: K_0 is that of the pull over the cycle, about"
-        " {at:.4g} N, the tension of their midline at the mean strain, and not its slope at the"
-        " mean of peak and valley, {mean:.4g} N ({effect:+.1%})",
+        "the loops are curved like the slow pull: K_0 is that of the pull over the cycle, around"
+        " {at:.4g} N (the tension of their midline at the mean strain), not its slope at the mean"
+        " of peak and valley, {mean:.4g} N ({effect:+.1%})",
     ),
     "mean-tension-drifts": (
         "warning",
@@ -1208,10 +1213,10 @@ _OF_LINE: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "pull-falls": (
         "warning",
-        "tension falls on the way to the peak, by {fall:.1%} of the rise, as where a line relaxes"
-        " in a hold or a strand parts: K_0 beside these tensions is neither of the pull nor of the"
-        " hold. Between holds read the static stiffness, or give a pull without them by a step with"
-        " its own from and to",
+        "tension falls on the way to the peak, by {fall:.1%} of the rise, as when a line relaxes in"
+        " a hold or a strand parts: K_0 near these tensions belongs neither to the pull nor to the"
+        " hold. Use the static stiffness between holds, or declare a part without holds as a step"
+        " with its own from and to",
     ),
     "pull-rate-uneven": (
         "note",
@@ -1267,12 +1272,12 @@ _OF_LINE: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "no-static-slope": (
         "refusal",
         "change of the static stiffness per decade of time not given: the readings of the upper"
-        " hold after 3 ramp times are {span:.2f} decades; needed {needed:g}",
+        " hold after 3 ramp times span {span:.2f} decades; {needed:g} are needed",
     ),
     "stiffness-amid-ramp-times": (
         "note",
-        "the stiffness at {reference:g} s is the secant that the log has then, within 3 times the"
-        " ramp of {ramp:.3g} s: it belongs to a ramp of this length",
+        "the stiffness at {reference:g} s is the secant logged at that time, less than 3 times the"
+        " ramp of {ramp:.3g} s: it applies only to a ramp of this length",
     ),
     "stiffness-beyond-hold": (
         "warning",
@@ -1285,8 +1290,8 @@ _OF_LINE: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "no-strain-at-failure": (
         "refusal",
-        "strain at failure not given: the strain at the peak is not known, or stood still while the"
-        " load rose to it, as of an extensometer that was taken off",
+        "strain at failure not given: the strain at the peak is not known, or did not change while"
+        " the load rose to it, as with an extensometer that was taken off",
     ),
     "no-break-strength": (
         "note", "no rated break strength is stated: results relative to it are not given",
@@ -1637,8 +1642,8 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "position-ends": (
         "warning",
         "the position stays at its greatest or least value for {n_samples} samples while the load"
-        " goes on and comes back: the sensor is at the end of its range, strain amplitudes are too"
-        " small and EA is too large",
+        " changes further and returns: the sensor is at the end of its range, strain amplitudes are"
+        " too small and EA is too large",
     ),
     "mean-tension-ramps": (
         "warning",
@@ -1649,7 +1654,7 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
                 f"and the amplitude of tension {'grows' if grows > 0 else 'falls'} by"
                 f" {abs(grows):.4g} N with it: the cycles are not at one level."
                 if grows
-                else "though the machine drives the load"
+                else "although the machine controls the load"
                 if is_of_load
                 else "and the middle of the stroke with it"
             )
@@ -1659,7 +1664,7 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
                 else ": the machine did not hold the level (a leaking accumulator, a drifting set"
                 " point)."
             )
-            + " Every number of this test is a mean over these levels"
+            + " Every result of this test is a mean over these levels"
         ),
     ),
     "zero-or-relaxation": (
@@ -1669,7 +1674,7 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             + (
                 "as fast at the end as before: the specimen relaxes slowly"
                 if later < earlier
-                else "although relaxation lowers it: the specimen recovers, warms up or seats,"
+                else "although relaxation would lower it: the specimen recovers, warms up or seats,"
             )
             + " or the zero of the load cell drifts. The log has no slack rest after the cycles"
             " that would show which"
@@ -1716,10 +1721,10 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "stretched-diameters-apart": (
         "warning",
         lambda least, greatest, swapped: (
-            "at constant volume the diameters that were read on the stretched specimen imply"
-            f" {1e3 * least:.4g} to {1e3 * greatest:.4g} mm before stretch, but rubber keeps its"
-            " volume. Check these diameters and the stretch at which each was read"
-            + (f"; they agree if those at {swapped} change places" if swapped else "")
+            "at constant volume (as rubber deforms) the diameters read on the stretched specimen"
+            f" imply different diameters before stretch, {1e3 * least:.4g} to {1e3 * greatest:.4g}"
+            " mm. Check these diameters and the stretch at which each was read"
+            + (f"; they agree if those at {swapped} are swapped" if swapped else "")
         ),
     ),
     "diameter-readings-apart": (
@@ -1786,12 +1791,12 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "two-designs-of-one": (
         "warning",
         "it is compared with {hose} here and with {other} elsewhere. Check the specimen of this"
-        " test, and which design is its own",
+        " test, and which design belongs to it",
     ),
     "static-at-frequency": (
         "warning",
-        "taken as static, but its log cycles at {frequency:.3g} Hz, at which cords are stiffer than"
-        ' in a slow pull. If the test is dynamic, set loading = "dynamic"',
+        "treated as static, but its log has cycles at {frequency:.3g} Hz, where cords are stiffer"
+        ' than in a slow pull. If the test is dynamic, set loading = "dynamic"',
     ),
     "hose-length-not-tested": (
         "warning",
@@ -1806,10 +1811,10 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         lambda stated, found: (
             f'waveform = "{stated}"'
             + (" (stated, or by default)" if stated == "triangular" else "")
-            + ", but that of the log is"
+            + ", but the log is"
             + (
-                " neither a triangle nor a sine, and its loops are reduced as those of waveform ="
-                ' "other". State the waveform'
+                " neither triangular nor sinusoidal, and its loops are reduced as those of waveform"
+                ' = "other". State the waveform'
                 if found == "other"
                 else f" {found}. State the waveform of the machine"
             )
@@ -1863,16 +1868,16 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "peak-off-others": (
         "warning",
         lambda ratio, like: (
-            f"its greatest tension is {ratio:.3g} times what the other tests of the specimen have"
-            f" at this strain{_is_like(like)}. Check that the unit, gain and factor of the load are"
-            " theirs, and that file and specimen are not swapped"
+            f"its greatest tension is {ratio:.3g} times that of the other tests of the specimen at"
+            f" this strain{_is_like(like)}. Check that the unit, gain and factor of the load are"
+            " those of the other tests, and that file and specimen are not swapped"
         ),
     ),
     "softer-by-stretch": (
         "note",
-        "its greatest tension is {ratio:.3g} times what the tests before it have at this strain: it"
-        " was stretched further before it, which softens rubber by up to so much. A wrong unit or"
-        " gain of the load looks the same",
+        "its greatest tension is {ratio:.3g} times that of earlier tests at this strain: the"
+        " specimen was stretched further before this test, which can soften rubber by this much. A"
+        " wrong unit or gain of the load would look the same",
     ),
     "tension-behind-position": (
         "warning",

@@ -298,8 +298,8 @@ def _sets_of_breaks(tests: Sequence[TestView]) -> list[str]:
         found.append(
             f"Breaks of {loads.size} specimens ({of}): mean {texts[0]} {force.unit}, standard"
             f" deviation {texts[1]} {force.unit} ({deviation / mean:.1%}), least {texts[2]}"
-            f" {force.unit}. Breaks in a splice or grip are among them; a table of outcomes tells"
-            " them apart."
+            f" {force.unit}. Breaks in a splice or grip are included; a table of outcomes"
+            " separates them."
         )
     return found
 

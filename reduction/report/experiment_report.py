@@ -1410,7 +1410,7 @@ def negative_words(
     instead = (
         f"Use the surface of its {in_words(bent[0]).split(' of ')[0]} below, which stays positive."
         if bent
-        else f'Ask for one that cannot: transform = {{ {name} = "log" }} in the campaign.'
+        else f'Request one that cannot: transform = {{ {name} = "log" }} in the campaign.'
     )
     return [
         f"This surface falls to {number_text(least * unit.factor, 3)}"
@@ -1442,7 +1442,7 @@ def quality_words(view: ExperimentView, surfaces: ResponseSurfaces, index: int) 
     else:
         p = float(lack.p_value[index])
         verdict = (
-            "the runs depart from the surface by more than repeated runs differ"
+            "the runs deviate from the surface by more than repeated runs scatter"
             if p < _SIGNIFICANCE
             else "no lack of fit beyond the scatter of repeated runs"
         )

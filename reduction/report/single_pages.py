@@ -531,7 +531,7 @@ def wires_table(found: PredictedArmour, units: UnitSystem) -> PageTable | None:
             " approximations. With an energy: the rod whose tension is the derivative of its"
             " strain energy, used for layers and cable. Large angles: a spring without a core, a"
             " different body.",
-            "No uncertainty is given: none is stated of the armour. None includes thinning of the"
+            "No uncertainty is given: none is stated for the armour. None includes thinning of the"
             " wires or compliance of the core.",
         ],
     )  # fmt: skip

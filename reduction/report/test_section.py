@@ -535,8 +535,8 @@ def _pull_table(view: TestView) -> PageTable | None:
     return sheet.turned(
         "Slow pull: strain as a cubic of tension T, and the conditions it holds for.",
         map(str, sheet.of("specimen")),
-        remarks=["K_0 and strain at a tension are not of this cubic but of a spline through the"
-                 " readings; K_0 grows with the rate of strain and with the waiting time.",
+        remarks=["K_0 and strain at a tension come from a spline through the readings, not this"
+                 " cubic; K_0 grows with the rate of strain and with the waiting time.",
                  plus_minus_of_tests([NORMAL], [view], ["pull_strain_coefficient"],
                                      found_from=_OF_PULL)],
     )  # fmt: skip

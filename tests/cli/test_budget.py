@@ -174,5 +174,5 @@ def test_a_product_that_keeps_nothing_shared_says_so_in_a_sentence(product, tmp_
         archive[kept].load().to_netcdf(tmp_path / "old.nc", engine="netcdf4")
     found = run("budget", tmp_path / "old.nc")
     assert found.exit_code == 0
-    assert "old.nc has no errors that its numbers share" in " ".join(found.output.split())
+    assert "old.nc has no shared errors, and so no budgets" in " ".join(found.output.split())
     assert "--at" not in found.output

@@ -133,7 +133,7 @@ def test_a_name_in_brackets_is_shown_as_it_is(command, static, tmp_path):
         (["--where", "frequency is high"], "--where is not a condition"),
         (["--where", "frequency > 1 m"], "unit 'm' is not a unit of frequency"),
         (["--quantity", "stiffness_of_all"], "--quantity names no quantity"),
-        (["--export", "all.xlsx"], "--export does not know the ending"),
+        (["--export", "all.xlsx"], "--export does not know this file ending"),
         (["--limit", "0"], "--limit"),
     ],
 )  # fmt: skip

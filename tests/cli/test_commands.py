@@ -191,7 +191,7 @@ def test_a_product_of_no_test_is_named_and_put_aside(reduced, command):
     marks.write_text("\n".join(kept) + "\n")
     done = command("run", campaign, "--quiet", cwd=reduced)
     assert done.returncode == 0
-    assert "superseded/B.nc: nothing in this campaign makes it now" in done.stderr
+    assert "superseded/B.nc: this campaign no longer makes it" in done.stderr
     assert (reduced / "processed" / "small" / "superseded" / "B.nc").exists()
     assert not (reduced / "processed" / "small" / "B.nc").exists()
 

@@ -283,7 +283,7 @@ def test_levels_beside_the_plan_ask_for_the_unit(fit):
     coded = table(
         "frequency,mean_tension,tension_amplitude,apparent_spring_constant", scale=((0, 1),) * 3
     )
-    told(fit(coded, SPEC), 4, "lie beside the plan", 'levels = "coded"')
+    told(fit(coded, SPEC), 4, "are far off the plan", 'levels = "coded"')
     told(fit(table(UNITS.replace(" [lbf]", "").replace(" [Hz]", ""))), 4, "need a SPEC.toml")
 
 
@@ -302,7 +302,7 @@ def test_levels_beside_the_plan_ask_for_the_unit(fit):
         (("sigma", "n_runs = 12\nsigma"), "n_runs applies only to plackett-burman"),
         (('rated_break_strength = "6400 lbf"\n', ""), "rated break strength, which is not given"),
         (('kind = "box-behnken"', 'kind = "plackett-burman"'), "the design in the file differs"),
-        (("[responses]", "[responses]\nfrequency = {}"), "a factor is a response too"),
+        (("[responses]", "[responses]\nfrequency = {}"), "a name is both a factor and a response"),
         (("[experiment]", "[experiment"), "the experiment is not TOML"),
     ],
 )

@@ -84,7 +84,7 @@ def test_a_campaign_that_is_not_found_is_said(static, command, tmp_path):
 @pytest.mark.parametrize(
     ("options", "status", "said"),
     [
-        (("--quiet", "--no-browser"), 2, "the address would be shown nowhere"),
+        (("--quiet", "--no-browser"), 2, "the address would not be shown anywhere"),
         (("--port", "65536"), 2, "Invalid value for '--port'"),
         (("--units", "furlongs", "--no-browser"), 2, "--units is not known"),
         (("--campaign", "s3://bucket/campaign.toml"), 2, "reads no URLs"),

@@ -90,11 +90,11 @@ READ_AS = {
     "parquet_bomb": "read 10000000 rows",
     "json_of_surrogates": "read 1 rows",
 }
-_BROKE = "the library that reads this format broke at the file"
+_BROKE = "the library that reads this format crashed on the file"
 SAID = {
-    "bomb_of_a_sheet": "the workbook unpacks to more than the memory it may take",
+    "bomb_of_a_sheet": "the workbook unpacks to more memory than is allowed",
     "one_cell_in_the_last_corner": _BROKE,
-    "overlapping_members": "the workbook unpacks to more than the memory it may take",
+    "overlapping_members": "the workbook unpacks to more memory than is allowed",
     "size_stated_too_small": "Bad CRC-32",
     "strings_that_claim_billions": _BROKE,
     "external_entity": "declares a document type",
@@ -106,8 +106,8 @@ SAID = {
     "one_chunk_of_zeros": "a chunk of '/F' unpacks to more than the memory",
     "columns_without_end": "the file has too many columns",
     "external_link_on_the_way": "is a link",
-    "external_storage": "keeps its values in other files",
-    "virtual_elsewhere": "keeps its values in other files",
+    "external_storage": "stores its values in other files",
+    "virtual_elsewhere": "stores its values in other files",
     "attribute_of_twenty_megabytes": "'operator' is not stored: it has 20,000,000 characters",
     "complex_numbers": "'F' is not an array; found complex numbers",
     "cells_nested_a_hundred_thousand_times": f"{_BROKE}; found an end by SIGSEGV",

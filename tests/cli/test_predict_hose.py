@@ -231,5 +231,5 @@ def test_a_target_is_answered_with_hoses_that_reach_it(predict):
 def test_a_target_that_no_hose_reaches_ends_with_status_2(predict):
     done = predict(spec=SPEC + '[target]\nstrain = "0.1 %"\n')
     assert done.returncode == 2
-    assert "target: no hose like this one does that" in done.stderr
+    assert "target: no hose of this design reaches it" in done.stderr
     assert "no hose by wrap angle" in done.stdout

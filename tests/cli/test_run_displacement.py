@@ -79,7 +79,7 @@ def test_strain_counts_from_the_reference_tension_wherever_the_log_has_it(travel
     assert test["status"] in ("reduced", "check"), test["message"]
     # 2000 N/m have 200 N at 0.1 m of travel, and not at zero as the layout has it
     assert (
-        "reference tension of 200 N is reached at 1.5 m, in the log first at 1.6 m"
+        "reference tension of 200 N at 1.5 m, but the log first reaches it at 1.6 m"
         in test["message"]
     )
     with open_archive(travel / "processed" / "travel" / "A.nc") as archive:

@@ -319,7 +319,7 @@ def test_a_folder_that_netcdf_cannot_name_is_refused_before_anything_is_reduced(
     campaign = tmp_path / "small" / "campaign.toml"
     done = command("run", campaign, "--processed", folder, "--reports", tmp_path / "reports")
     assert done.returncode == 2
-    assert "a name that utf-8 has no letters for; needed a path in" in done.stderr
+    assert "a name that utf-8 cannot represent; needed a path in" in done.stderr
     assert not folder.exists()
 
 

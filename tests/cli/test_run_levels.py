@@ -120,5 +120,5 @@ def test_an_experiment_that_names_the_whole_log_is_told_the_levels(command, raw,
     (tmp_path / "campaign.toml").write_text(f"{text}\n{tests}\n{experiment}")
     done = command("check", tmp_path / "campaign.toml", "--test", "R-1")
     assert done.returncode == 4, done.stdout + done.stderr
-    assert "holds several levels, and experiment 'line' names it as one" in done.stderr
+    assert "contains several levels, but experiment 'line' uses it as one" in done.stderr
     assert 'name = "level 1"' in done.stderr

@@ -171,7 +171,7 @@ def test_outcomes_stand_beside_tests_and_are_put_aside_without_their_table(comma
     assert 'id="outcomes"' in page and 'id="tested"' in page
     toml.write_text(text, encoding="utf-8")
     done = command(*arguments, cwd=tmp_path)
-    assert "superseded/outcomes.nc: nothing in this campaign makes it now" in done.stderr
+    assert "superseded/outcomes.nc: this campaign no longer makes it" in done.stderr
     assert (products / "superseded" / "outcomes.nc").is_file()
     assert not (products / "outcomes.nc").exists()
     assert not (products / "tables" / "strength.csv").exists()

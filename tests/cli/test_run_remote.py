@@ -242,7 +242,7 @@ def test_a_fault_in_a_remote_log_is_told_by_its_address_and_row(
         ),
         (
             "id,file\nA,s3://k:pw@b/x?v=1\nB,s3://b/x?v=2\n",
-            "two addresses of logs differ only in what is not shown of them; found 's3://b/x'",
+            "two addresses of logs differ only in parts that are not stored; found 's3://b/x'",
         ),
     ],
 )

@@ -244,7 +244,7 @@ def test_a_worker_of_jobs_that_is_killed_ends_the_run_with_words_and_what_was_ma
     _, errors = process.communicate(timeout=60)
     assert process.returncode == 1
     assert "a worker process died; found it at work on one of T" in errors
-    assert "Most often the memory did not suffice" in errors and "Traceback" not in errors
+    assert "The usual cause is too little memory" in errors and "Traceback" not in errors
     made = products(tmp_path)
     assert done <= archives(tmp_path)
     assert all(serial[name] == made[name] for name in made)
@@ -323,7 +323,7 @@ def test_a_folder_of_products_that_workers_do_not_see_ends_the_run(campaign, sch
     (folder / "run.lock").unlink()
     _, errors = process.communicate(timeout=60)
     assert process.returncode == 6
-    assert "is not the lock of this run any more; found no such file on this machine" in errors
+    assert "is no longer the lock of this run; found no such file on this machine" in errors
     assert not archives(tmp_path)
 
 

@@ -130,8 +130,9 @@ def test_a_worker_process_that_dies_ends_the_work_and_the_tests_at_work_are_name
         local_workers(2) as two,
         pytest.raises(
             WorkerError,
-            match=r"^a worker process died; found it at work on one of \d, \d; needed workers that "
-            "live .*Most often the memory .*Archives that were finished are kept; run again",
+            match=r"^a worker process died; found it working on one of \d, \d; needed workers that "
+            "live .*The usual cause is too little memory.*Archives that were finished are kept; run "
+            "again",
         ) as caught,
     ):
         told.extend(one.value for one in work_on(die_slowly, tasks, workers=two))
@@ -218,7 +219,7 @@ def test_a_test_at_which_workers_of_a_scheduler_die_fails_alone_and_with_words()
         str(number): number for number in range(12) if number != 5
     }
     assert dead.value is None and isinstance(dead.error, WorkerError)
-    assert str(dead.error).startswith("every worker that began this test died at it; found more")
+    assert str(dead.error).startswith("every worker that began this test died; found more")
     assert dead.error.exit_status == 1
 
 

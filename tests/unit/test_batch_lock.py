@@ -147,11 +147,11 @@ def test_a_process_that_is_started_meanwhile_does_not_hold_the_lock(tmp_path):
 
 def test_work_goes_on_under_its_own_lock_alone(tmp_path):
     with run_lock(tmp_path) as lock:
-        with pytest.raises(ArchiveError, match=r"is not the lock of this run any more; found '"):
+        with pytest.raises(ArchiveError, match=r"is no longer the lock of this run; found '"):
             RunLock(lock.path, "of another").confirm()
         text = lock.path.read_text()
         lock.path.write_text("")
-        with pytest.raises(ArchiveError, match="found that it was given back"):
+        with pytest.raises(ArchiveError, match="found an empty lock"):
             lock.confirm()
         lock.path.write_text(text)
         lock.confirm()
@@ -163,9 +163,7 @@ def test_work_goes_on_under_its_own_lock_alone(tmp_path):
 def test_a_lock_that_cannot_be_read_any_more_ends_the_run_with_the_reason(tmp_path, monkeypatch):
     with run_lock(tmp_path) as lock, monkeypatch.context() as disk:
         disk.setattr(Path, "read_text", refused)
-        with pytest.raises(
-            ArchiveError, match="not the lock of this run any more; found Input/out"
-        ):
+        with pytest.raises(ArchiveError, match="no longer the lock of this run; found Input/out"):
             lock.confirm()
 
 

@@ -172,9 +172,9 @@ def test_a_defect_in_what_one_test_rests_on_fails_that_test_alone(campaign, tmp_
 
 def test_nothing_is_begun_without_the_lock(campaign, tmp_path):
     lost = RunLock(tmp_path / "run.lock", "token")
-    with pytest.raises(ArchiveError, match="is not the lock of this run any more"):
+    with pytest.raises(ArchiveError, match="is no longer the lock of this run"):
         survey_campaign(campaign, lock=lost)
-    with pytest.raises(ArchiveError, match="is not the lock of this run any more"):
+    with pytest.raises(ArchiveError, match="is no longer the lock of this run"):
         reduced(campaign, tmp_path, lock=lost)
 
 
@@ -198,7 +198,7 @@ def test_nothing_is_written_where_the_lock_went_while_a_test_was_reduced(
         basis=lambda survey: Basis(None, (models["T01", "one"],), None, (), "{}", ()),
         lock=lock, progress=Silent(), clock=lambda: 7.0, force=True, command="",
     )  # fmt: skip
-    assert "is not the lock of this run any more" in rows[0].message
+    assert "is no longer the lock of this run" in rows[0].message
     assert list(tmp_path.iterdir()) == []
 
 

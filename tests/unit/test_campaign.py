@@ -120,7 +120,7 @@ def test_flexing_that_cannot_be_is_refused(folder, key, message):
 @pytest.mark.parametrize(
     ("keys", "message"),
     [
-        ('gauge_length_standard_uncertainty = "1 mm"', "stands alone"),
+        ('gauge_length_standard_uncertainty = "1 mm"', "is stated alone"),
         ('gauge_length = "1 m"\ngauge_length_standard_uncertainty = "0 mm"', "not positive"),
         ("earlier_cycles = -1", r"specimens\.a\.earlier_cycles"),
         ('linear_density = "0 kg/m"', r"specimens\.a\.linear_density: is not positive"),
@@ -338,7 +338,7 @@ def test_a_value_that_cannot_be_used_is_told_with_file_and_key(folder, old, new,
         (BASE + TEST + "[[tests.T.steps]]\nname='s'\nfrom='2 s'\nto='1 s'\n", "has no range"),
         (
             BASE + TEST + 2 * "[[tests.T.steps]]\nname='s'\nfrom=1\nto=2\n",
-            "two steps of test 'T' have one name",
+            "two steps of test 'T' have the same name",
         ),
     ],
 )

@@ -110,5 +110,5 @@ def test_an_item_that_is_no_specimen_is_refused():
 
 
 def test_limits_without_a_rule_are_refused():
-    with pytest.raises(SettingsError, match="no rule by which conformity is decided"):
+    with pytest.raises(SettingsError, match="no decision rule for conformity"):
         limits(LIMIT, rule=None)

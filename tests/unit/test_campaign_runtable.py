@@ -116,7 +116,7 @@ def test_dummies_are_kept_apart(read):
             r":3 \[run_order\]: a run is listed twice",
         ),
         (rows("x,y", "1,2", ",2"), DataError, r":3 \[x\]: a run has a value but no level"),
-        (rows("x,y", "5,2", "6,2"), DataError, r"\[x\]: the levels of x lie beside the plan"),
+        (rows("x,y", "5,2", "6,2"), DataError, r"\[x\]: the levels of x are far off the plan"),
     ],
 )
 def test_what_cannot_be_used_is_refused_with_its_place(read, table, error, problem):

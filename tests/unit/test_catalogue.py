@@ -265,7 +265,7 @@ def test_a_quantity_that_no_test_has_gives_no_row(index):
 
 
 def test_numbers_in_several_places_are_asked_for_before_they_are_a_condition(index):
-    with pytest.raises(SettingsError, match=r"'segment_modulus' stands in several places"):
+    with pytest.raises(SettingsError, match=r"'segment_modulus' has several values in a test"):
         asked(index, where=(condition_of("segment_modulus > 1 Pa"),))
 
 
@@ -275,7 +275,7 @@ def test_numbers_in_several_places_are_asked_for_before_they_are_a_condition(ind
         ("frequency", "--where is not a condition"),
         ("frequency >=", "--where is not a condition"),
         ("frequncy > 1 Hz", "names no quantity: 'frequncy'"),
-        ("medium > wet", "'medium' is a text"),
+        ("medium > wet", "'medium' is text"),
         ("frequency > 1 m", "unit 'm' is not a unit of frequency"),
         ("frequency > 1", "a value has no unit"),
         ("mean_tension > 1.2.3 %RBS", "--where has no number"),
@@ -520,7 +520,7 @@ def test_a_table_is_written_with_units(index, tmp_path):
 
 
 def test_a_table_of_another_ending_is_refused(index, tmp_path):
-    with pytest.raises(SettingsError, match="--export does not know the ending"):
+    with pytest.raises(SettingsError, match="--export does not know this file ending"):
         write_answer(answer(index, Query()), tmp_path / "all.xlsx")
 
 

@@ -139,7 +139,7 @@ def test_what_would_be_read_as_something_else_is_refused_with_the_line_to_write(
     text, path, value, line
 ):
     with pytest.raises(
-        SettingsError, match=r"not changed here; needed the line .* by hand"
+        SettingsError, match=r"cannot be edited here; needed the line .* by hand"
     ) as told:
         _edited(text, {path: value})
     assert line in str(told.value)

@@ -25,7 +25,7 @@ from reduction.record.samples import _is_on_disk
 from reduction.record.settings import Limits
 
 SHORT = Limits(time=1.0)
-BROKE = "the library that reads this format broke at the file; found an end "
+BROKE = "the library that reads this format crashed on the file; found an end "
 SAVE = "It may be damaged: save it again with the program that wrote it. "
 RAISE = "If that is what was logged, raise {} under [limits] of campaign.toml."
 MEMORY = f"needed an intact file that takes 2,500,000,000 bytes of memory at most. {SAVE}"
@@ -34,7 +34,7 @@ WORDS = {
     readers.give_up: f"{BROKE}by SIGABRT; {MEMORY}{RAISE.format('unpacked_size')}",
     readers.leave: f"{BROKE}with status 0; {MEMORY}{RAISE.format('unpacked_size')}",
     readers.panic: f"{BROKE.removesuffix('an end ')}BaseException: a check of the library failed; {MEMORY}{RAISE.format('unpacked_size')}",
-    readers.swallow: "the file takes more memory than it may; found more when it is read; needed "
+    readers.swallow: "the file takes more memory than is allowed; found more while it was read; needed "
     f"2,500,000,000 bytes at most. {SAVE}{RAISE.format('unpacked_size')}",
 }
 ON_LINUX = pytest.mark.skipif(sys.platform != "linux", reason="memory is bounded on Linux alone")
@@ -172,9 +172,15 @@ def test_a_run_goes_on_with_the_other_tests(tmp_path, monkeypatch):
     layout = head[head.index("[layouts.logger]") :]
     expected = []
     for name, kind, readers_of, reader, words in (
-        ("B", "tdms", read._IN_PARTS, readers.crash, "broke at the file; found an end by SIGSEGV"),
+        (
+            "B",
+            "tdms",
+            read._IN_PARTS,
+            readers.crash,
+            "crashed on the file; found an end by SIGSEGV",
+        ),
         ("C", "parquet", read._IN_PARTS, readers.hang, "needed 3 s at most"),
-        ("D", "matlab", read._WHOLE, readers.swallow, "takes more memory than it may"),
+        ("D", "matlab", read._WHOLE, readers.swallow, "takes more memory than is allowed"),
     ):
         monkeypatch.setitem(readers_of, kind, reader)
         (raw / f"{name}.bin").write_bytes(b"anything")

@@ -344,7 +344,7 @@ def test_time_that_starts_again_is_two_time_bases():
     with pytest.raises(
         DataError,
         match=r"^T-1.csv:154 \[time\]: the log has two time bases: time starts again; found 0 s after "
-        r"14.9 s; needed one time that goes on. Split the log",
+        r"14.9 s; needed one time that keeps rising. Split the log",
     ):
         convert((log({"time": again}), layout()))
     with pytest.raises(DataError, match=r"^T-1.csv:1150 \[time\]: "):
@@ -368,8 +368,8 @@ def text_of_clock(seconds):
 @pytest.mark.parametrize(
     ("shift", "at", "suffix", "told"),
     [
-        (-3600, 3 * 3600, "", "put back by one hour"),
-        (3600, 2 * 3600, "", "put forward by one hour"),
+        (-3600, 3 * 3600, "", "set back by one hour"),
+        (3600, 2 * 3600, "", "set forward by one hour"),
         (3600, 2 * 3600, "Z", None),  # the time of the world is put forward nowhere
         (3600, 2 * 3600 + 700, "", None),  # nor is any on another minute
         (3600, 12 * 3600, "", None),  # or at noon
@@ -425,7 +425,7 @@ def test_numbers_that_no_machine_measures_are_refused_with_their_row():
 @pytest.mark.parametrize("time", [1e13, -7e300])
 def test_a_time_that_no_clock_shows_is_refused(time):
     clock = np.where(TIME < 5, TIME, time)
-    with pytest.raises(DataError, match=r"the time of T-1\.csv has values that no clock shows"):
+    with pytest.raises(DataError, match=r"the time of T-1\.csv has values that no clock can show"):
         convert((log({"time": clock}), layout()))
 
 

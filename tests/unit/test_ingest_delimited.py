@@ -150,7 +150,7 @@ def test_text_in_a_number_names_file_row_and_channel(read, text):
         read(f"t;x;F\n0;1;2\n1;2;{text}\n2;3;4\n", delimiter=";", missing=("",))
     assert str(caught.value).split("log.csv", 1)[1] == (
         f":3 [F]: a value is not a number; found '{text}'; needed a decimal number such as 12.5 in "
-        "N, or a declared missing mark. Add it to the missing marks of the layout where it means "
+        "N, or a declared missing mark. Add it to the missing marks of the layout if it means "
         "missing."
     )
 
@@ -262,7 +262,9 @@ def test_a_column_number_beyond_the_row_is_refused(read):
 
 
 def test_a_declared_name_that_is_there_twice_is_refused(read):
-    with pytest.raises(LogError, match=r"column 'F' is 2 times in the file; found numbers 3, 4"):
+    with pytest.raises(
+        LogError, match=r"column 'F' appears 2 times in the file; found numbers 3, 4"
+    ):
         read("t,x,F,F\n0,1,2,3\n")
 
 
@@ -361,9 +363,9 @@ def test_quoted_fields_may_hold_the_mark_that_parts_them(read):
         ("1234,567", {"thousands": ","}, 'Set decimal = "," and thousands = ""'),
         ("1,24", {"thousands": ","}, 'Set decimal = "," and thousands = ""'),
         ("0,244", {}, 'Set decimal = ","'),
-        ("1,244", {}, 'Set thousands = "," where the comma parts groups, or decimal = ","'),
-        ("1,004.80328", {}, 'Set thousands = "," where it parts groups of three digits'),
-        ("1.004,80328", {"decimal": ","}, 'Set thousands = "." where it parts groups'),
+        ("1,244", {}, 'Set thousands = "," if the comma separates groups, or decimal = ","'),
+        ("1,004.80328", {}, 'Set thousands = "," if it separates groups of three digits'),
+        ("1.004,80328", {"decimal": ","}, 'Set thousands = "." if it separates groups'),
     ],
 )
 def test_marks_in_a_number_that_the_layout_does_not_state_are_told(read, found, more, advice):
@@ -374,7 +376,7 @@ def test_marks_in_a_number_that_the_layout_does_not_state_are_told(read, found, 
 
 
 def test_a_second_row_of_the_header_and_a_date_are_told_for_what_they_are(read):
-    with pytest.raises(LogError, match="Set has_unit_row = true where this is a row of units"):
+    with pytest.raises(LogError, match="Set has_unit_row = true if this is a row of units"):
         read("t;x;F\n(s);(m);(N)\n0;1;2\n1;2;3\n", delimiter=";")
-    with pytest.raises(LogError, match='Set unit = "clock" where it is a time of day'):
+    with pytest.raises(LogError, match='Set unit = "clock" if it is a time of day'):
         read("t;x;F\n13.11.2018 17:14;1;2\n13.11.2018 17:15;2;3\n", delimiter=";")

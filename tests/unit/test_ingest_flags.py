@@ -51,8 +51,8 @@ def test_a_buffer_that_a_logger_writes_twice_or_late_is_put_in_order():
     twice = np.r_[0:1000, 872:2000]
     late = np.r_[0:1000, 1064:1128, 1000:1064, 1128:2000]
     for rows, words in (
-        (twice, "128 that it has twice"),
-        (late, "sorted (time goes back at 1 of them)"),
+        (twice, "128 duplicate rows left out"),
+        (late, "rows sorted (time goes back at 1 of them)"),
     ):
         found = flagged(record(time=TIME[rows], position=place[rows], load=load[rows]))
         np.testing.assert_array_equal(found.time, TIME)
@@ -212,8 +212,8 @@ def test_an_even_clock_that_is_written_in_coarse_steps_is_even():
     np.testing.assert_allclose(result.time - true, 0.0, atol=0.01)
     np.testing.assert_allclose(np.diff(result.time), 1 / 7, rtol=1e-4)
     assert tuple(map(str, result.notes)) == (
-        "time is written in steps of 0.1 s: readings are taken to follow each other evenly,"
-        " 0.142857 s apart, as all of them allow",
+        "time is written in steps of 0.1 s: readings are treated as evenly spaced,"
+        " 0.142857 s apart, which agrees with all logged times",
     )
 
 

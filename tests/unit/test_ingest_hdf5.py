@@ -172,9 +172,9 @@ def test_virtual_and_external_storage_are_refused(path, tmp_path):
         file["run/1"].create_virtual_dataset("F", virtual)
         raw = [(str(tmp_path / "raw.bin"), 0, 24)]
         file["run/1"].create_dataset("G", shape=(3,), dtype="f8", external=raw)
-    with pytest.raises(LogError, match="'/run/1/F' keeps its values in other files"):
+    with pytest.raises(LogError, match="'/run/1/F' stores its values in other files"):
         read(path)
-    with pytest.raises(LogError, match="'/run/1/G' keeps its values in other files"):
+    with pytest.raises(LogError, match="'/run/1/G' stores its values in other files"):
         read(path, channels={"time": {"column": "G", "unit": "s"}})
 
 

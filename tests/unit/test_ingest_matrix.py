@@ -119,7 +119,7 @@ def test_a_key_that_stands_twice_is_refused(read):
 
 
 def test_json_of_columns_records_and_lines_refuses_what_has_no_number(read):
-    with pytest.raises(LogError, match=r"there is no key 'a\.b'.*parted by points"):
+    with pytest.raises(LogError, match=r"there is no key 'a\.b'.*separated by dots"):
         read({"a": {"c": [1, 2]}}, matrix="", group="a.b")
     with pytest.raises(LogError, match="a value in row 2 of 'x' is not a number; found 'up'"):
         read([{"t": 0, "x": 1, "F": 2}, {"t": 1, "x": "up", "F": 2}], matrix="",

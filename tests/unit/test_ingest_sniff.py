@@ -227,7 +227,7 @@ def test_the_proposal_for_a_workbook_names_the_sheet_and_the_others():
 @needs_measured_logs
 @pytest.mark.parametrize("name", ["machine-exports/example3.csv", "instron-elastomer/LICENSE"])
 def test_a_file_without_a_table_is_refused(name):
-    with pytest.raises(LogError, match="no table of numbers stands at the start of the file"):
+    with pytest.raises(LogError, match="no table of numbers at the start of the file"):
         sniff_layout(LOGS / name)
 
 
@@ -276,7 +276,7 @@ def test_tests_side_by_side_are_not_the_specimens_of_one(tmp_path):
         "time": (1, "s"), "tension.1": (2, "N"), "crosshead_position": (3, "mm"),
     }  # fmt: skip
     assert any(
-        one.startswith("guess: 2 tests stand side by side") for one in sniff_layout(path).remarks
+        one.startswith("guess: 2 tests are side by side") for one in sniff_layout(path).remarks
     )
 
 
@@ -540,8 +540,8 @@ def test_what_a_preamble_says_of_the_rate_is_quoted_where_no_column_is_time(tmp_
     head = "DMC Data File\nSample Frequency (Hz): 10000\nUnits\tmm\tmN\n\nSample\tAI0\tAI1\n"
     rows = "".join(f"{row}\t{row / 7:.4f}\t{row / 3:.4f}\n" for row in range(40))
     (tmp_path / "a.ddf").write_text(head + rows)
-    said = [one for one in sniff_layout(tmp_path / "a.ddf").remarks if "the log says" in one]
-    assert said == ["unknown: the log says of it: Sample Frequency (Hz): 10000"]
+    said = [one for one in sniff_layout(tmp_path / "a.ddf").remarks if "the log says about" in one]
+    assert said == ["unknown: the log says about it: Sample Frequency (Hz): 10000"]
 
 
 def test_some_blanks_hide_neither_datum_nor_zero(tmp_path):

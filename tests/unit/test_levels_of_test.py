@@ -176,7 +176,7 @@ def test_two_unequal_ramps_are_triangular(share):
 
 @pytest.mark.parametrize(("grows", "words"), [
     (True, "the amplitude of tension grows by 74.2 N with it: the cycles are not at one level"),
-    (False, "though the machine drives the load: the machine did not hold the level"),
+    (False, "although the machine controls the load: the machine did not hold the level"),
 ])  # fmt: skip
 def test_a_mean_that_rises_with_the_amplitude_is_of_growing_cycles_and_no_lost_level(grows, words):
     """Thirty sines of a driven load from one valley, or of one amplitude; 80 N more at their end.

@@ -427,7 +427,7 @@ class TestRun:
         assert plain[0] == pytest.approx(np.sqrt(16e10 + 24e6 * 20_600), rel=2e-3)
         bent, _, (note,) = quasi_static_of_run(loops, [pull], above_midline=[(600.0, 5.0)])
         assert bent[0] == pytest.approx(800e3, rel=2e-3)
-        assert note.severity == "note" and "bent as the slow pull is" in str(note)
+        assert note.severity == "note" and "curved like the slow pull" in str(note)
         # of a bend that is not seen, or not known, nothing follows
         for above in ((600.0, 400.0), (1.0, 0.01), (np.nan, np.nan)):
             found, _, notes = quasi_static_of_run(loops, [pull], above_midline=[above])

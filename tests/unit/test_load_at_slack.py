@@ -84,9 +84,9 @@ def test_without_a_rest_the_zero_is_not_known():
 @pytest.mark.parametrize(
     ("earlier", "later", "words"),
     [
-        (0.5, 30.0, "its zero drifts; only a specimen that became shorter"),
-        (0.5, -30.0, "its zero drifts, as no line pushes"),
-        (6.0, 0.2, "or the specimen still pulled at the first"),
+        (0.5, 30.0, "its zero drifts (a specimen could pull there only if it had become shorter)"),
+        (0.5, -30.0, "its zero drifts, since a line cannot push"),
+        (6.0, 0.2, "or the specimen was still taut at the first"),
         (0.0, 3.9, None),  # below a hundredth of 400 N
     ],
 )

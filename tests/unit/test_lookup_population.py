@@ -183,7 +183,7 @@ def test_python_gives_the_population_of_the_command(monkeypatch):
     assert found.attrs["one_sided_factor"] == pytest.approx(limits["one_sided_factor"])
     grid = reduction.look_up("lab", "K_ap", population=0.95, **LEVEL | {"mean_tension": [2e5, 4e5]})
     assert grid.of_specimens.values.tolist() == [[value, 2 * value] for value in VALUES]
-    with pytest.raises(SettingsError, match="one way to put lines together"):
+    with pytest.raises(SettingsError, match="only one option that combines lines"):
         reduction.look_up("lab", "K_ap", population=0.95, rank=True, **LEVEL)
 
 

@@ -300,7 +300,7 @@ def test_turns_between_the_same_two_readings_are_no_warning_and_a_late_load_is(
     )  # fmt: skip
     (note,) = found.notes
     assert note.severity == severity
-    assert ("the turn lies between the same two readings" in str(note)) is (severity == "note")
+    assert ("the reversal lies between the same two readings" in str(note)) is (severity == "note")
 
 
 @pytest.mark.parametrize("per_cycle", [30, 40, 50])

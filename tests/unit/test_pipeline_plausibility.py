@@ -89,7 +89,9 @@ def test_cycles_that_go_slack_are_counted(notes_of):
 def test_a_specimen_that_is_pushed_in_its_cycles_is_not_called_slack(notes_of):
     # from -500 to 500 N, of which a fiftieth is slack
     (note,) = map(str, notes_of(1000 * (notes_of.strain - 1.0)))
-    assert note.startswith("new: the specimen is pushed in the cycles (down to -500 N, median)")
+    assert note.startswith(
+        "new: tension is negative in part of the cycles (down to -500 N, median)"
+    )
 
 
 def test_what_the_cell_reads_at_slack_says_what_is_slack_in_the_cycles():

@@ -172,8 +172,8 @@ def test_a_pull_without_strain_has_a_strength_alone():
     )  # fmt: skip
     assert found.tensile.is_break.tolist() == [True]
     assert tuple(map(str, found.notes)) == (
-        "line: strain at failure not given: the strain at the peak is not known, or stood still"
-        " while the load rose to it, as of an extensometer that was taken off",
+        "line: strain at failure not given: the strain at the peak is not known, or did not"
+        " change while the load rose to it, as with an extensometer that was taken off",
     )
 
 

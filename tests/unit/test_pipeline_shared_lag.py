@@ -47,7 +47,7 @@ def test_a_tension_that_is_late_is_noted_for_its_own_channel():
     assert estimate.lag == pytest.approx([0.02, 0.0], abs=0.002)
     assert len(notes) == 1
     assert str(notes[0]).startswith("new: tension reverses 20 +- ")
-    assert "no lag is stated" in str(notes[0]) and "no correction is made" in str(notes[0])
+    assert "no lag is stated" in str(notes[0]) and "No correction is made" in str(notes[0])
 
 
 def test_a_lag_within_what_is_stated_is_no_news():

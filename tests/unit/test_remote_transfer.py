@@ -109,7 +109,7 @@ def test_a_transfer_that_breaks_off(bucket, site, tmp_path):
 
 def test_a_transfer_that_loses_a_byte_in_silence(bucket, tmp_path):
     bucket.short.add("bucket/raw/T.csv")
-    message = "T.csv: the transfer broke off; found 255999 bytes; needed 256000 bytes"
+    message = "T.csv: the transfer was interrupted; found 255999 bytes; needed 256000 bytes"
     fault_of("s3://bucket/raw/T.csv", tmp_path / "T", message)
 
 

@@ -30,7 +30,7 @@ def test_many_cycles_are_filled_between_their_extremes_so_that_no_specimen_hides
         tension = view.data["tension"].values[index]
         assert min(heights) == pytest.approx(tension.min(), rel=1e-5)
         assert max(heights) == pytest.approx(tension.max(), rel=1e-5)
-    assert "Too many cycles to show singly" in figure.caption
+    assert "Too many cycles to show individually" in figure.caption
 
 
 def test_a_spike_in_a_long_record_is_at_its_place():

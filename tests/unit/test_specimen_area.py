@@ -70,14 +70,17 @@ def test_the_area_is_that_of_what_is_stated(stated, size, area):
     ("size", "match"),
     [
         ('area = "1 mm2"\ndiameter = "1 mm"', "states its cross-section in two ways"),
-        ('width = "1 mm"', "width stands alone"),
-        ('density = "900 kg/m3"', "density stands alone"),
+        ('width = "1 mm"', "width is stated alone"),
+        ('density = "900 kg/m3"', "density is stated alone"),
         (
             'width = ["1 mm", "2 mm"]\nthickness = ["1 mm", "2 mm", "3 mm"]',
             "not of the same places",
         ),
         ('area = "1 mm"', "unit 'mm' is not a unit of area"),
-        ('area = "1 mm2"\nstretched_diameter = { "10 %" = ["1 mm"] }', "stretched_diameter stands"),
+        (
+            'area = "1 mm2"\nstretched_diameter = { "10 %" = ["1 mm"] }',
+            "stretched_diameter is stated alone",
+        ),
     ],
 )
 def test_a_size_that_is_stated_twice_or_by_half_is_refused(stated, size, match):

@@ -164,7 +164,7 @@ def draw_pull(view: TestView) -> list[Figure]:
         make_figure(
             f"{view.key}-pull", f"{view.id}: load against strain, slow pull",
             "Tension against strain as logged (grey), and strain as a cubic of tension over its"
-            " range of use. Do not use it beyond.",
+            " range of use. Do not use it beyond that range.",
             curves, synthetic=view.is_synthetic, height=400,
             xaxis=axis(percent.label("strain")), yaxis=axis(force.label("tension")),
         ),

@@ -169,8 +169,8 @@ def draw_chart(view: HoseView) -> list[Figure]:
         make_figure(
             f"{view.key}-chart", f"Cord strain over hose strain, hose {view.name}",
             "Each line is a wrap angle, given at its end in degrees from the axis, with the dead"
-            " length of this hose; it ends where its cords break. Below zero a cord is slack: above"
-            f" {np.degrees(NEUTRAL_ANGLE):.2f} degrees it is so at first. Geometry of a long hose"
+            " length of this hose; it ends where its cords break. Below zero a cord is slack, as it"
+            f" is at first above {np.degrees(NEUTRAL_ANGLE):.2f} degrees. Geometry of a long hose"
             " of constant volume, without load.",
             data, synthetic=view.is_synthetic, height=480, is_wide=True,
             xaxis=_strain_axis(range=[0, 104 * last]), yaxis=axis("strain of the cords [%]"),
@@ -247,8 +247,8 @@ _STATIC = (
 )
 
 _KINK = (
-    ", a rough one near the strain of pick-up, where of all hoses in it some have slack cords and"
-    " others not"
+    ", only approximate near the strain of pick-up, where some hoses in the band have slack cords"
+    " and others do not"
 )
 
 
@@ -278,7 +278,7 @@ def draw_tension(view: HoseView) -> list[Figure]:
     data += _event_marks(view, "tension", force)
     about = f"Shaded blue: 95 % band ({_FACTOR}, at held strain){_KINK}. "
     about = about if view.sources else ""
-    grey = " Grey: cords slack, the rubber alone carries." if view.is_slack_at_first else ""
+    grey = " Grey: cords slack, the rubber carries all load." if view.is_slack_at_first else ""
     return _kept_figure(
         make_figure(
             f"{view.key}-tension", f"Predicted tension, hose {view.name}",
@@ -568,8 +568,8 @@ def draw_cycle_bias(view: ComparisonView) -> list[Figure]:
             degrees_of_freedom=max(number.size - 2, 1),
         )
         about = (
-            f" Dashed: {slope:+.3g} {force.unit} a decade, ± {float(spread.half):.2g} {force.unit}"
-            f" (95 %, {factor_words(spread.factors)}, scatter about the line)."
+            f" Dashed: {slope:+.3g} {force.unit} per decade, ± {float(spread.half):.2g}"
+            f" {force.unit} (95 %, {factor_words(spread.factors)}, scatter about the line)."
         )
     # a bias that hardly moves would fill the height, and noise would look like a trend
     middle, reach = bias.mean(), max(np.ptp(bias), 0.02 * _greatest(view) * force.factor)

@@ -125,7 +125,7 @@ def draw_record(view: TestView) -> list[Figure]:
     caption += _of_part(view)
     if is_dense:
         caption += (
-            " Too many cycles to show singly: filled from minimum to maximum of each short"
+            " Too many cycles to show individually: filled from minimum to maximum of each short"
             f" interval of the {time.shape[0]:,} samples."
         )
     elif time.shape[0] > POINTS:

@@ -159,7 +159,7 @@ def draw_errors(found: PredictedArmour) -> list[Figure]:
 def _of_wire(found: PredictedArmour) -> str:
     return (
         f"Wire and core of layer {found.layer_names[0]} at {100 * float(found.strain[0]):g} % of"
-        " strain of the cable, wound at any angle; dotted: its own."
+        " strain of the cable, wound at any angle; dotted: its actual angle."
     )
 
 
