@@ -103,7 +103,7 @@ SAID = {
     "xls_whose_sectors_run_in_a_circle": "there is no sheet 1",
     "shape_of_a_million_million_in_chunks": "no room for 8000000 MB",
     "every_column_ten_to_the_nine": "has values that were never written",
-    "one_chunk_of_zeros": "a chunk of '/F' unpacks to more than the memory",
+    "one_chunk_of_zeros": "a chunk of '/F' unpacks to more memory than is allowed",
     "columns_without_end": "the file has too many columns",
     "external_link_on_the_way": "is a link",
     "external_storage": "stores its values in other files",

@@ -96,7 +96,7 @@ def test_a_bit_that_is_turned_over_in_a_raw_file_is_found(place, at, without_tab
     assert ("T-2.nc", "raw_file") in [(one.product, one.kind) for one in findings]
     (one,) = [one for one in findings if one.kind == "raw_file"]
     assert "T-2.csv is not the file from which it was made" in str(one)
-    assert "take a copy of it that is as it was" in one.hint
+    assert "restore the original" in one.hint
 
 
 @pytest.mark.parametrize(
