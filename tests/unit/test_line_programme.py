@@ -180,9 +180,7 @@ class TestFailure:
             cycles_to_failure(loops_with((1, 3)), rated_break_strength=1.0, **changed)
 
     def test_a_share_of_the_peak_is_a_share(self):
-        with pytest.raises(
-            SettingsError, match="the share of the peak that is a failure; found 50"
-        ):
+        with pytest.raises(SettingsError, match="that counts as failure is out of range; found 50"):
             cycles_to_failure(loops_with((1, 3)), rated_break_strength=1.0, failure_share=50)
 
 

@@ -400,7 +400,9 @@ def cycles_to_failure(
     n_specimens, n_cycles = loops.frequency.shape
     if not 0 < failure_share < 1:
         raise SettingsError(
-            "the share of the peak that is a failure", found=f"{failure_share:g}", needed="0 to 1"
+            "the share of the peak that counts as failure is out of range",
+            found=f"{failure_share:g}",
+            needed="0 to 1",
         )
     strength = one_a_specimen(rated_break_strength, n_specimens)
     number = np.arange(1, n_cycles + 1) if cycle_number is None else np.asarray(cycle_number)
