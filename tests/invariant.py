@@ -211,7 +211,7 @@ def _judge_product(answer, good, files, expected):
         raise InvariantError(
             f"a product of files that say nothing: {type(error).__name__}: {error}"
         ) from error
-    if any("in order of time" in text or "newest first" in text for _, text in answer.notes):
+    if any("in time order" in text or "newest first" in text for _, text in answer.notes):
         reading = reading.in_order()
     if differing := readings_that_differ(reading, answer.dataset):
         raise InvariantError("; ".join(differing))

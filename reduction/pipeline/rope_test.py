@@ -236,7 +236,9 @@ def rope_step(
                 loops, rated_break_strength=strength,
                 begin_tension=tension[:, located.cycles.first[0]],
             )  # fmt: skip
-        notes += _stiffness_notes(dynamic, names, settings) + _of_levels(loops, dynamic, names)
+        notes += _stiffness_notes(dynamic, names, settings, kind=kind) + _of_levels(
+            loops, dynamic, names
+        )
         if kind == "bedding-in":
             notes += _of_first_cycle(loops, names)
         step = replace(step, bedding_in=bedding, dynamic=dynamic)
@@ -302,10 +304,10 @@ def _of_first_cycle(loops: Loops, names: Sequence[str]) -> list[Note]:
 
 
 def _stiffness_notes(
-    dynamic: DynamicStiffness, names: Sequence[str], settings: RopeSettings
+    dynamic: DynamicStiffness, names: Sequence[str], settings: RopeSettings, *, kind: str
 ) -> list[Note]:
     """Notes on too few cycles, and on a stiffness that has not settled."""
-    notes = []
+    notes: list[Note] = []
     for row, name in enumerate(names):
         used = int(dynamic.n_cycles[row, 0])
         if used < settings.last_cycles:
@@ -315,7 +317,10 @@ def _stiffness_notes(
         spread = float(dynamic.drift_per_cycle_standard_uncertainty[row, 0])
         share = drift * (used - 1) / float(dynamic.dynamic_stiffness[row, 0])
         if abs(drift) > _SIGNIFICANT * spread and abs(share) > _DRIFT_NOTED:
-            notes.append(note("stiffness-not-settled", name, effect=share, n_cycles=used))
+            found = note("stiffness-not-settled", name, effect=share, n_cycles=used)
+            # a short bedding-in gives its last cycle, and its first ones are expected to change
+            is_bedding = kind == "bedding-in" and used < settings.last_cycles
+            notes.append(replace(found, severity="note") if is_bedding else found)
     return notes
 
 

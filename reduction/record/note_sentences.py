@@ -129,7 +129,8 @@ _OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "rows-sorted": (
         "note",
         lambda n_rows, n_twice, n_moved: (
-            "the log was written newest first: its rows are read in reverse order"
+            "the log was written newest first, so time runs backward: its rows are read in"
+            " reverse order"
             if n_moved == n_rows - n_twice - 1
             else "the rows of the log are not in time order: "
             + ", ".join(

@@ -92,4 +92,4 @@ def test_a_line_that_is_far_outside_has_no_place_unless_it_is_asked_for():
 def test_one_way_to_put_lines_together(command):
     done = command(*ASKED, "--frequency", "0.3 Hz", "--against", name("1"))
     assert done.returncode == 2
-    assert "one way" in done.stderr
+    assert "only one option" in done.stderr

@@ -67,7 +67,7 @@ def test_a_wave_that_dwells_is_reduced_as_one_whatever_is_stated(stated, tmp_pat
         true = truth.tests["D-1"]["piece"][name]
         spread = float(found[f"test_{name}_standard_uncertainty"][0])
         assert abs(float(found[f"test_{name}"][0]) - true) <= WITHIN * spread, name
-    assert f'waveform = "{stated}"' in said and ", but that of the log is neither" in said
+    assert f'waveform = "{stated}"' in said and ", but the log is neither" in said
 
 
 def test_a_settling_angle_leaves_the_frequency_to_a_millionth(tmp_path):

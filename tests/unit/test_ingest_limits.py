@@ -179,7 +179,7 @@ def test_a_pipe_a_device_and_a_folder_are_no_logs(tmp_path, look):
         (Path("/dev/zero"), "a device"),
         (tmp_path, "a folder"),
     ):
-        with pytest.raises(LogError, match=f"not a file that can be read; found {found}"):
+        with pytest.raises(LogError, match=f"this is not a readable file; found {found}"):
             look(path)
 
 

@@ -51,7 +51,7 @@ def test_columns_may_be_given_by_number_where_a_name_stands_twice(tmp_path):
     channels = {"time": {"column": 1, "unit": "s"}, "tension": {"1": {"column": 2, "unit": "kN"}}}
     log = read_parquet(tmp_path / "log.parquet", layout(channels=channels), name="x")
     assert log.columns["tension.1"].tolist() == [1, 2, 3]
-    with pytest.raises(LogError, match="column 't' is 2 times in the file"):
+    with pytest.raises(LogError, match="column 't' appears 2 times in the file"):
         read_parquet(tmp_path / "log.parquet", layout(), name="x")
 
 

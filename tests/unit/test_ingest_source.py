@@ -46,7 +46,7 @@ def test_a_file_that_is_not_there_is_refused(tmp_path, read):
 
 
 def test_a_folder_is_refused(tmp_path):
-    with pytest.raises(LogError, match="not a file that can be read; found a folder"):
+    with pytest.raises(LogError, match="this is not a readable file; found a folder"):
         read_bytes(tmp_path)
 
 
