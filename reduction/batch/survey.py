@@ -40,6 +40,7 @@ from reduction.stages.load_at_slack import (
 )
 from reduction.stages.moduli.cycle_alignment import jump_of_mean, time_with_hidden
 from reduction.stages.standstills import median_step
+from reduction.stages.strain.strain_fit import MarkReading
 from reduction.stages.strain.tape_and_crosshead import (
     TAPE_UNCERTAINTY,
     check_tape_against_crosshead,
@@ -152,16 +153,16 @@ Reader = Callable[..., tuple[Record, tuple[Source, ...]]]
 class Survey:
     """One test after the first pass.
 
-    ``mark_tension``, ``mark_tension_at_start`` and ``mark_tension_on_arrival`` hold, by specimen,
-    one tension [N] for each pooled mark read in this test, in the order of the marks;
-    ``mark_errors`` holds the marks that the crosshead contradicts.  ``zero_strain`` is the
-    position of zero strain, by specimen, and ``reference_length`` [m] the length at
-    displacement zero, if stated.  ``extremes`` is the range covered by the test and ``levels``
-    its operating levels; ``found`` and ``notes`` are reported on the log, ``remarks`` on its
-    levels.  ``first_time`` is that of the first row [s]; ``broken`` names the specimens that
-    broke, as stated or according to the log of a pull, and ``slips`` holds the splice slips by
-    specimen that matter to a later test.  ``n_cycles_between`` is the number of cycles counted
-    by the machine between those of the log.
+    ``mark_tension`` holds, by time of reading and by specimen, one tension [N] for each pooled
+    mark read in this test, in the order of the marks; ``mark_errors`` holds the marks that the
+    crosshead contradicts.  ``zero_strain`` is the position of zero strain, by specimen, and
+    ``reference_length`` [m] the length at displacement zero, if stated.  ``extremes`` is the
+    range covered by the test and ``levels`` its operating levels; ``found`` and ``notes`` are
+    reported on the log, ``remarks`` on its levels.  ``first_time`` is that of the first row
+    [s]; ``broken`` names the specimens that broke, as stated or according to the log of a pull,
+    and ``slips`` holds the splice slips by specimen that matter to a later test.
+    ``n_cycles_between`` is the number of cycles counted by the machine between those of the
+    log.
     """
 
     plan: TestPlan
@@ -173,9 +174,7 @@ class Survey:
     n_cycles_between: int = 0
     first_time: float = float("nan")
     slips: dict[str, list[SpliceSlip]] = field(default_factory=dict)
-    mark_tension: dict[str, Floats] = field(default_factory=dict)
-    mark_tension_at_start: dict[str, Floats] = field(default_factory=dict)
-    mark_tension_on_arrival: dict[str, Floats] = field(default_factory=dict)
+    mark_tension: dict[MarkReading, dict[str, Floats]] = field(default_factory=dict)
     mark_errors: dict[str, DataError] = field(default_factory=dict)
     zero_strain: dict[str, ZeroStrain] = field(default_factory=dict)
     reference_length: float | None = None
@@ -517,9 +516,7 @@ def _measure_marks(survey: Survey, located: Located, campaign: Campaign) -> None
                 record = survey.located.record
                 record = replace(record, notes=(*notes, *record.notes))
                 survey.located = replace(survey.located, record=record)
-    at = tension_at_marks(located, campaign.marks, plan.specimens, log=plan.log)
-    survey.mark_tension, survey.mark_tension_at_start = at["end"], at["start"]
-    survey.mark_tension_on_arrival = at["arrival"]
+    survey.mark_tension = tension_at_marks(located, campaign.marks, plan.specimens, log=plan.log)
 
 
 def _of_position(campaign: Campaign, located: Located) -> float:

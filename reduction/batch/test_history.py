@@ -9,9 +9,10 @@ References
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from operator import itemgetter
+from typing import get_args
 
 import numpy as np
 
@@ -28,7 +29,12 @@ from reduction.record.measurement import Floats, Specimen, SpliceMarks
 from reduction.record.notes import Note, note
 from reduction.stages.reduced_test import History
 from reduction.stages.strain.splice_laws import SpliceAverage
-from reduction.stages.strain.strain_fit import PooledMarks, average_over_laws, fit_strain_model
+from reduction.stages.strain.strain_fit import (
+    MarkReading,
+    PooledMarks,
+    average_over_laws,
+    fit_strain_model,
+)
 from reduction.stages.strain.strain_model import StrainModel
 from reduction.stages.strain.zero_strain import ZeroStrain
 
@@ -256,14 +262,12 @@ def _unknown(survey: Survey, past: EarlierTests) -> tuple[Note, ...]:
     )
 
 
-def _pooled(
-    marks: SpliceMarks, surveys: Sequence[Survey], measured: Callable[[Survey], dict[str, Floats]]
-) -> Floats:
+def _pooled(marks: SpliceMarks, surveys: Sequence[Survey], reading: MarkReading) -> Floats:
     """One tension per mark, in the order of the marks; NaN if its test could not be read."""
     tension = np.full(len(marks.test), np.nan)
     of_test = np.array(marks.test)
     for survey in surveys:
-        values = measured(survey).get(marks.specimen)
+        values = survey.mark_tension.get(reading, {}).get(marks.specimen)
         if values is not None:
             tension[of_test == survey.plan.log] = values
     return tension
@@ -271,7 +275,11 @@ def _pooled(
 
 def _failed_logs(surveys: Sequence[Survey]) -> tuple[str, ...]:
     """Unreadable logs, whose marks have no tension."""
-    sound = {survey.plan.log for survey in surveys if survey.error is None or survey.mark_tension}
+    sound = {
+        survey.plan.log
+        for survey in surveys
+        if survey.error is None or any(survey.mark_tension.values())
+    }
     return tuple(dict.fromkeys(s.plan.log for s in surveys if s.plan.log not in sound))
 
 
@@ -291,20 +299,12 @@ def fit_strain_models(
     campaign: Campaign, surveys: Sequence[Survey]
 ) -> tuple[dict[tuple[str, str], StrainModel], dict[str, ReductionError]]:
     """Fit the strain model of each specimen in each test."""
-    at_end = {
-        name: _pooled(marks, surveys, lambda survey: survey.mark_tension)
-        for name, marks in campaign.marks.items()
-    }
-    at_start = {
-        name: _pooled(marks, surveys, lambda survey: survey.mark_tension_at_start)
-        for name, marks in campaign.marks.items()
-    }
-    on_arrival = {
-        name: _pooled(marks, surveys, lambda survey: survey.mark_tension_on_arrival)
-        for name, marks in campaign.marks.items()
+    pooled = {
+        reading: {name: _pooled(marks, surveys, reading) for name, marks in campaign.marks.items()}
+        for reading in get_args(MarkReading)
     }
     averages = {
-        name: _average(marks, at_end[name], at_start[name])
+        name: _average(marks, pooled["end"][name], pooled["start"][name])
         for name, marks in campaign.marks.items()
     }
     cells = {name: _load_cells(campaign, surveys, name) for name in campaign.specimens}
@@ -324,9 +324,9 @@ def fit_strain_models(
                     campaign.specimens[name],
                     test_id=survey.plan.log,
                     marks=campaign.marks.get(name),
-                    mark_tension=at_end.get(name),
-                    mark_tension_at_start=at_start.get(name),
-                    mark_tension_on_arrival=on_arrival.get(name),
+                    mark_tension=pooled["end"].get(name),
+                    mark_tension_at_start=pooled["start"].get(name),
+                    mark_tension_on_arrival=pooled["arrival"].get(name),
                     settings=survey.plan.settings.strain,
                     has_extensometer=survey.extremes.has_extensometer,
                     zero=_with_error_of_load(zero, campaign),

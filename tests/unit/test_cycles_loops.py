@@ -19,7 +19,7 @@ from reduction.stages.cycles.fundamental import (
 )
 from reduction.stages.cycles.loop_energy import energy_by_chance, loop_energy
 from reduction.stages.cycles.loop_sense import unlike_neighbours
-from reduction.stages.cycles.loops import _mean_drift, close_loops
+from reduction.stages.cycles.loops import _lead, _mean_drift, close_loops
 from reduction.stages.cycles.reading_noise import reading_noise
 from reduction.stages.cycles.turns import noise_in_extreme
 from reduction.stages.moduli.secant_modulus import summarise_amplitude
@@ -193,6 +193,34 @@ def test_a_ramp_that_dies_away_in_the_first_cycles_is_not_their_loss(control, de
         found, stated = getattr(loops, name)[0], loops.uncertainty[name][0]
         assert (np.abs(found - expected) < 2.6 * np.hypot(stated, floor)).all(), name
     assert abs(loops.closed_loop_energy[0, 0] - energy) > 0.15 * energy
+
+
+@pytest.mark.parametrize("wave", ["sinusoidal", "triangular"])
+@pytest.mark.parametrize("n_cycles", [1, 5])
+def test_friction_behind_a_ramp_is_within_the_interval_of_the_first_cycle(wave, n_cycles):
+    """Springs k with sliders f lose 4 f (a - f / k) in a cycle; a ramp leaves each at +f."""
+    turn = np.arange(n_cycles * 80 + 1) / 80
+    driven = -np.cos(2 * np.pi * turn) if wave == "sinusoidal" else 1 - 4 * np.abs(turn % 1 - 0.5)
+    limits, stiffness = np.linspace(2, 16, 8), 100.0
+    held, held_at = limits.copy(), []
+    for step in np.diff(driven, prepend=driven[0]):
+        held = np.clip(held + stiffness * step, -limits, limits)
+        held_at.append(held.sum())
+    loops = close_loops(
+        10 * turn, 2000 + 500 * driven[None] + np.array(held_at)[None], 1 + 0.1 * driven[None],
+        cycles_of(80, n_cycles, turn.size), waveform=wave,
+    )  # fmt: skip
+    energy = 0.1 * np.sum(4 * limits * (1 - limits / stiffness))
+    found, stated = loops.hysteresis_energy[0], loops.uncertainty["hysteresis_energy"][0]
+    assert abs(found[0] - energy) < 1.75 * stated[0]  # anywhere between two limits: sqrt(3)
+    assert found[1:] == pytest.approx(energy, rel=0.02)
+
+
+def test_a_valley_in_the_rest_before_the_cycles_is_moved_to_their_beginning():
+    turn = np.maximum(np.arange(-15, 161), 0) / 80
+    driven = -np.cos(2 * np.pi * turn)
+    assert _lead(driven, np.array([0, 95]), np.array([55, 135])) == -15
+    assert _lead(driven, np.array([15, 95]), np.array([55, 135])) == 0
 
 
 @pytest.mark.parametrize("per_cycle", [12.3, 13.0, 19.7, 50.0])

@@ -17,16 +17,21 @@ MODEL = StrainModel(
 ERRORS = InstrumentErrors("new", splice_friction=0.05)
 
 
-def test_a_loop_is_wider_by_the_difference_of_the_branches_over_the_range_of_tension():
-    """By hand: the splices' extension over the free length is 0.1 at 450 N, 0.05 at 225 N."""
-    found = loop_contributions(
-        ERRORS, MODEL, frequency=np.array([0.1]), mean_tension=np.array([450.0]),
+def contributions(errors, model):
+    """Of a triangular loop between 225 and 675 N, and strains of 0.5 and 1.5."""
+    return loop_contributions(
+        errors, model, frequency=np.array([0.1]), mean_tension=np.array([450.0]),
         tension_amplitude=np.array([225.0]), mean_strain=np.array([1.0]),
         strain_amplitude=np.array([0.5]), apparent_spring_constant=np.array([450.0]),
         hysteresis_energy=np.array([20.0]), storage_spring_constant=np.array([450.0]),
         loss_spring_constant=np.array([25.0]), closed_loop_energy=np.array([20.0]),
         waveform="triangular",
     )  # fmt: skip
+
+
+def test_a_loop_is_wider_by_the_difference_of_the_branches_over_the_range_of_tension():
+    """By hand: the splices' extension over the free length is 0.1 at 450 N, 0.05 at 225 N."""
+    found = contributions(ERRORS, MODEL)
     place = [one.source for one in found.component].index("splice_friction")
     moved = {name: float(rows[place, 0]) for name, rows in found.values.items()}
     assert moved["hysteresis_energy"] == pytest.approx(2 * 225.0 * 0.05 * 0.1, rel=1e-6)
@@ -39,16 +44,10 @@ def test_a_loop_is_wider_by_the_difference_of_the_branches_over_the_range_of_ten
 
 def test_the_zero_of_the_crosshead_is_in_the_strain_of_a_valley():
     """By hand: without splices 5 mm of 2.5 m, at the valley as at the peak."""
-    found = loop_contributions(
+    found = contributions(
         InstrumentErrors("rope", position_offset=0.005),
         StrainModel("rope", "gauge-length", {"gauge_length": 2.5, "reference_position": 2.5}),
-        frequency=np.array([0.1]), mean_tension=np.array([450.0]),
-        tension_amplitude=np.array([225.0]), mean_strain=np.array([1.0]),
-        strain_amplitude=np.array([0.5]), apparent_spring_constant=np.array([450.0]),
-        hysteresis_energy=np.array([20.0]), storage_spring_constant=np.array([450.0]),
-        loss_spring_constant=np.array([25.0]), closed_loop_energy=np.array([20.0]),
-        waveform="triangular",
-    )  # fmt: skip
+    )
     assert np.linalg.norm(found.values["foot_strain"]) == pytest.approx(0.002, rel=1e-6)
 
 

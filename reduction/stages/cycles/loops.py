@@ -203,10 +203,12 @@ def _own_drift(
             if place == stop - 1:
                 drift, slope, spread = _from_valley_to_valley(driven, answer, cycles, place)
             else:
-                valleys = cycles.first[place : place + 2]
+                valleys = cycles.first[place : place + 2].copy()
                 ahead = int(length[place : place + 2].min()) // _OF_GAP + 1
                 # over both sides of a valley the effect of a settling loss angle cancels
                 behind = ahead - 1 if place > start else 0
+                if place == start:  # the first valley may be anywhere in the rest before the cycles
+                    valleys[0] -= _lead(driven, valleys, cycles.branch_last[place : place + 2, 0])
                 count = ahead + behind
                 level, other = (
                     np.stack([series[at - behind : at + ahead] for at in valleys.tolist()])
@@ -235,6 +237,19 @@ def _own_drift(
     return drifts, is_own
 
 
+def _lead(driven: Floats, valleys: Integers, peaks: Integers) -> int:
+    """Samples by which the first of two valleys is nearer to the middle of its rise. [1]."""
+    begin = driven[valleys[1]]
+    middle = np.abs(driven[peaks[1]] - begin) / 2
+    to_middle = []
+    for valley, peak in zip(valleys.tolist(), peaks.tolist(), strict=True):
+        reached = np.flatnonzero(np.abs(driven[valley : peak + 1] - begin) >= middle)
+        if not reached.size:
+            return 0
+        to_middle.append(int(reached[0]))
+    return min(to_middle[1] - to_middle[0], int(valleys[0]))
+
+
 def _slope(apart: Floats, other: Floats) -> float:
     """Of a series over another one, of which the mean is taken off."""
     square = float(np.sum(apart**2))
@@ -252,8 +267,9 @@ def _from_valley_to_valley(
 ) -> tuple[float, float, float]:
     """Drift over one cycle by its own readings, slope of answer over driven, noise of the drift.
 
-    From a turn on and back from it, the way up and the way down are apart by what is odd in time;
-    what is left at the turn is the drift, or friction, which the peak has as well: then NaN.
+    Going forward from one valley and back from the next, rise and fall differ by a part that is
+    odd in time; the rest at the valley is the drift.  If the peak has as much of it, it is
+    friction, and the drift is NaN.
     """
     begin, peak, end = cycles.first[place], cycles.branch_last[place, 0], cycles.last[place]
     count = max(int(min(peak - begin, end - peak)) // _OF_CLOSING, _FEWEST_INSIDE)
@@ -280,7 +296,7 @@ _OF_GAP = 8  # part of a cycle, from its first turn on
 
 _OF_CLOSING = 2  # part of a branch, beside its turns
 
-_OF_DRIFT, _OF_DRIVEN = 0.6, 0.8  # that friction, or the driven channel, may seem to have
+_OF_DRIFT, _OF_DRIVEN = 0.6, 0.8  # greatest share due to friction, or to the driven channel
 
 _OF_SETTLING = 0.003  # of the range
 
@@ -594,8 +610,15 @@ def _quantities_of_cycles(
         mean_strain=row["strain_mean"],
         strain_drift=strain_drift,
     )
-    at_peaks = row["energy"] - energy
-    at_peaks *= drift_at_peaks(energy, row["energy"], amplitude * strain_amplitude)
+    of_drift = row["energy"] - energy
+    at_peaks = of_drift * drift_at_peaks(energy, row["energy"], amplitude * strain_amplitude)
+    # beyond its neighbours, a first cycle under a driven position loses tension by relaxation,
+    # which is no loss of the loop, or by friction that the ramp left on the loading side, which is:
+    # the middle is wrong by at most half of it
+    beyond = np.zeros(n_samples.size)
+    if not is_load and is_own.any():
+        beyond[is_own] = np.clip(1 - of_neighbours[is_own] / drift_of_cycle[is_own], 0, 1)
+        at_peaks = np.where(is_own, -beyond * of_drift / 2, at_peaks)
     energy -= at_peaks
     with np.errstate(divide="ignore", invalid="ignore"):
         # a series a cos + b sin is the real part of (a - ib) exp(i omega t)
@@ -653,8 +676,9 @@ def _quantities_of_cycles(
         # the part of the cycle in which the drift takes place is not known
         not_placed = drift_not_placed(energy, row["energy"], amplitude * strain_amplitude)
         # later cycles give no information on the creep after a ramp
-        placed = np.where(is_own, 1 / PLACE_OF_DRIFT, not_placed)
+        placed = np.where(is_own & is_load, 1 / PLACE_OF_DRIFT, not_placed)
         placed *= np.abs(row["energy"] - energy)
+        placed = np.hypot((1 - beyond) * placed, beyond * np.abs(of_drift) / np.sqrt(12))
         per_energy = 1 / (np.pi * strain_amplitude**2)
         u_loss = np.hypot(u_loss, placed * per_energy)
         u_over_time_lost = np.hypot(u_over_time, placed * per_energy)
