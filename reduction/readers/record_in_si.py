@@ -700,7 +700,8 @@ def _check_size(part: Floats, piece: _Piece, key: str) -> None:
             f"first at {piece.row_of(int(absurd[0]))}",
             found=f"{part[absurd[0]]:g} in SI",
             needed=f"at most {_ABSURD:g}",
-            hint="Check the unit and the column; add a value that means missing to missing.",
+            hint="Check the unit and the column; list a value that stands for a missing reading in"
+            " `missing` of the layout.",
         )
 
 

@@ -330,7 +330,7 @@ def fit_splice_laws(
         raise DataError(
             f"the splices of '{specimen}' have no law",
             found="no stretched mark at a hold that was approached by loading",
-            needed="one at least: marks on the way down say the friction of the splices alone",
+            needed="at least one; marks read on unloading give only the friction of the splices",
         )
     passing = np.array([law.chance >= REJECTED for law in laws])
     if not passing.any():
