@@ -1142,6 +1142,79 @@ def _trimmed(
     )
 
 
+@dataclass(frozen=True)
+class _Chosen:
+    """Cycles of a record with their number in the machine's count, before branches are trimmed."""
+
+    first: Indices
+    last: Indices
+    branch_first: Indices
+    branch_last: Indices
+    count: Integers | None
+    counted_by: str
+    is_odd: Bools
+    n_unsteady: int = 0
+    notes: tuple[Note, ...] = ()
+    made: tuple[str, ...] = ()
+
+
+def _between_reversals(
+    time: Floats,
+    values: Floats,
+    found: _Paired,
+    settings: CycleSettings,
+    counter: Integers | None,
+    *,
+    is_stored: bool,
+) -> _Chosen:
+    """Cycles between reversals, without those in which the machine starts, stops, jumps or waits.
+
+    ``is_stored``: the log has a counter; it does not change where ``counter`` is None.
+    """
+    notes = list(found.notes)
+    branch_first, branch_last = found.branch_first, found.branch_last
+    # a stroke of constant speed has its full amplitude from the start, a sine grows into it
+    if settings.waveform == "sinusoidal":
+        steady = _steady_span(values, branch_first, branch_last)
+        n_last = branch_first.shape[0] - steady.stop
+        if steady.start or n_last:
+            code = "cycles-of-starting-machine"
+            notes.append(note(code, n_first=steady.start, n_last=n_last))
+        branch_first, branch_last = branch_first[steady], branch_last[steady]
+    n_unsteady = found.branch_first.shape[0] - branch_first.shape[0]
+    first, last = branch_first[:, 0], branch_last[:, 1]
+    # the only cycle of a log, stored by a machine
+    is_counted = is_stored and counter is None and first.size == 1
+    n_moves = found.reversals.size // 2
+    has_gaps = any(one.code == "gaps-end-runs" for one in notes)
+    if counter is None and has_gaps and 0 < first.size < _READ_CLOSELY * n_moves:
+        ends = float(time[last[-1]])
+        notes.append(note("cycles-by-turns", n_cycles=first.size, n_moves=n_moves, time=ends))
+    turned = take_samples(values, branch_last) - take_samples(values, branch_first)
+    is_odd = _odd_cycles(time, first, last, np.abs(turned))
+    if is_odd.any():
+        begins = float(time[first[is_odd][0]])
+        notes.append(note("cycles-of-other-length", n_cycles=int(is_odd.sum()), time=begins))
+        branch_first, branch_last = branch_first[~is_odd], branch_last[~is_odd]
+        first, last = first[~is_odd], last[~is_odd]
+    if found.left_out.size:
+        begins = float(time[found.left_out[0]])
+        notes.append(note("cycles-of-two-amplitudes", n_cycles=found.left_out.size, time=begins))
+    count = None
+    if counter is not None and first.size:
+        count = _number_of_cycles(counter, first, last)
+        has_number = count > 0
+        first, last, count = first[has_number], last[has_number], count[has_number]
+        branch_first, branch_last = branch_first[has_number], branch_last[has_number]
+    elif counter is None and is_stored:
+        notes.append(note("counter-constant"))
+    return _Chosen(
+        first, last, branch_first, branch_last, count,
+        counted_by="machine counter" if is_counted else "reversals",
+        is_odd=is_odd, n_unsteady=n_unsteady, notes=tuple(notes), made=found.made,
+    )  # fmt: skip
+
+
 def find_cycles(
     time: ArrayLike,
     position: ArrayLike,
@@ -1182,8 +1255,6 @@ def find_cycles(
     tension = np.atleast_2d(np.asarray(tension, dtype=np.float64))
     time, position, _ = as_same_shape(time=time, position=position, tension=tension[0])
     values = control_channel(position, tension, settings)
-    made: tuple[str, ...] = ()
-    odd = np.zeros(0, dtype=np.bool_)
     counter, counted = cycle_counter, None
     if counter is not None and not _changes_of_count(counter).size:
         counter = None
@@ -1202,63 +1273,28 @@ def find_cycles(
         time, values, standstills, settings, counter=counter, is_counted=at_valleys
     )
     reversals, band, jumps = found.reversals, found.band, found.jumps
-    branch_first, branch_last, left_out = found.branch_first, found.branch_last, found.left_out
     if jumps.size:
         notes.append(note("jumps-no-reversals", n_jumps=jumps.size, time=float(time[jumps[0]])))
-    # a stroke of constant speed has its full amplitude from the start, a sine grows into it
-    steady = slice(0, branch_first.shape[0])
-    if settings.waveform == "sinusoidal":
-        steady = _steady_span(values, branch_first, branch_last)
-    n_unsteady = branch_first.shape[0] - (steady.stop - steady.start)
-    first, last = branch_first[:, 0], branch_last[:, 1]
-    counted_by = "reversals"
-    count = None
-    if counted is not None:
-        notes += _counter_notes(values, *counted[2:], first.size, band)
+    n_between = found.branch_first.shape[0]
     stand_alone = at_valleys
-    skips = () if counter is None or at_valleys else _skips_of_count(counter, reversals)
-    if counted is not None and len(skips):
-        # a cycle stored alone has no other half, wherever the count changes in it
-        stand_alone = not _begin_at_peaks(values, *counted[2:4])
-        if not stand_alone:
-            notes.append(note("stored-from-peak", n_cycles=len(skips)))
-    if counted is not None and stand_alone and _are_apart(counted[4], first.size):
-        first, last, branch_first, branch_last, count = counted
-        counted_by = "machine counter"
+    if counter is not None and counted is not None:
+        notes += _counter_notes(values, *counted[2:], n_between, band)
+        skips = () if at_valleys else _skips_of_count(counter, reversals)
+        if len(skips):
+            # a cycle stored alone has no other half, wherever the count changes in it
+            stand_alone = not _begin_at_peaks(values, *counted[2:4])
+            if not stand_alone:
+                notes.append(note("stored-from-peak", n_cycles=len(skips)))
+    if counted is not None and stand_alone and _are_apart(counted[4], n_between):
+        none_odd = np.zeros(counted[0].size, dtype=np.bool_)
+        chosen = _Chosen(*counted, counted_by="machine counter", is_odd=none_odd)
     else:
-        made = found.made
-        notes += found.notes
-        if n_unsteady:
-            notes.append(
-                note("cycles-of-starting-machine", n_first=steady.start,
-                     n_last=branch_first.shape[0] - steady.stop)
-            )  # fmt: skip
-        branch_first, branch_last = branch_first[steady], branch_last[steady]
-        first, last = first[steady], last[steady]
-        if cycle_counter is not None and counter is None and first.size == 1:
-            counted_by = "machine counter"  # the only cycle of a log, stored by a machine
-        n_moves = reversals.size // 2
-        has_gaps = any(one.code == "gaps-end-runs" for one in notes)
-        if counted is None and has_gaps and 0 < first.size < _READ_CLOSELY * n_moves:
-            ends = float(time[last[-1]])
-            notes.append(note("cycles-by-turns", n_cycles=first.size, n_moves=n_moves, time=ends))
-        turned = take_samples(values, branch_last) - take_samples(values, branch_first)
-        odd = _odd_cycles(time, first, last, np.abs(turned))
-        if odd.any():
-            notes.append(note("cycles-of-other-length", n_cycles=int(odd.sum()),
-                              time=float(time[first[odd][0]])))  # fmt: skip
-            branch_first, branch_last = branch_first[~odd], branch_last[~odd]
-            first, last = first[~odd], last[~odd]
-        if left_out.size:
-            begins = float(time[left_out[0]])
-            notes.append(note("cycles-of-two-amplitudes", n_cycles=left_out.size, time=begins))
-        if counter is not None and first.size:
-            count = _number_of_cycles(counter, first, last)
-            is_counted = count > 0
-            first, last, count = first[is_counted], last[is_counted], count[is_counted]
-            branch_first, branch_last = branch_first[is_counted], branch_last[is_counted]
-        elif counter is None and cycle_counter is not None:
-            notes.append(note("counter-constant"))
+        chosen = _between_reversals(
+            time, values, found, settings, counter, is_stored=cycle_counter is not None
+        )
+    notes += chosen.notes
+    first, last, count, odd = chosen.first, chosen.last, chosen.count, chosen.is_odd
+    branch_first, branch_last = chosen.branch_first, chosen.branch_last
     if first.size == 0:
         raise DataError(
             "no whole cycle",
@@ -1279,8 +1315,8 @@ def find_cycles(
     if first.size == 1:
         notes.append(note("one-cycle"))
     # the way to the cycles and from them is not a cycle
-    n_left = n_unsteady + np.count_nonzero(odd[1:-1])
-    n_made = first.size + (n_left if counted_by == "reversals" else 0)
+    n_left = chosen.n_unsteady + np.count_nonzero(odd[1:-1])
+    n_made = first.size + (n_left if chosen.counted_by == "reversals" else 0)
     if settings.expected_cycles is not None and settings.expected_cycles != n_made:
         # each end that is left out removes at most one cycle
         is_ends = 0 < settings.expected_cycles - n_made <= found.n_ends_left_out
@@ -1308,11 +1344,11 @@ def find_cycles(
             start[kept], stop[kept], np.ones(int(kept.sum()), dtype=np.bool_), time
         ),
         band=float(band),
-        counted_by=counted_by,
+        counted_by=chosen.counted_by,
         count=count,
         is_count_sure=is_sure or count is None,
         notes=tuple(notes),
-        made=made,
+        made=chosen.made,
     )
 
 

@@ -5,6 +5,8 @@ A turn lies between two readings, or on a rest of many; a reading beside it is n
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from reduction.record.measurement import Floats, Integers
@@ -88,105 +90,160 @@ def peaks_and_valleys(
     top = extreme(np.maximum, peak - on_rise, after_peak)
     first = extreme(np.minimum, begin - rest, begin + on_rise)
     last = extreme(np.minimum, end - on_fall, end + rest)
-    missed = np.zeros(top.size)
+    levels = top, first, last
+    turns = _Turns(begin, peak, end, after_peak, reach)
     if turn == "sharp":
-        # creep while the channel rests is greatest after the turn that ends the cycle
-        stop = np.minimum(end + on_rise, np.append(peak[1:], values.size - 1))
-        goes_on = np.append(begin[1:] == end[:-1], False)  # after the last one the machine unloads
-        at_top = _places(values, peak - on_rise, after_peak)
-        at_last = _places(-values, np.maximum(end - on_fall, peak), np.where(goes_on, stop, end))
-        last = np.fmin(last, values[at_last])
-        above = level_of_turn(values, peak, top, sign=1) - top
-        below = last - level_of_turn(values, end, last, sign=-1)
-        noise = within_scatter(reading_noise(moved), moved[peak])
-        own = within_scatter(reading_noise(values), values[peak])
-        # a machine may rest at only one of its turns
-        lowest = _places(-moved, np.maximum(end - on_fall, peak), stop)
-        rests, rests_below = rests_at_turns(moved, peak), rests_at_turns(-moved, lowest)
-        of_peak, of_valley = (
-            np.abs(
-                level_at_corner(
-                    values,
-                    moved,
-                    at,
-                    sign=sign,
-                    noise=noise,
-                    rests=rest,
-                    own_noise=own,
-                    steep=_SHOWN if sticks else STEEP,
-                )
-                - level
-            )
-            for at, sign, level, rest in ((at_top, 1, top, rests), (at_last, -1, last, rests_below))
-        )
-        # lines beside a rest cross above it, and noise makes one of its readings the greatest
-        step = (top - last) / (end - peak)
-        bow = np.zeros(top.size)
-        if rests:  # or an apparent rest, a turn that a machine rounds over two or three readings
-            above, bow = np.zeros(top.size), _bow(values, at_top)
-            if not answers:
-                top = _mean_of_rest(values, at_top, top, within=_OF_A_STEP * step)
-        if rests_below:
-            below, bow = np.zeros(top.size), bow + _bow(-values, at_last)
-            if not answers:
-                last = -_mean_of_rest(-values, at_last, -last, within=_OF_A_STEP * step)
-        if answers:
-            # a series that sticks at a corner falls off slowly under a load, and lines beside it
-            # cross above the level of the approach; a force falls off at once
-            is_led = np.isfinite(of_peak), np.isfinite(of_valley)
-            of_peak = np.where(is_led[0] & sticks, of_peak, np.fmax(of_peak, above))
-            of_valley = np.where(is_led[1] & sticks, of_valley, np.fmax(of_valley, below))
-            for level, at, sign, reading, is_rest in (
-                (of_peak, peak, 1, top, rests), (of_valley, end, -1, last, rests_below)
-            ):  # fmt: skip
-                # for a series that stiffens all lines cross too low, or below its reading
-                beyond = sign * (level_beside_corner(values, moved, at, sign=sign) - reading)
-                if not is_rest and np.nanmedian(beyond) > _STIFFENS * np.nanmedian(level):
-                    np.fmax(level, beyond, out=level)
-            excess = np.maximum(of_peak - above, 0.0), np.maximum(of_valley - below, 0.0)
-            above, below = of_peak, of_valley
-            missed = (_EITHER - 1) * (excess[0] + excess[1]) / 2
-            if sticks:  # steps of the driven channel shift its corner, in step alike in all cycles
-                grain = rounding_left(*noise_and_step(moved, reading_noise(moved))[::-1])
-                missed = np.hypot(
-                    missed, _OF_CORNER * grain * (top - last) / np.abs(moved[peak] - moved[end])
-                )
-        else:
-            # a machine that dwells is at the level of its corner, without error
-            upper = _plateau(values, peak - on_rise, after_peak, top)
-            lower = _plateau(-values, np.maximum(end - on_fall, peak), stop, -last)
-            top, above = (top, above) if upper is None else (upper[0], 0 * above)
-            if lower is not None:  # it is held at one level at both ends of a cycle
-                first = np.append(-lower[0][0], -lower[0][:-1])
-            last, below = (last, below) if lower is None else (-lower[0], 0 * below)
-        # the readings of a rounded turn are its lower bound, not its middle
-        missed = missed + (above + below) / 2 + bow
-        top, last = top + above / 2, last - below / 2
-    elif turn == "rounded":
+        top, first, last, missed = _at_sharp_turns(values, moved, turns, levels, answers, sticks)
+    elif turn == "hidden":
+        top, first, last, missed = _at_hidden_turns(values, time, moved, turns, levels, answers)
+    else:
         above = missed_by_extreme(values, peak, top, sign=1)
         below = missed_by_extreme(values, end, last, sign=-1)
         # the readings are its lower bound, not its middle
         missed = np.full(top.size, np.nanmedian(above + below))
-    elif turn == "hidden":  # at most the rise of these ramps to a crossing half way
-        wait = np.diff(time, append=time[-1])
-        at_peak, at_end = (np.fmax(wait[at - 1], wait[at]) for at in (peak, end))
-        beside = (at_peak + at_end) / 2
-        missed = (top - (first + last) / 2) * beside / (time[end] - time[begin])
-        # readings miss half of that if corners lie anywhere, nothing at a rounded turn or a rest
-        if not rests_at_turns(moved, peak):
-            top, first, last = top + missed / 4, first - missed / 4, last - missed / 4
-        # noise hides only the slow stroke of a saw: its readings are the lower bound of the range
-        # within its step, which is larger where the series relaxes after a fast stroke
-        after = np.minimum(end + 1, values.size - 1)
-        above = top - np.stack([values[peak - 1], values[peak + 1]])
-        below = np.stack([values[end - 1], values[after]]) - last
-        slow, fast = np.nanmedian(np.sort(above, axis=0) + np.sort(below, axis=0), axis=1)
-        # in a driven channel with even strokes both follow from corners between readings
-        strokes = np.median([peak - begin, end - peak], axis=1)
-        may_fall = answers or strokes.max() > _UNEVEN * strokes.min()
-        if may_fall and slow < _STEEP * reading_noise(values) < fast:
-            missed = np.fmax(missed, slow)
     return way * top, way * first, way * last, missed
+
+
+class _Turns(NamedTuple):
+    """Samples of the turns of cycles, and the reach of their extremes on the rise and the fall."""
+
+    begin: Integers
+    peak: Integers
+    end: Integers
+    after_peak: Integers
+    reach: tuple[int, int]
+
+
+def _at_sharp_turns(
+    values: Floats,
+    moved: Floats,
+    turns: _Turns,
+    levels: tuple[Floats, Floats, Floats],
+    answers: bool,
+    sticks: bool,
+) -> tuple[Floats, Floats, Floats, Floats]:
+    """Levels of turns without a rounding: top, first and last valley, and the possible error."""
+    begin, peak, end, after_peak, (on_rise, on_fall) = turns
+    top, first, last = levels
+    # creep while the channel rests is greatest after the turn that ends the cycle
+    stop = np.minimum(end + on_rise, np.append(peak[1:], values.size - 1))
+    goes_on = np.append(begin[1:] == end[:-1], False)  # after the last one the machine unloads
+    at_top = _places(values, peak - on_rise, after_peak)
+    at_last = _places(-values, np.maximum(end - on_fall, peak), np.where(goes_on, stop, end))
+    last = np.fmin(last, values[at_last])
+    above = level_of_turn(values, peak, top, sign=1) - top
+    below = last - level_of_turn(values, end, last, sign=-1)
+    # a machine may rest at only one of its turns
+    lowest = _places(-moved, np.maximum(end - on_fall, peak), stop)
+    rests = rests_at_turns(moved, peak), rests_at_turns(-moved, lowest)
+    readings = top, last
+    # lines beside a rest cross above it, and noise makes one of its readings the greatest
+    step = (top - last) / (end - peak)
+    bow = np.zeros(top.size)
+    if rests[0]:  # or an apparent rest, a turn that a machine rounds over two or three readings
+        above, bow = np.zeros(top.size), _bow(values, at_top)
+        if not answers:
+            top = _mean_of_rest(values, at_top, top, within=_OF_A_STEP * step)
+    if rests[1]:
+        below, bow = np.zeros(top.size), bow + _bow(-values, at_last)
+        if not answers:
+            last = -_mean_of_rest(-values, at_last, -last, within=_OF_A_STEP * step)
+    missed = np.zeros(top.size)
+    if answers:
+        above, below, missed = _above_answers(
+            values, moved, turns, (at_top, at_last), rests, readings, (above, below), sticks
+        )
+    else:
+        # a machine that dwells is at the level of its corner, without error
+        upper = _plateau(values, peak - on_rise, after_peak, top)
+        lower = _plateau(-values, np.maximum(end - on_fall, peak), stop, -last)
+        top, above = (top, above) if upper is None else (upper[0], 0 * above)
+        if lower is not None:  # it is held at one level at both ends of a cycle
+            first = np.append(-lower[0][0], -lower[0][:-1])
+        last, below = (last, below) if lower is None else (-lower[0], 0 * below)
+    # the readings of a rounded turn are its lower bound, not its middle
+    missed = missed + (above + below) / 2 + bow
+    return top + above / 2, first, last - below / 2, missed
+
+
+def _above_answers(
+    values: Floats,
+    moved: Floats,
+    turns: _Turns,
+    places: tuple[Integers, Integers],
+    rests: tuple[bool, bool],
+    readings: tuple[Floats, Floats],
+    lines: tuple[Floats, Floats],
+    sticks: bool,
+) -> tuple[Floats, Floats, Floats]:
+    """Height of sharp turns above the extremes of a series that answers, and its possible error.
+
+    ``lines``: heights at which the lines beside a turn cross.
+    """
+    noise = within_scatter(reading_noise(moved), moved[turns.peak])
+    own = within_scatter(reading_noise(values), values[turns.peak])
+    heights = []
+    for at, place, sign, is_rest, reading, crossing in zip(
+        places, (turns.peak, turns.end), (1, -1), rests, readings, lines, strict=True
+    ):
+        led = level_at_corner(
+            values,
+            moved,
+            at,
+            sign=sign,
+            noise=noise,
+            rests=is_rest,
+            own_noise=own,
+            steep=_SHOWN if sticks else STEEP,
+        )
+        height = np.abs(led - reading)
+        # a series that sticks at a corner falls off slowly under a load, and lines beside it
+        # cross above the level of the approach; a force falls off at once
+        height = np.where(np.isfinite(height) & sticks, height, np.fmax(height, crossing))
+        # for a series that stiffens all lines cross too low, or below its reading
+        beyond = sign * (level_beside_corner(values, moved, place, sign=sign) - reading)
+        if not is_rest and np.nanmedian(beyond) > _STIFFENS * np.nanmedian(height):
+            height = np.fmax(height, beyond)
+        heights.append(height)
+    excess = [np.maximum(one - line, 0.0) for one, line in zip(heights, lines, strict=True)]
+    missed = (_EITHER - 1) * (excess[0] + excess[1]) / 2
+    if sticks:  # steps of the driven channel shift its corner, in step alike in all cycles
+        grain = rounding_left(*noise_and_step(moved, reading_noise(moved))[::-1])
+        stroke = np.abs(moved[turns.peak] - moved[turns.end])
+        missed = np.hypot(missed, _OF_CORNER * grain * (readings[0] - readings[1]) / stroke)
+    return heights[0], heights[1], missed
+
+
+def _at_hidden_turns(
+    values: Floats,
+    time: Floats,
+    moved: Floats,
+    turns: _Turns,
+    levels: tuple[Floats, Floats, Floats],
+    answers: bool,
+) -> tuple[Floats, Floats, Floats, Floats]:
+    """Levels of turns between readings: at most the rise of the ramps to a crossing half way."""
+    begin, peak, end, _, _ = turns
+    top, first, last = levels
+    wait = np.diff(time, append=time[-1])
+    at_peak, at_end = (np.fmax(wait[at - 1], wait[at]) for at in (peak, end))
+    beside = (at_peak + at_end) / 2
+    missed = (top - (first + last) / 2) * beside / (time[end] - time[begin])
+    # readings miss half of that if corners lie anywhere, nothing at a rounded turn or a rest
+    if not rests_at_turns(moved, peak):
+        top, first, last = top + missed / 4, first - missed / 4, last - missed / 4
+    # noise hides only the slow stroke of a saw: its readings are the lower bound of the range
+    # within its step, which is larger where the series relaxes after a fast stroke
+    after = np.minimum(end + 1, values.size - 1)
+    above = top - np.stack([values[peak - 1], values[peak + 1]])
+    below = np.stack([values[end - 1], values[after]]) - last
+    slow, fast = np.nanmedian(np.sort(above, axis=0) + np.sort(below, axis=0), axis=1)
+    # in a driven channel with even strokes both follow from corners between readings
+    strokes = np.median([peak - begin, end - peak], axis=1)
+    may_fall = answers or strokes.max() > _UNEVEN * strokes.min()
+    if may_fall and slow < _STEEP * reading_noise(values) < fast:
+        missed = np.fmax(missed, slow)
+    return top, first, last, missed
 
 
 _BEHIND_TURN = 5  # readings after a turn, needed to detect it
