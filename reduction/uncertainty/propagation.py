@@ -108,7 +108,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -775,20 +775,26 @@ _LAG_SHAPE = {"sinusoidal": 2 * np.pi**2, "triangular": 16.0, "other": 16.0}
 """Integral of tension rate over strain, over f T_a eps_a, for a sine and for straight ramps."""
 
 
+class LoopQuantities(NamedTuple):
+    """Quantities of loops of one specimen, or of their means, that carry shared errors. [SI]."""
+
+    frequency: Floats
+    mean_tension: Floats
+    tension_amplitude: Floats
+    mean_strain: Floats
+    strain_amplitude: Floats
+    apparent_spring_constant: Floats
+    hysteresis_energy: Floats
+    storage_spring_constant: Floats
+    loss_spring_constant: Floats
+    closed_loop_energy: Floats
+
+
 def loop_contributions(
     errors: InstrumentErrors,
     model: StrainModel,
+    loop: LoopQuantities,
     *,
-    frequency: Floats,
-    mean_tension: Floats,
-    tension_amplitude: Floats,
-    mean_strain: Floats,
-    strain_amplitude: Floats,
-    apparent_spring_constant: Floats,
-    hysteresis_energy: Floats,
-    storage_spring_constant: Floats,
-    loss_spring_constant: Floats,
-    closed_loop_energy: Floats,
     waveform: Waveform,
     control: Control = "position",
     speed_ratio: Floats | float = 1.0,
@@ -817,11 +823,12 @@ def loop_contributions(
     >>> line = StrainModel("rope", "gauge-length",
     ...     {"reference_position": 0.0, "gauge_length": 1.0})
     >>> one = np.ones(1)
-    >>> found = loop_contributions(InstrumentErrors("rope", lag=0.002), line, frequency=0.5 * one,
-    ...     mean_tension=2e3 * one, tension_amplitude=1e3 * one, mean_strain=0.02 * one,
-    ...     strain_amplitude=0.01 * one, apparent_spring_constant=1e5 * one,
-    ...     hysteresis_energy=np.pi * 0.5 * one, storage_spring_constant=99875.0 * one,
-    ...     loss_spring_constant=5e3 * one, closed_loop_energy=np.pi * 0.5 * one,
+    >>> loop = LoopQuantities(frequency=0.5 * one, mean_tension=2e3 * one,
+    ...     tension_amplitude=1e3 * one, mean_strain=0.02 * one, strain_amplitude=0.01 * one,
+    ...     apparent_spring_constant=1e5 * one, hysteresis_energy=np.pi * 0.5 * one,
+    ...     storage_spring_constant=99875.0 * one, loss_spring_constant=5e3 * one,
+    ...     closed_loop_energy=np.pi * 0.5 * one)
+    >>> found = loop_contributions(InstrumentErrors("rope", lag=0.002), line, loop,
     ...     waveform="sinusoidal")
     >>> print((found.values["loss_spring_constant"] / 5e3).round(3))
     [[-0.126]]
@@ -831,8 +838,8 @@ def loop_contributions(
     field = error_field(
         still,
         model,
-        strain=np.stack([mean_strain + way * strain_amplitude for way in (1, -1, 0)]),
-        tension=np.stack([mean_tension + way * tension_amplitude for way in (1, -1, 0)]),
+        strain=np.stack([loop.mean_strain + way * loop.strain_amplitude for way in (1, -1, 0)]),
+        tension=np.stack([loop.mean_tension + way * loop.tension_amplitude for way in (1, -1, 0)]),
         inertia=inertia,
     )
     # peak, valley and centre
@@ -840,8 +847,8 @@ def loop_contributions(
     top_strain, foot_strain, _ = np.moveaxis(field.strain, 1, 0)
     tension_half = (top - foot) / 2
     strain_half = (top_strain - foot_strain) / 2
-    stretch = strain_half / strain_amplitude
-    stiffer = tension_half / tension_amplitude - stretch
+    stretch = strain_half / loop.strain_amplitude
+    stiffer = tension_half / loop.tension_amplitude - stretch
     wider = field.divergence[:, 2]
     # E'' is H / (pi strain_amplitude^2)
     lossier = wider - 2 * stretch
@@ -852,129 +859,166 @@ def loop_contributions(
         "strain_amplitude": strain_half,
         "peak_tension": top,
         "valley_tension": foot,
-        "apparent_spring_constant": stiffer * apparent_spring_constant,
-        "hysteresis_energy": wider * hysteresis_energy,
-        "closed_loop_energy": wider * closed_loop_energy,
-        "storage_spring_constant": stiffer * storage_spring_constant,
-        "loss_spring_constant": lossier * loss_spring_constant,
+        "apparent_spring_constant": stiffer * loop.apparent_spring_constant,
+        "hysteresis_energy": wider * loop.hysteresis_energy,
+        "closed_loop_energy": wider * loop.closed_loop_energy,
+        "storage_spring_constant": stiffer * loop.storage_spring_constant,
+        "loss_spring_constant": lossier * loop.loss_spring_constant,
     }
     component = field.component
     if errors.stiffness:
-        moved = {
-            "apparent_spring_constant": apparent_spring_constant,
-            "storage_spring_constant": storage_spring_constant,
-            "loss_spring_constant": loss_spring_constant,
-        } | (
-            {
-                "mean_strain": -mean_strain,
-                "strain_amplitude": -strain_amplitude,
-                "hysteresis_energy": -hysteresis_energy,
-                "closed_loop_energy": -closed_loop_energy,
-            }
-            if control == "load"
-            else {
-                "mean_tension": mean_tension,
-                "tension_amplitude": tension_amplitude,
-                "peak_tension": mean_tension + tension_amplitude,
-                "valley_tension": mean_tension - tension_amplitude,
-                "hysteresis_energy": hysteresis_energy,
-                "closed_loop_energy": closed_loop_energy,
-            }
-        )
         component, values = _with(
             component, values, Component("temperature", errors.test),
-            {name: errors.stiffness * value for name, value in moved.items()},
+            _moved_by_temperature(errors, loop, control),
         )  # fmt: skip
     if errors.lag:
-        turn = 2 * np.pi * frequency * errors.lag
-        taken_off: Floats | float = 0.0
-        if inertia is not None:
-            ends = [
-                inertia.acceleration(
-                    model,
-                    strain=np.asarray(mean_strain + way * strain_amplitude),
-                    tension=np.asarray(mean_tension + way * tension_amplitude),
-                )[0]
-                for way in (1, -1)
-            ]
-            taken_off = inertia.mass * (ends[0] - ends[1]) / 2
-        felt = tension_amplitude + taken_off
-        felt_storage = storage_spring_constant + taken_off / strain_amplitude
-        work = _LAG_SHAPE[waveform] * frequency * felt * strain_amplitude
-        ramps = 1.0 if waveform == "sinusoidal" else speed_ratio
         # splices that are taken to stretch by the late tension are late too
-        late = 1 - field.strain_by_tension[2] * apparent_spring_constant
-        of_lag = {
-            "hysteresis_energy": -errors.lag * work * ramps * late,
-            "closed_loop_energy": -errors.lag * work * ramps * late,
-            "storage_spring_constant": turn * loss_spring_constant * late,
-            "loss_spring_constant": -turn * felt_storage * late,
-        }
-        if waveform != "sinusoidal":  # the loss is that of the area
-            of_lag["loss_spring_constant"] = of_lag["hysteresis_energy"] / (
-                np.pi * strain_amplitude**2
-            )
-        # readings near a corner and the approach to it are late by the same time
-        if waveform == "other" and has_corners:
-            of_approach = 4 * frequency * errors.lag * ramps
-            of_lag |= {
-                "apparent_spring_constant": -of_approach * apparent_spring_constant,
-                "tension_amplitude": -of_approach * felt,
-                "peak_tension": -of_approach * felt,
-                "valley_tension": of_approach * felt,
-            }
-        # strain is extrapolated half the way to the corner of a driven load: from a reading before
-        # it, which is late as well, or from one after it, which cancels that
-        if waveform == "triangular" and control == "load" and has_corners:
-            of_approach = 2 * 2**0.5 * frequency * errors.lag * ramps
-            of_lag |= {
-                "apparent_spring_constant": -of_approach * apparent_spring_constant,
-                "strain_amplitude": of_approach * strain_amplitude,
-            }
-        if errors.smoothed_over:
-            # uniform between zero, for a late clock, and all that such a filter takes off
-            share = _smoothed_away(waveform, ramps * frequency * errors.smoothed_over) / np.sqrt(3)
-            lost = share * felt
-            for name, way in (
-                ("tension_amplitude", 1.0), ("peak_tension", 1.0), ("valley_tension", -1.0),
-                ("apparent_spring_constant", 1 / strain_amplitude),
-                ("storage_spring_constant", 1 / strain_amplitude),
-            ):  # fmt: skip
-                of_lag[name] = of_lag.get(name, 0.0) - way * lost
-        component, values = _with(
-            component, values, Component("lag", errors.tension_instrument), of_lag
-        )
+        late = 1 - field.strain_by_tension[2] * loop.apparent_spring_constant
+        moved = _moved_by_lag(
+            errors, model, loop, late, waveform=waveform, control=control,
+            speed_ratio=speed_ratio, has_corners=has_corners, inertia=inertia,
+        )  # fmt: skip
+        lagging = Component("lag", errors.tension_instrument)
+        component, values = _with(component, values, lagging, moved)
     if errors.splice_friction:
-        # a valley ends a way down; a peak has no error by friction
-        below, middle = splice_friction_error(
-            errors,
-            model,
-            strain=np.stack([mean_strain - strain_amplitude, mean_strain]),
-            tension=np.stack([mean_tension - tension_amplitude, mean_tension]),
-        )
-        shorter = -below / 2
-        wide = 2 * middle * tension_amplitude
-        stretch = shorter / strain_amplitude
         component, values = _with(
             component, values, Component("splice_friction", errors.specimen),
-            {
-                "mean_strain": below / 2,
-                "strain_amplitude": shorter,
-                "apparent_spring_constant": -stretch * apparent_spring_constant,
-                "hysteresis_energy": wide,
-                "closed_loop_energy": wide,
-                "storage_spring_constant": -stretch * storage_spring_constant,
-                "loss_spring_constant": wide / (np.pi * strain_amplitude**2)
-                - 2 * stretch * loss_spring_constant,
-            },
+            _moved_by_friction(errors, model, loop),
         )  # fmt: skip
     values["foot_strain"] = values["mean_strain"] - values["strain_amplitude"]
-    loss_factor = loss_spring_constant / storage_spring_constant
+    loss_factor = loop.loss_spring_constant / loop.storage_spring_constant
     values["loss_factor"] = loss_factor * (
-        values["loss_spring_constant"] / loss_spring_constant
-        - values["storage_spring_constant"] / storage_spring_constant
+        values["loss_spring_constant"] / loop.loss_spring_constant
+        - values["storage_spring_constant"] / loop.storage_spring_constant
     )
     return Contributions(component, values)
+
+
+def _moved_by_temperature(
+    errors: InstrumentErrors, loop: LoopQuantities, control: Control
+) -> dict[str, Floats]:
+    """Changes of the quantities of loops by the stiffness at another temperature than stated."""
+    moved = {
+        "apparent_spring_constant": loop.apparent_spring_constant,
+        "storage_spring_constant": loop.storage_spring_constant,
+        "loss_spring_constant": loop.loss_spring_constant,
+    } | (
+        {
+            "mean_strain": -loop.mean_strain,
+            "strain_amplitude": -loop.strain_amplitude,
+            "hysteresis_energy": -loop.hysteresis_energy,
+            "closed_loop_energy": -loop.closed_loop_energy,
+        }
+        if control == "load"
+        else {
+            "mean_tension": loop.mean_tension,
+            "tension_amplitude": loop.tension_amplitude,
+            "peak_tension": loop.mean_tension + loop.tension_amplitude,
+            "valley_tension": loop.mean_tension - loop.tension_amplitude,
+            "hysteresis_energy": loop.hysteresis_energy,
+            "closed_loop_energy": loop.closed_loop_energy,
+        }
+    )
+    return {name: errors.stiffness * value for name, value in moved.items()}
+
+
+def _moved_by_lag(
+    errors: InstrumentErrors,
+    model: StrainModel,
+    loop: LoopQuantities,
+    late: Floats,
+    *,
+    waveform: Waveform,
+    control: Control,
+    speed_ratio: Floats | float,
+    has_corners: bool,
+    inertia: Inertia | None,
+) -> dict[str, Floats]:
+    """Changes of the quantities of loops whose tension is logged late, or smoothed in a filter.
+
+    ``late``: share of a lag that is felt; strain of the splices that is taken from tension is late
+    too.
+    """
+    turn = 2 * np.pi * loop.frequency * errors.lag
+    taken_off: Floats | float = 0.0
+    if inertia is not None:
+        ends = [
+            inertia.acceleration(
+                model,
+                strain=np.asarray(loop.mean_strain + way * loop.strain_amplitude),
+                tension=np.asarray(loop.mean_tension + way * loop.tension_amplitude),
+            )[0]
+            for way in (1, -1)
+        ]
+        taken_off = inertia.mass * (ends[0] - ends[1]) / 2
+    felt = loop.tension_amplitude + taken_off
+    felt_storage = loop.storage_spring_constant + taken_off / loop.strain_amplitude
+    work = _LAG_SHAPE[waveform] * loop.frequency * felt * loop.strain_amplitude
+    ramps = 1.0 if waveform == "sinusoidal" else speed_ratio
+    of_lag = {
+        "hysteresis_energy": -errors.lag * work * ramps * late,
+        "closed_loop_energy": -errors.lag * work * ramps * late,
+        "storage_spring_constant": turn * loop.loss_spring_constant * late,
+        "loss_spring_constant": -turn * felt_storage * late,
+    }
+    if waveform != "sinusoidal":  # the loss is that of the area
+        of_lag["loss_spring_constant"] = of_lag["hysteresis_energy"] / (
+            np.pi * loop.strain_amplitude**2
+        )
+    # readings near a corner and the approach to it are late by the same time
+    if waveform == "other" and has_corners:
+        of_approach = 4 * loop.frequency * errors.lag * ramps
+        of_lag |= {
+            "apparent_spring_constant": -of_approach * loop.apparent_spring_constant,
+            "tension_amplitude": -of_approach * felt,
+            "peak_tension": -of_approach * felt,
+            "valley_tension": of_approach * felt,
+        }
+    # strain is extrapolated half the way to the corner of a driven load: from a reading before
+    # it, which is late as well, or from one after it, which cancels that
+    if waveform == "triangular" and control == "load" and has_corners:
+        of_approach = 2 * 2**0.5 * loop.frequency * errors.lag * ramps
+        of_lag |= {
+            "apparent_spring_constant": -of_approach * loop.apparent_spring_constant,
+            "strain_amplitude": of_approach * loop.strain_amplitude,
+        }
+    if errors.smoothed_over:
+        # uniform between zero, for a late clock, and all that such a filter takes off
+        share = _smoothed_away(waveform, ramps * loop.frequency * errors.smoothed_over) / np.sqrt(3)
+        lost = share * felt
+        for name, way in (
+            ("tension_amplitude", 1.0), ("peak_tension", 1.0), ("valley_tension", -1.0),
+            ("apparent_spring_constant", 1 / loop.strain_amplitude),
+            ("storage_spring_constant", 1 / loop.strain_amplitude),
+        ):  # fmt: skip
+            of_lag[name] = of_lag.get(name, 0.0) - way * lost
+    return of_lag
+
+
+def _moved_by_friction(
+    errors: InstrumentErrors, model: StrainModel, loop: LoopQuantities
+) -> dict[str, Floats]:
+    """Changes of the quantities of loops of a specimen whose splices are longer on the way down."""
+    # a valley ends a way down; a peak has no error by friction
+    below, middle = splice_friction_error(
+        errors,
+        model,
+        strain=np.stack([loop.mean_strain - loop.strain_amplitude, loop.mean_strain]),
+        tension=np.stack([loop.mean_tension - loop.tension_amplitude, loop.mean_tension]),
+    )
+    shorter = -below / 2
+    wide = 2 * middle * loop.tension_amplitude
+    stretch = shorter / loop.strain_amplitude
+    return {
+        "mean_strain": below / 2,
+        "strain_amplitude": shorter,
+        "apparent_spring_constant": -stretch * loop.apparent_spring_constant,
+        "hysteresis_energy": wide,
+        "closed_loop_energy": wide,
+        "storage_spring_constant": -stretch * loop.storage_spring_constant,
+        "loss_spring_constant": wide / (np.pi * loop.strain_amplitude**2)
+        - 2 * stretch * loop.loss_spring_constant,
+    }
 
 
 def _smoothed_away(waveform: Waveform, constant: Floats) -> Floats:

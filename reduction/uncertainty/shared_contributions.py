@@ -82,6 +82,7 @@ from reduction.uncertainty.error_field import (
     splice_friction_error,
 )
 from reduction.uncertainty.propagation import (
+    LoopQuantities,
     by_diameter,
     chord_contributions,
     curve_contributions,
@@ -155,12 +156,6 @@ def _part(product: Product, block: slice) -> Product:
 
 
 Reading = Literal["amplitude", "fundamental"]
-
-_LOOP = (
-    "frequency", "mean_tension", "tension_amplitude", "mean_strain", "strain_amplitude",
-    "apparent_spring_constant", "hysteresis_energy", "storage_spring_constant",
-    "loss_spring_constant", "closed_loop_energy",
-)  # fmt: skip
 
 _OF_FUNDAMENTAL = ("storage_spring_constant", "loss_spring_constant")
 
@@ -314,13 +309,12 @@ def _of_loops(
     The line of a wave that is not a sine comes from its fundamental over time, and a lag turns the
     phase of a fundamental.
     """
-    values = {name: np.asarray(getattr(loops, name)[index]) for name in _LOOP}
+    values = {name: np.asarray(getattr(loops, name)[index]) for name in LoopQuantities._fields}
     over_time = line is not None and line.reading == "fundamental"
     if line is not None and over_time:
         values |= {name: np.asarray(getattr(line, name)[index]) for name in _OF_FUNDAMENTAL}
     return loop_contributions(
-        errors, model,
-        **values,
+        errors, model, LoopQuantities(**values),
         waveform="sinusoidal" if over_time else settings.waveform,
         control=settings.control,
         speed_ratio=_speed_ratio(loops, index, model, cycles, settings, record),
@@ -373,8 +367,11 @@ def _of_line(
         item.name: getattr(line, item.name)[index]
         for item in fields(line)
         if isinstance(getattr(line, item.name), np.ndarray)
-    } | {name: np.asarray(getattr(loops, name)[index]) for name in _LOOP if name not in
-         ("storage_spring_constant", "loss_spring_constant", "closed_loop_energy")}  # fmt: skip
+    } | {
+        name: np.asarray(getattr(loops, name)[index])
+        for name in LoopQuantities._fields
+        if name not in ("storage_spring_constant", "loss_spring_constant", "closed_loop_energy")
+    }
     # a run has one K_0, so its error is common to every cycle
     rest = of_rest.values[_K_0]
     shape = (*rest.shape[:1], *np.shape(values[_K_0]))

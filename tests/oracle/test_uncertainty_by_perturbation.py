@@ -13,6 +13,7 @@ from reduction.record.contributions import InstrumentErrors
 from reduction.stages.strain.strain_model import StrainModel, position_by_model, strain_by_model
 from reduction.uncertainty.error_field import error_field
 from reduction.uncertainty.propagation import (
+    LoopQuantities,
     curve_contributions,
     loop_contributions,
     pull_contributions,
@@ -148,8 +149,8 @@ def test_contributions_are_what_a_log_with_that_error_gives(method, source):
 def of_loop(errors, model, exact, waveform="sinusoidal"):
     turned = np.pi * exact["strain_amplitude"] ** 2
     loss = exact["hysteresis_energy"] / turned
-    rows = loop_contributions(
-        errors, model, frequency=np.array(FREQUENCY), waveform=waveform,
+    loop = LoopQuantities(
+        frequency=np.array(FREQUENCY),
         storage_spring_constant=np.sqrt(exact["apparent_spring_constant"] ** 2 - loss**2),
         loss_spring_constant=np.array(loss),
         closed_loop_energy=np.array(exact["hysteresis_energy"]),
@@ -161,6 +162,7 @@ def of_loop(errors, model, exact, waveform="sinusoidal"):
             )
         },
     )  # fmt: skip
+    rows = loop_contributions(errors, model, loop, waveform=waveform)
     return {
         name: rows.values[name].sum(axis=0)
         for name in exact
@@ -274,15 +276,18 @@ def test_a_warmer_specimen_moves_what_the_machine_does_not_set(control):
         }
 
     above, below, exact = seen(share), seen(-share), seen(0.0)
-    rows = loop_contributions(
-        InstrumentErrors("new", stiffness=share, test="T"), MODELS["gauge-length"],
-        frequency=np.array(FREQUENCY), waveform="sinusoidal", control=control,
+    loop = LoopQuantities(
+        frequency=np.array(FREQUENCY),
         storage_spring_constant=np.array(exact["apparent_spring_constant"]),
         closed_loop_energy=np.array(exact["hysteresis_energy"]),
         **{
             name: np.array(exact[name])
             for name in exact if name not in ("peak_tension", "valley_tension")
         },
+    )  # fmt: skip
+    rows = loop_contributions(
+        InstrumentErrors("new", stiffness=share, test="T"), MODELS["gauge-length"], loop,
+        waveform="sinusoidal", control=control,
     )  # fmt: skip
     for name, value in exact.items():
         wanted = (above[name] - below[name]) / 2

@@ -25,7 +25,7 @@ from reduction.stages.cycles.turns import noise_in_extreme
 from reduction.stages.moduli.secant_modulus import summarise_amplitude
 from reduction.stages.standstills import find_standstills, find_tension_stands
 from reduction.stages.strain.strain_model import StrainModel
-from reduction.uncertainty.propagation import loop_contributions
+from reduction.uncertainty.propagation import LoopQuantities, loop_contributions
 
 STORAGE, LOSS, AMPLITUDE = 900.0, 100.0, 0.2
 
@@ -1966,14 +1966,9 @@ def test_a_lag_moves_the_strain_that_is_led_to_the_corner_of_a_driven_load_as_it
     line = StrainModel("r", "gauge-length", {"reference_position": 0.0, "gauge_length": 1.0})
     places = (0.2, 0.4, 0.6, 0.8)
     exact, late = ([found(one, place) for place in places] for one in (0.0, lag))  # of tension
-    names = (
-        "frequency", "mean_tension", "tension_amplitude", "mean_strain", "strain_amplitude",
-        "apparent_spring_constant", "hysteresis_energy", "storage_spring_constant",
-        "loss_spring_constant", "closed_loop_energy",
-    )  # fmt: skip
+    loop = LoopQuantities(*(getattr(exact[0], one) for one in LoopQuantities._fields))
     moved = loop_contributions(
-        InstrumentErrors("r", lag=lag), line, **{one: getattr(exact[0], one) for one in names},
-        waveform="triangular", control="load",
+        InstrumentErrors("r", lag=lag), line, loop, waveform="triangular", control="load",
     ).values  # fmt: skip
     # by where the readings lie beside the corners it is all or nothing
     for name in ("strain_amplitude", "apparent_spring_constant"):

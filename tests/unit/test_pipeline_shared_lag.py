@@ -13,7 +13,7 @@ from reduction.record.settings import CycleSettings, ReductionSettings
 from reduction.stages.cycles.cycle_product import Cycles
 from reduction.stages.reduced_test import TestDescription
 from reduction.stages.strain.strain_model import StrainModel
-from reduction.uncertainty.propagation import loop_contributions
+from reduction.uncertainty.propagation import LoopQuantities, loop_contributions
 from reduction.uncertainty.shared_contributions import _has_corners, lag_of_test
 
 TIME = np.arange(0, 118, 0.1)
@@ -120,11 +120,14 @@ def test_a_filter_takes_its_share_of_an_amplitude():
         found = loop_contributions(
             InstrumentErrors("cord", lag=0.1, smoothed_over=0.1),
             StrainModel("cord", "gauge-length", {"gauge_length": 1.0, "reference_position": 0.0}),
-            frequency=0.2 * one, mean_tension=500 * one, tension_amplitude=100 * one,
-            mean_strain=0.5 * one, strain_amplitude=0.1 * one,
-            apparent_spring_constant=1000 * one, hysteresis_energy=one,
-            storage_spring_constant=1000 * one, loss_spring_constant=30 * one,
-            closed_loop_energy=one, waveform=waveform,
+            LoopQuantities(
+                frequency=0.2 * one, mean_tension=500 * one, tension_amplitude=100 * one,
+                mean_strain=0.5 * one, strain_amplitude=0.1 * one,
+                apparent_spring_constant=1000 * one, hysteresis_energy=one,
+                storage_spring_constant=1000 * one, loss_spring_constant=30 * one,
+                closed_loop_energy=one,
+            ),
+            waveform=waveform,
         )  # fmt: skip
         (at,) = [k for k, part in enumerate(found.component) if part.source == "lag"]
         lost.append(-found.values["apparent_spring_constant"][at, 0] / 1000 * np.sqrt(3))
@@ -148,7 +151,7 @@ def test_a_late_tension_moves_what_is_read_at_corners_and_no_rounded_turn():
     cycles = Cycles(first, first + 100, *halves, np.ones((10, 2)), none, none, none > 0, 0.01)
     line = StrainModel("rope", "gauge-length", {"reference_position": 0.0, "gauge_length": 1.0})
     known = {
-        "mean_tension": 1e3, "tension_amplitude": 500.0, "mean_strain": 1.0,
+        "frequency": 0.1, "mean_tension": 1e3, "tension_amplitude": 500.0, "mean_strain": 1.0,
         "strain_amplitude": 0.5, "apparent_spring_constant": 1e3, "hysteresis_energy": 1.0,
         "storage_spring_constant": 1e3, "loss_spring_constant": 1.0, "closed_loop_energy": 1.0,
     }  # fmt: skip
@@ -158,8 +161,9 @@ def test_a_late_tension_moves_what_is_read_at_corners_and_no_rounded_turn():
             "T", ("rope",), TIME, wave, 1e3 * wave[None], np.zeros((1, TIME.size)), none
         )
         found = loop_contributions(
-            InstrumentErrors("rope", lag=0.02), line, frequency=np.full(1, 0.1),
-            **{key: np.full(1, value) for key, value in known.items()}, waveform="other",
+            InstrumentErrors("rope", lag=0.02), line,
+            LoopQuantities(**{key: np.full(1, value) for key, value in known.items()}),
+            waveform="other",
             has_corners=_has_corners(cycles, CycleSettings(waveform="other"), record),
         )  # fmt: skip
         moved[name] = float(found.values["apparent_spring_constant"][0, 0])

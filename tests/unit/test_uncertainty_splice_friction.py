@@ -6,7 +6,7 @@ import pytest
 from reduction.record.contributions import InstrumentErrors
 from reduction.stages.holds.relaxation_and_creep import HoldResult
 from reduction.stages.strain.strain_model import StrainModel
-from reduction.uncertainty.propagation import loop_contributions
+from reduction.uncertainty.propagation import LoopQuantities, loop_contributions
 from reduction.uncertainty.shared_contributions import _friction_on_branches, _of_hold
 
 MODEL = StrainModel(
@@ -19,14 +19,14 @@ ERRORS = InstrumentErrors("new", splice_friction=0.05)
 
 def contributions(errors, model):
     """Of a triangular loop between 225 and 675 N, and strains of 0.5 and 1.5."""
-    return loop_contributions(
-        errors, model, frequency=np.array([0.1]), mean_tension=np.array([450.0]),
+    loop = LoopQuantities(
+        frequency=np.array([0.1]), mean_tension=np.array([450.0]),
         tension_amplitude=np.array([225.0]), mean_strain=np.array([1.0]),
         strain_amplitude=np.array([0.5]), apparent_spring_constant=np.array([450.0]),
         hysteresis_energy=np.array([20.0]), storage_spring_constant=np.array([450.0]),
         loss_spring_constant=np.array([25.0]), closed_loop_energy=np.array([20.0]),
-        waveform="triangular",
     )  # fmt: skip
+    return loop_contributions(errors, model, loop, waveform="triangular")
 
 
 def test_a_loop_is_wider_by_the_difference_of_the_branches_over_the_range_of_tension():
