@@ -11,9 +11,10 @@ References
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
@@ -477,6 +478,175 @@ def _change_of(amplitude: Floats) -> float:
     return float(np.median(np.abs(np.diff(known))) / np.median(known))
 
 
+class _Drifts(NamedTuple):
+    """Drift of both channels over each cycle, NaN where it exceeds the range of the cycle.
+
+    Cycles that follow a ramp may have an own drift in the channel that answers, which is the part
+    beyond that ``of_neighbours``: ``on_fall`` is what it has on the way down, NaN elsewhere, and
+    ``of_ramp`` what it may add to the range.
+    """
+
+    tension: Floats
+    strain: Floats
+    of_neighbours: Floats
+    is_own: Bools
+    on_fall: Floats
+    of_ramp: Floats
+
+
+def _drifts_of_cycles(
+    row: Mapping[str, Floats],
+    cycles: Cycles,
+    ends: Floats,
+    *,
+    waveform: Waveform,
+    is_load: bool,
+    rise_shares: tuple[Floats | float, Floats | float],
+    own_drift: Callable[[Floats, Floats], tuple[Floats, Bools]] | None,
+) -> _Drifts:
+    """Drift of tension and of strain over each cycle; ``row`` has the quantities of `MEASURED`."""
+    is_parted = waveform != "sinusoidal" and _are_parted(cycles)
+    # the mean of a sine is fitted along with it, so one sample more or less does not change it
+    parts = ("mean",) * 3 if waveform == "sinusoidal" else _OF_PERIOD
+    tension, strain = (
+        _drift_between_rests(row[f"{name}_top"], row[f"{name}_begin"], ends, cycles.number)
+        if is_parted
+        else _mean_drift(np.stack([row[f"{name}_{part}"] for part in parts]), ends)
+        for name in ("force", "strain")
+    )
+    of_neighbours = strain if is_load else tension
+    own, is_own = of_neighbours, np.zeros(cycles.n_cycles, bool)
+    if own_drift is not None and not is_parted:
+        own, is_own = own_drift(of_neighbours, tension if is_load else strain)
+    # of the drift after a ramp, the fall has at most its part of the drift of this cycle, and at
+    # least that part of the drift of the next one
+    falls = 1 - rise_shares[int(is_load)]
+    on_fall = np.where(is_own, falls * (own + of_neighbours) / 2, np.nan)
+    share = 1 / np.pi if waveform == "sinusoidal" else falls / 2
+    of_ramp = np.where(is_own, share * np.abs(own - of_neighbours), 0.0)
+    if is_load:
+        strain = own
+    else:
+        tension = own
+    # drift above the range comes from a jump among the neighbours: no steady cycle is left
+    ranges = row["peak"] - row["valley"], row["high"] - row["low"]
+    tension, strain, of_neighbours = (
+        np.where(np.abs(drift) > size, np.nan, drift)
+        for drift, size in (
+            (tension, ranges[0]), (strain, ranges[1]), (of_neighbours, ranges[int(is_load)])
+        )
+    )  # fmt: skip
+    return _Drifts(tension, strain, of_neighbours, is_own, on_fall, of_ramp)
+
+
+class _Levels(NamedTuple):
+    """Levels of one channel in each cycle, and the width of the error of its range."""
+
+    mean: Floats
+    amplitude: Floats
+    peak: Floats
+    valley: Floats
+    missed: Floats
+
+
+def _levels_of_sine(
+    row: Mapping[str, Floats], drifts: _Drifts, shapes: tuple[_Shape, _Shape], is_load: bool
+) -> tuple[_Levels, _Levels]:
+    """Levels of tension and of strain of a sinusoidal wave, by its fundamental and its shape."""
+    levels = []
+    for name, shape, drift in (
+        ("force", shapes[0], drifts.tension), ("strain", shapes[1], drifts.strain)
+    ):  # fmt: skip
+        half = np.hypot(row[f"{name}_cosine"], row[f"{name}_sine"] + drift / np.pi)
+        mean, amplitude = row[f"{name}_mean"] + shape.middle * half, half * shape.half
+        levels.append(
+            _Levels(mean, amplitude, mean + amplitude, mean - amplitude, shape.missed * half)
+        )
+    tension, strain = levels
+    # cycles of many amplitudes have no wave in common: K_ap by their logged extremes
+    if _change_of(tension.amplitude if is_load else strain.amplitude) > _IRREGULAR:
+        by_extremes = np.nanmean(row["peak"] - row["valley"]) / np.nanmean(row["high"] - row["low"])
+        by_wave = np.nanmean(tension.amplitude) / np.nanmean(strain.amplitude)
+        of_shape = tension.amplitude * (by_extremes / by_wave - 1)
+        tension = tension._replace(missed=np.hypot(tension.missed, of_shape))
+    return tension._replace(peak=row["peak"], valley=row["valley"]), strain
+
+
+def _levels_of_ramps(
+    row: Mapping[str, Floats],
+    drifts: _Drifts,
+    cycles: Cycles,
+    is_load: bool,
+    rise_shares: tuple[Floats | float, Floats | float],
+) -> tuple[_Levels, _Levels]:
+    """Levels of tension and of strain of waves that are no sines, by their turns."""
+    follows, is_parted = touching(cycles), _are_parted(cycles)
+    # a cycle stored without the next one may end before its valley
+    ends_alone = np.append(cycles.first[1:] == cycles.last[:-1] + 1, False)
+    levels = []
+    for place, (name, drift) in enumerate((("force", drifts.tension), ("strain", drifts.strain))):
+        answers = place == int(is_load)
+        top, begin, end = (row[f"{name}_{turn}"] for turn in ("top", "begin", "end_turn"))
+        missed = row[f"{name}_missed"]
+        if is_parted:  # the drift may all take place on one way between the turns
+            missed = np.hypot(missed, EITHER_WAY * np.abs(drift) / 4)
+        mean, amplitude = _mean_and_amplitude(
+            top,
+            begin,
+            end,
+            # the drift of a first cycle beyond its neighbours is not part of its wave
+            drifts.of_neighbours if answers else drift,
+            rise_shares[place],
+            follows & ~ends_alone,
+            drifts.on_fall if answers else np.full(drift.size, np.nan),
+        )
+        turns = top, begin, end
+        levels.append(
+            _Levels(mean, amplitude, np.max(turns, axis=0), np.min(turns, axis=0), missed)
+        )
+    tension, strain = levels
+    return tension, strain._replace(valley=row["strain_begin"])
+
+
+def _energy_of_cycles(
+    row: Mapping[str, Floats], drifts: _Drifts, size: Floats, is_load: bool
+) -> tuple[Floats, Floats, Floats]:
+    """Energy of loops without their drift, its part at the peaks, and its standard uncertainty.
+
+    ``size``: product of both amplitudes.
+    """
+    energy = without_drift(
+        row["energy"],
+        end_tension=row["force_end"],
+        mean_tension=row["force_mean"],
+        tension_drift=drifts.tension,
+        end_strain=row["strain_end"],
+        mean_strain=row["strain_mean"],
+        strain_drift=drifts.strain,
+    )
+    of_drift, is_own = row["energy"] - energy, drifts.is_own
+    at_peaks = of_drift * drift_at_peaks(energy, row["energy"], size)
+    # beyond its neighbours, a first cycle under a driven position loses tension by relaxation,
+    # which is no loss of the loop, or by friction that the ramp left on the loading side, which is:
+    # the middle is wrong by at most half of it
+    beyond = np.zeros(energy.size)
+    if not is_load and is_own.any():
+        beyond[is_own] = np.clip(1 - drifts.of_neighbours[is_own] / drifts.tension[is_own], 0, 1)
+        at_peaks = np.where(is_own, -beyond * of_drift / 2, at_peaks)
+    energy = energy - at_peaks
+    with np.errstate(divide="ignore", invalid="ignore"):
+        # the part of the cycle in which the drift takes place is not known
+        not_placed = drift_not_placed(energy, row["energy"], size)
+    # later cycles give no information on the creep after a ramp
+    placed = np.where(is_own & is_load, 1 / PLACE_OF_DRIFT, not_placed)
+    placed *= np.abs(row["energy"] - energy)
+    return (
+        energy,
+        at_peaks,
+        np.hypot((1 - beyond) * placed, beyond * np.abs(of_drift) / np.sqrt(12)),
+    )
+
+
 def _quantities_of_cycles(
     measured: Floats,
     cycles: Cycles,
@@ -519,107 +689,21 @@ def _quantities_of_cycles(
     """
     row = dict(zip(MEASURED, measured, strict=True))
     n_samples = (cycles.last - cycles.first).astype(np.float64)
-    peak, valley = row["peak"], row["valley"]
-    force_cos, strain_cos = row["force_cosine"], row["strain_cosine"]
-    follows = touching(cycles)
-    is_parted = waveform != "sinusoidal" and _are_parted(cycles)
-    # the mean of a sine is fitted along with it, so one sample more or less does not change it
-    parts = ("mean",) * 3 if waveform == "sinusoidal" else _OF_PERIOD
-    force_drift, strain_drift = (
-        _drift_between_rests(row[f"{name}_top"], row[f"{name}_begin"], ends, cycles.number)
-        if is_parted
-        else _mean_drift(np.stack([row[f"{name}_{part}"] for part in parts]), ends)
-        for name in ("force", "strain")
-    )
     is_load = control == "load"
-    of_neighbours, is_own = strain_drift if is_load else force_drift, np.zeros(n_samples.size, bool)
-    drift_of_cycle = of_neighbours
-    if own_drift is not None and not is_parted:
-        drift_of_cycle, is_own = own_drift(of_neighbours, force_drift if is_load else strain_drift)
-    # of the drift after a ramp, the fall has at most its part of the drift of this cycle, and at
-    # least that part of the drift of the next one
-    falls = 1 - rise_shares[int(is_load)]
-    on_fall = np.where(is_own, falls * (drift_of_cycle + of_neighbours) / 2, np.nan)
-    share = 1 / np.pi if waveform == "sinusoidal" else falls / 2
-    of_ramp = np.where(is_own, share * np.abs(drift_of_cycle - of_neighbours), 0.0)
-    if is_load:
-        strain_drift = drift_of_cycle
-    else:
-        force_drift = drift_of_cycle
-    # drift above the range comes from a jump among the neighbours: no steady cycle is left
-    ranges = peak - valley, row["high"] - row["low"]
-    for drift, size in (
-        (force_drift, ranges[0]), (strain_drift, ranges[1]), (of_neighbours, ranges[int(is_load)])
-    ):  # fmt: skip
-        drift[np.abs(drift) > size] = np.nan
-    force_sin = row["force_sine"] + force_drift / np.pi
-    strain_sin = row["strain_sine"] + strain_drift / np.pi
+    drifts = _drifts_of_cycles(
+        row, cycles, ends, waveform=waveform, is_load=is_load, rise_shares=rise_shares,
+        own_drift=own_drift,
+    )  # fmt: skip
+    force_cos, force_sin = row["force_cosine"], row["force_sine"] + drifts.tension / np.pi
+    strain_cos, strain_sin = row["strain_cosine"], row["strain_sine"] + drifts.strain / np.pi
     if waveform == "sinusoidal":
-        shapes = shapes or (_Shape(), _Shape())
-        mean, mean_strain = row["force_mean"], row["strain_mean"]
-        amplitude = np.hypot(force_cos, force_sin)
-        strain_amplitude = np.hypot(strain_cos, strain_sin)
-        of_force, of_strain = shapes
-        row["force_missed"] = of_force.missed * amplitude
-        row["strain_missed"] = of_strain.missed * strain_amplitude
-        mean = mean + of_force.middle * amplitude
-        mean_strain = mean_strain + of_strain.middle * strain_amplitude
-        amplitude, strain_amplitude = amplitude * of_force.half, strain_amplitude * of_strain.half
-        begin = mean_strain - strain_amplitude
-        # cycles of many amplitudes have no wave in common: K_ap by their logged extremes
-        if _change_of(amplitude if control == "load" else strain_amplitude) > _IRREGULAR:
-            by_extremes = np.nanmean(peak - valley) / np.nanmean(row["high"] - row["low"])
-            by_wave = np.nanmean(amplitude) / np.nanmean(strain_amplitude)
-            of_shape = amplitude * (by_extremes / by_wave - 1)
-            row["force_missed"] = np.hypot(row["force_missed"], of_shape)
+        tension, strain = _levels_of_sine(row, drifts, shapes or (_Shape(), _Shape()), is_load)
     else:
-        begin = row["strain_begin"]
-        if is_parted:  # the drift may all take place on one way between the turns
-            for name, drift in (("force", force_drift), ("strain", strain_drift)):
-                row[f"{name}_missed"] = np.hypot(
-                    row[f"{name}_missed"], EITHER_WAY * np.abs(drift) / 4
-                )
-        # a cycle stored without the next one may end before its valley
-        ends_alone = np.append(cycles.first[1:] == cycles.last[:-1] + 1, False)
-        # the drift of a first cycle beyond its neighbours is not part of its wave
-        of_wave, falls_by = [force_drift, strain_drift], np.full((2, on_fall.size), np.nan)
-        of_wave[int(is_load)], falls_by[int(is_load)] = of_neighbours, on_fall
-        turns = [row["force_top"], row["force_begin"], row["force_end_turn"]]
-        peak, valley = np.max(turns, axis=0), np.min(turns, axis=0)
-        (mean, amplitude), (mean_strain, strain_amplitude) = (
-            _mean_and_amplitude(
-                row[f"{name}_top"],
-                row[f"{name}_begin"],
-                row[f"{name}_end_turn"],
-                drift,
-                rise_share,
-                follows & ~ends_alone,
-                way_down,
-            )
-            for name, drift, rise_share, way_down in (
-                ("force", of_wave[0], rise_shares[0], falls_by[0]),
-                ("strain", of_wave[1], rise_shares[1], falls_by[1]),
-            )
-        )
-    energy = without_drift(
-        row["energy"],
-        end_tension=row["force_end"],
-        mean_tension=row["force_mean"],
-        tension_drift=force_drift,
-        end_strain=row["strain_end"],
-        mean_strain=row["strain_mean"],
-        strain_drift=strain_drift,
+        tension, strain = _levels_of_ramps(row, drifts, cycles, is_load, rise_shares)
+    amplitude, strain_amplitude = tension.amplitude, strain.amplitude
+    energy, at_peaks, u_placed = _energy_of_cycles(
+        row, drifts, amplitude * strain_amplitude, is_load
     )
-    of_drift = row["energy"] - energy
-    at_peaks = of_drift * drift_at_peaks(energy, row["energy"], amplitude * strain_amplitude)
-    # beyond its neighbours, a first cycle under a driven position loses tension by relaxation,
-    # which is no loss of the loop, or by friction that the ramp left on the loading side, which is:
-    # the middle is wrong by at most half of it
-    beyond = np.zeros(n_samples.size)
-    if not is_load and is_own.any():
-        beyond[is_own] = np.clip(1 - of_neighbours[is_own] / drift_of_cycle[is_own], 0, 1)
-        at_peaks = np.where(is_own, -beyond * of_drift / 2, at_peaks)
-    energy -= at_peaks
     with np.errstate(divide="ignore", invalid="ignore"):
         # a series a cos + b sin is the real part of (a - ib) exp(i omega t)
         square = strain_cos**2 + strain_sin**2
@@ -632,7 +716,7 @@ def _quantities_of_cycles(
         both = np.hypot(noise, apparent * strain_noise)
         u_over_time = np.sqrt(2 / n_samples) * both / np.sqrt(square)
         u_energy = row["strain_step_norm"] * both
-        u_extreme = np.hypot(noise, row["force_missed"] / np.sqrt(12))
+        u_extreme = np.hypot(noise, tension.missed / np.sqrt(12))
         if waveform == "sinusoidal":
             u_extreme = np.hypot(noise, _missed_turn(amplitude, n_samples))
             u_half, u_strain = np.sqrt(2 / n_samples) * noise, np.sqrt(2 / n_samples) * strain_noise
@@ -640,17 +724,17 @@ def _quantities_of_cycles(
             u_storage = u_loss = u_apparent = u_over_time
         else:
             # in a single cycle the turn lies anywhere between two samples
-            u_half = np.hypot(noise / np.sqrt(2), row["force_missed"] / np.sqrt(12))
-            u_strain = np.hypot(strain_noise / np.sqrt(2), row["strain_missed"] / np.sqrt(12))
+            u_half = np.hypot(noise / np.sqrt(2), tension.missed / np.sqrt(12))
+            u_strain = np.hypot(strain_noise / np.sqrt(2), strain.missed / np.sqrt(12))
             # a missed turn reduces both amplitudes by the same fraction; only noise is left
             u_apparent = apparent * np.hypot(noise / amplitude, strain_noise / strain_amplitude)
             u_apparent /= np.sqrt(2)
             drift, own = (
-                (strain_drift, amplitude) if control == "load" else (force_drift, strain_amplitude)
+                (drifts.strain, amplitude) if is_load else (drifts.tension, strain_amplitude)
             )
             in_phase = (row["phase_work"] + drift * row["phase_sine"]) / (np.pi * row["phase_half"])
             quadrature = energy / (np.pi * own**2)
-            if control == "load":
+            if is_load:
                 # these are compliances; the modulus is their inverse
                 in_phase, quadrature = (
                     one / (in_phase**2 + quadrature**2) for one in (in_phase, quadrature)
@@ -660,7 +744,7 @@ def _quantities_of_cycles(
             u_loss = np.abs(loss) * np.hypot(
                 u_energy / energy, np.sqrt(2) * strain_noise / strain_amplitude
             )
-        u_ramp, u_foot = of_ramp / np.sqrt(12), np.sqrt(2) * u_strain
+        u_ramp, u_foot = drifts.of_ramp / np.sqrt(12), np.sqrt(2) * u_strain
         # a transient that dies away within its cycle has a fundamental in phase as well
         by_ramp = u_ramp / (strain_amplitude if is_load else amplitude)
         u_storage = np.hypot(u_storage, storage * by_ramp)
@@ -673,22 +757,16 @@ def _quantities_of_cycles(
         if waveform == "sinusoidal":  # the foot is the mean less the amplitude
             u_foot = np.sqrt(2) * u_strain
         factor = loss / storage
-        # the part of the cycle in which the drift takes place is not known
-        not_placed = drift_not_placed(energy, row["energy"], amplitude * strain_amplitude)
-        # later cycles give no information on the creep after a ramp
-        placed = np.where(is_own & is_load, 1 / PLACE_OF_DRIFT, not_placed)
-        placed *= np.abs(row["energy"] - energy)
-        placed = np.hypot((1 - beyond) * placed, beyond * np.abs(of_drift) / np.sqrt(12))
         per_energy = 1 / (np.pi * strain_amplitude**2)
-        u_loss = np.hypot(u_loss, placed * per_energy)
-        u_over_time_lost = np.hypot(u_over_time, placed * per_energy)
+        u_loss = np.hypot(u_loss, u_placed * per_energy)
+        u_over_time_lost = np.hypot(u_over_time, u_placed * per_energy)
         values = {
-            "mean_tension": mean,
+            "mean_tension": tension.mean,
             "tension_amplitude": amplitude,
-            "mean_strain": mean_strain,
+            "mean_strain": strain.mean,
             "strain_amplitude": strain_amplitude,
-            "peak_tension": peak,
-            "valley_tension": valley,
+            "peak_tension": tension.peak,
+            "valley_tension": tension.valley,
             "apparent_spring_constant": apparent,
             "hysteresis_energy": energy,
             "storage_spring_constant": storage,
@@ -698,10 +776,10 @@ def _quantities_of_cycles(
             "closed_loop_energy": row["energy"],
             "storage_over_time": over_time,
             "loss_over_time": lost_over_time,
-            "tension_turn_missed": np.hypot(row["force_missed"], 0.0 if is_load else of_ramp),
-            "strain_turn_missed": np.hypot(row["strain_missed"], of_ramp if is_load else 0.0),
+            "tension_turn_missed": np.hypot(tension.missed, 0.0 if is_load else drifts.of_ramp),
+            "strain_turn_missed": np.hypot(strain.missed, drifts.of_ramp if is_load else 0.0),
             "energy_turn_missed": row["energy_missed"],
-            "foot_strain": begin,
+            "foot_strain": strain.valley,
         }
         uncertainty = {
             "mean_tension": u_half,
@@ -711,7 +789,7 @@ def _quantities_of_cycles(
             "peak_tension": u_extreme,
             "valley_tension": u_extreme,
             "apparent_spring_constant": u_apparent,
-            "hysteresis_energy": np.hypot(u_energy, placed),
+            "hysteresis_energy": np.hypot(u_energy, u_placed),
             "storage_spring_constant": u_storage,
             "loss_spring_constant": u_loss,
             "loss_factor": np.abs(factor) * np.hypot(u_loss / loss, u_storage / storage),
