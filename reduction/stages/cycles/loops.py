@@ -11,7 +11,7 @@ References
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import NamedTuple
@@ -974,6 +974,97 @@ def _integrate_over_phase(
     measured[_OF_PHASE : _OF_PHASE + len(found), block] = found
 
 
+class _Reading(NamedTuple):
+    """Errors of a reading of one channel: its noise, its step, and what is left of the step.
+
+    ``scatter`` is that over the cycles at equal phases; infinite where a channel has no step.
+    """
+
+    noise: float
+    step: float
+    scatter: float
+    rounding: float
+
+
+def _reading_of(series: Floats, cycles: Cycles, noise: float) -> _Reading:
+    own, step = noise_and_step(series, noise)
+    scatter = scatter_over_cycles(series, cycles, step) if step else np.inf
+    return _Reading(own, step, scatter, rounding_left(step, scatter))
+
+
+def _levels_at_turns(
+    measured: Floats,
+    both: tuple[Floats, Floats],
+    cycles: Cycles,
+    readings: Sequence[_Reading],
+    *,
+    turn: Turn,
+    ways: tuple[int, int],
+    answer: int,
+    reach: int,
+    noise_of_driven: float,
+    may_dwell: bool,
+) -> Floats:
+    """Take noise and steps off the turns of both channels; levels of the driven one, (3, n_cycles).
+
+    ``measured`` is from `_measure`, and is changed.  The first and last level are those of the
+    valleys, the second that of the peak, without the tips that readings miss at sharp turns.
+    """
+    of_driven = _OF_TURNS + 4 * (1 - answer)
+    of_corners = noise_of_corners(noise_of_driven, measured[of_driven : of_driven + 2])
+    tips = measured[of_driven + 3] / 2 if turn == "sharp" else 0.0
+    rests = None
+    for channel in (1 - answer, answer):  # the response uses the rests of the driven one
+        series, reading, rows = both[channel], readings[channel], _OF_TURNS + 4 * channel
+        # the step of a converter does not raise an extreme, and shifts it alike in all
+        # cycles; the greatest of about ten noisy readings scatters, which removes this
+        # error from the mean of many
+        missed = measured[rows + 3]
+        rounded = rounding_left(reading.step, _OF_GREATEST * min(reading.noise, reading.scatter))
+        np.hypot(missed, _OF_BOTH_ENDS * rounded, out=missed)
+        is_held = take_noise_off_levels(
+            measured[rows : rows + 4], series, cycles, reach=reach,
+            turn=turn, noise=reading.noise, way=ways[channel],
+            may_dwell=may_dwell, of_corners=of_corners, rests=rests,
+        )  # fmt: skip
+        rests = (series, measured[rows : rows + 4]) if is_held else None
+    top, foot, end_turn = measured[of_driven : of_driven + 3]
+    tips *= ways[1 - answer]
+    return np.stack([foot + tips, top - tips, end_turn + tips])
+
+
+def _shapes_of_waves(
+    measured: Floats,
+    time: Floats,
+    both: tuple[Floats, Floats],
+    cycles: Cycles,
+    period: Floats,
+    ends: Floats,
+    rounding: Sequence[float],
+    answer: int,
+) -> tuple[_Shape, _Shape]:
+    """Shapes of the waves of tension and strain, whose phase may turn over a cycle.
+
+    ``measured`` is from `_measure`; the fundamental of the channel that answers is changed to one
+    that does not turn.
+    """
+    rows = _OF_FORCE, _OF_STRAIN
+    (force_cos, force_sin), (strain_cos, strain_sin) = (measured[one[:2]] for one in rows)
+    lead = np.angle((force_cos - 1j * force_sin) * (strain_cos + 1j * strain_sin))
+    turned = turn_over_cycle(-lead if answer == 1 else lead, touching(cycles))
+    fitted = rows[answer][:3]
+    cosine, sine, mean = measured[fitted]
+    measured[fitted] = without_turning(cosine, sine, mean, turned)
+    of_force, of_strain = (
+        _shape_of_wave(
+            time, both[one], cycles, period, measured[rows[one]], ends,
+            rounding=rounding[one], turned=turned if one == answer else 0.0,
+        )
+        for one in (0, 1)
+    )  # fmt: skip
+    return of_force, of_strain
+
+
 def close_loops(
     time: Floats,
     tension: Floats,
@@ -1115,55 +1206,30 @@ def close_loops(
     }
     rise_shares = (share_of_rise(time, cycles),) * 2
     for index, (force, stretch) in enumerate(zip(tension, strain, strict=True)):
-        noise, strain_noise = noises[index]
-        own_noise, steps = zip(
-            noise_and_step(force, noise), noise_and_step(stretch, strain_noise), strict=True
-        )
-        scatter = [
-            scatter_over_cycles(one, cycles, step) if step else np.inf
-            for one, step in zip((force, stretch), steps, strict=True)
+        both = force, stretch
+        readings = [
+            _reading_of(series, cycles, noise)
+            for series, noise in zip(both, noises[index], strict=True)
         ]
-        left = [rounding_left(step, one) for step, one in zip(steps, scatter, strict=True)]
+        steps, left = [one.step for one in readings], [one.rounding for one in readings]
         if any(steps):
             may_lack = measured[index, _OF_ENERGY]
             ranges = measured[index, _OF_EXTREMES[0]] - measured[index, _OF_EXTREMES[1]]
-            np.hypot(
-                may_lack,
-                energy_of_rounding(
-                    (force, stretch), steps, left, cycles, measured[index, _OF_NORM], ranges,
-                    waveform=waveform,
-                ),
-                out=may_lack,
-            )  # fmt: skip
-        if waveform != "sinusoidal":
-            of_driven = _OF_TURNS + 4 * (1 - answer)
-            of_corners = noise_of_corners(
-                noises[index][1 - answer], measured[index, of_driven : of_driven + 2]
+            of_steps = energy_of_rounding(
+                both, steps, left, cycles, measured[index, _OF_NORM], ranges, waveform=waveform
             )
-            tips = measured[index, of_driven + 3] / 2 if turns[index] == "sharp" else 0.0
-            rests = None
-            for channel in (1 - answer, answer):  # the response uses the rests of the driven one
-                series, step, rows = (
-                    (force, stretch)[channel],
-                    steps[channel],
-                    _OF_TURNS + 4 * channel,
-                )
-                own = own_noise[channel]
-                # the step of a converter does not raise an extreme, and shifts it alike in all
-                # cycles; the greatest of about ten noisy readings scatters, which removes this
-                # error from the mean of many
-                missed = measured[index, rows + 3]
-                rounded = rounding_left(step, _OF_GREATEST * min(own, scatter[channel]))
-                np.hypot(missed, _OF_BOTH_ENDS * rounded, out=missed)
-                is_held = take_noise_off_levels(
-                    measured[index, rows : rows + 4], series, cycles, reach=max(on_rise, on_fall),
-                    turn=turns[index], noise=own, way=ways[index][channel],
-                    may_dwell=waveform == "other", of_corners=of_corners, rests=rests,
-                )  # fmt: skip
-                rests = (series, measured[index, rows : rows + 4]) if is_held else None
-            top, foot, end_turn = measured[index, of_driven : of_driven + 3]
-            tips *= ways[index][1 - answer]
-            levels = np.stack([foot + tips, top - tips, end_turn + tips])
+            np.hypot(may_lack, of_steps, out=may_lack)
+        shapes = None
+        if waveform == "sinusoidal":
+            shapes = _shapes_of_waves(
+                measured[index], time, both, cycles, period, ends, left, answer
+            )
+        else:
+            levels = _levels_at_turns(
+                measured[index], both, cycles, readings,
+                turn=turns[index], ways=ways[index], answer=answer, reach=max(on_rise, on_fall),
+                noise_of_driven=noises[index][1 - answer], may_dwell=waveform == "other",
+            )  # fmt: skip
             integrate_block = partial(
                 _integrate_over_phase,
                 measured[index],
@@ -1175,40 +1241,20 @@ def close_loops(
                 control,
             )
             run_blocks(integrate_block, cycles.blocks(), samples=samples, longest=cycles.longest)
-        shapes = None
         if waveform == "other":
             of_force, of_stretch = ways[index]
             rise_shares = (
                 share_of_rise(time, cycles, of_force * force),
                 share_of_rise(time, cycles, of_stretch * stretch),
             )
-        if waveform == "sinusoidal":
-            of_both, answering = (_OF_FORCE, _OF_STRAIN), control == "load"
-            (force_cos, force_sin), (strain_cos, strain_sin) = (
-                measured[index, rows[:2]] for rows in of_both
-            )
-            lead = np.angle((force_cos - 1j * force_sin) * (strain_cos + 1j * strain_sin))
-            turned = turn_over_cycle(-lead if control == "load" else lead, touching(cycles))
-            fitted = of_both[answering][:3]
-            cosine, sine, mean = measured[index, fitted]
-            measured[index, fitted] = without_turning(cosine, sine, mean, turned)
-            shapes = (
-                _shape_of_wave(
-                    time, force, cycles, period, measured[index, _OF_FORCE], ends,
-                    rounding=left[0], turned=0.0 if answering else turned,
-                ),
-                _shape_of_wave(
-                    time, stretch, cycles, period, measured[index, _OF_STRAIN], ends,
-                    rounding=left[1], turned=turned if answering else 0.0,
-                ),
-            )  # fmt: skip
+        noise, strain_noise = noises[index]
         values, errors = _quantities_of_cycles(
             measured[index], cycles, ends, waveform=waveform, noise=noise,
             strain_noise=strain_noise, rise_shares=rise_shares, control=control,
             shapes=shapes,
             own_drift=partial(
-                _own_drift, *((force, stretch) if control == "load" else (stretch, force)), cycles,
-                noises=noises[index] if control == "load" else noises[index][::-1],
+                _own_drift, both[1 - answer], both[answer], cycles,
+                noises=(noises[index][1 - answer], noises[index][answer]),
             ),
         )  # fmt: skip
         for name, column in values.items():
