@@ -219,8 +219,26 @@ def test_friction_behind_a_ramp_is_within_the_interval_of_the_first_cycle(wave, 
 def test_a_valley_in_the_rest_before_the_cycles_is_moved_to_their_beginning():
     turn = np.maximum(np.arange(-15, 161), 0) / 80
     driven = -np.cos(2 * np.pi * turn)
-    assert _lead(driven, np.array([0, 95]), np.array([55, 135])) == -15
-    assert _lead(driven, np.array([15, 95]), np.array([55, 135])) == 0
+    assert _lead(driven, np.array([0, 95]), np.array([55, 135])) == pytest.approx(-15)
+    assert _lead(driven, np.array([15, 95]), np.array([55, 135])) == pytest.approx(0)
+
+
+@pytest.mark.parametrize("control", ["load", "position"])
+def test_a_reading_in_the_middle_of_the_rise_does_not_hide_the_drift_of_the_first_cycle(control):
+    """Of 40 readings in step one is in the middle of each rise, beyond it or not by chance."""
+    turn, rng = np.arange(5 * 40 + 1) / 40, np.random.default_rng(3)
+    driven = 1 - 4 * np.abs(turn % 1 - 0.5)
+    way = 1 if control == "position" else -1  # of loss, and of what the ramp left
+    answer = driven + way * (np.where(turn % 1 < 0.5, 0.06, -0.06) + np.exp(-3 * turn) / 8)
+    for _ in range(8):
+        moved = driven + 2e-4 * rng.standard_normal(turn.size)
+        force, stretch = (answer, moved) if control == "position" else (moved, answer)
+        loops = close_loops(
+            10 * turn, 15e3 + 4e3 * force[None], 0.03 + 0.004 * stretch[None],
+            cycles_of(40, 5, turn.size), waveform="triangular", control=control,
+        )  # fmt: skip
+        found, stated = loops.hysteresis_energy, loops.uncertainty["hysteresis_energy"]
+        assert abs(found[0, 0] - 16 * 4 * 0.06) < 2 * stated[0, 0]
 
 
 @pytest.mark.parametrize("per_cycle", [12.3, 13.0, 19.7, 50.0])

@@ -204,15 +204,19 @@ def _own_drift(
             if place == stop - 1:
                 drift, slope, spread = _from_valley_to_valley(driven, answer, cycles, place)
             else:
-                valleys = cycles.first[place : place + 2].copy()
+                valleys = cycles.first[place : place + 2].astype(np.float64)
                 ahead = int(length[place : place + 2].min()) // _OF_GAP + 1
                 # over both sides of a valley the effect of a settling loss angle cancels
                 behind = ahead - 1 if place > start else 0
                 if place == start:  # the first valley may be anywhere in the rest before the cycles
-                    valleys[0] -= _lead(driven, valleys, cycles.branch_last[place : place + 2, 0])
+                    valleys[0] -= _lead(
+                        driven,
+                        cycles.first[place : place + 2],
+                        cycles.branch_last[place : place + 2, 0],
+                    )
                 count = ahead + behind
                 level, other = (
-                    np.stack([series[at - behind : at + ahead] for at in valleys.tolist()])
+                    _readings_at(series, valleys[:, None] + np.arange(-behind, ahead))
                     for series in (driven, answer)
                 )
                 slope = _slope(level - level.mean(axis=1, keepdims=True), other)
@@ -238,17 +242,30 @@ def _own_drift(
     return drifts, is_own
 
 
-def _lead(driven: Floats, valleys: Integers, peaks: Integers) -> int:
-    """Samples by which the first of two valleys is nearer to the middle of its rise. [1]."""
+def _lead(driven: Floats, valleys: Integers, peaks: Integers) -> float:
+    """Samples by which the first of two valleys is nearer to the middle of its rise. [1].
+
+    The middle is passed between two readings: one sample more or less, where noise decides which
+    reading is the first beyond it, would shift the driven channel by most of what it moves beside
+    its valley.
+    """
     begin = driven[valleys[1]]
     middle = np.abs(driven[peaks[1]] - begin) / 2
     to_middle = []
     for valley, peak in zip(valleys.tolist(), peaks.tolist(), strict=True):
-        reached = np.flatnonzero(np.abs(driven[valley : peak + 1] - begin) >= middle)
-        if not reached.size:
-            return 0
-        to_middle.append(int(reached[0]))
-    return min(to_middle[1] - to_middle[0], int(valleys[0]))
+        risen = np.abs(driven[valley : peak + 1] - begin)
+        beyond = np.flatnonzero(risen >= middle)
+        if not beyond.size or beyond[0] == 0:
+            return 0.0
+        after = int(beyond[0])
+        to_middle.append(after - (risen[after] - middle) / (risen[after] - risen[after - 1]))
+    return float(min(to_middle[1] - to_middle[0], valleys[0]))
+
+
+def _readings_at(series: Floats, places: Floats) -> Floats:
+    """A series at places between its readings, of which the first lies within it."""
+    low, high = int(places.min()), int(np.ceil(places.max())) + 1
+    return np.interp(places, np.arange(low, low + series[low:high].size), series[low:high])
 
 
 def _slope(apart: Floats, other: Floats) -> float:
@@ -297,7 +314,7 @@ _OF_GAP = 8  # part of a cycle, from its first turn on
 
 _OF_CLOSING = 2  # part of a branch, beside its turns
 
-_OF_DRIFT, _OF_DRIVEN = 0.6, 0.8  # greatest share due to friction, or to the driven channel
+_OF_DRIFT, _OF_DRIVEN = 0.6, 0.5  # greatest share due to friction, or to the driven channel
 
 _OF_SETTLING = 0.003  # of the range
 
