@@ -25,7 +25,7 @@ from reduction.prediction.hose_tension import predict_hose
 from reduction.quantities.units import Dimension, scale_to_si
 from reduction.readers.layout import Layout
 from reduction.record.errors import ReductionError, SettingsError
-from reduction.record.measurement import Floats, Specimen
+from reduction.record.measurement import Floats, Specimen, SpliceMarks
 from reduction.record.notes import Note, note
 from reduction.stages.plausible_bands import Bands, bands_of, readings_that_fit, words_of_ratio
 from reduction.stages.strain.strain_model import StrainModel
@@ -66,6 +66,8 @@ _SOFTENED = 3.0  # softening of rubber after a larger stretch: half in WHOI-2005
 _GREATER = 1.05  # ratio of stretch before a test to that in the test
 
 _MOST_COMPARED = 40  # tests of one specimen
+
+_FEWEST_COPIED = 3  # rows of marks: fewer can be equal by chance
 
 _FALLEN = 0.5  # of the maximum tension, at the end
 
@@ -128,6 +130,8 @@ def implausible(
         for name in survey.plan.specimens:
             model = models.get((survey.plan.id, name))
             notes += _of_specimen(campaign, survey, campaign.specimens[name], model)
+            if model is not None and model.mark_test:
+                notes += _of_marks(campaign, name)
         notes += _of_statements(campaign, survey, models)
         notes += _of_columns(campaign, survey)
     for test, one in _of_pairs(campaign, read, models):
@@ -174,6 +178,27 @@ def _of_specimen(
                 strength=strength,
             ),
         )  # fmt: skip
+
+
+def _of_marks(campaign: Campaign, name: str) -> Iterator[Note]:
+    """Find marks that were read on another specimen, and copied."""
+    if campaign.uncertainty.strain_gain:  # what the specimens differ by is in the intervals
+        return
+    own = _readings(campaign.marks[name])
+    for other, marks in campaign.marks.items():
+        if other == name:
+            return
+        # slack rows may have been read on each specimen
+        shared = own & _readings(marks)
+        if len(shared) >= _FEWEST_COPIED and shared >= {one for one in own if one[0] != "slack"}:
+            yield note("marks-of-another", name, other=other, n_marks=len(shared))
+            return
+
+
+def _readings(marks: SpliceMarks) -> set[tuple[str, float, float, float]]:
+    """Hold and tape readings of each row, without the test."""
+    columns = (marks.near_toe.tolist(), marks.far_toe.tolist(), marks.far_thimble.tolist())
+    return set(zip(marks.hold, *columns, strict=True))
 
 
 def _of_stretched(specimen: Specimen) -> Iterator[Note]:

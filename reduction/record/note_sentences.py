@@ -1858,6 +1858,12 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "its log is identical to that of test {other}, byte for byte. Check whether the same file"
         " is named twice",
     ),
+    "marks-of-another": (
+        "warning",
+        "its {n_marks} marks are those of {other}, digit by digit. Splices differ from specimen to"
+        " specimen: read the tape on each. If only {other} was read, state in [uncertainty] what"
+        ' the strain may differ by, such as strain = "3 %"',
+    ),
     "stiffness-jumps": (
         "warning",
         lambda other, ratio, like: (
@@ -1957,8 +1963,8 @@ SENTENCES: Mapping[str, tuple[Severity, str | Callable[..., str]]] = {
 """Severity and sentence of each note, by code."""
 
 CAUSES = (
-    "log-used-twice", "channels-alike", "column-of-another", "diameter-readings-apart",
-    "stretched-diameters-apart",
+    "log-used-twice", "marks-of-another", "channels-alike", "column-of-another",
+    "diameter-readings-apart", "stretched-diameters-apart",
     "cycles-in-other-kind", "rate-not-as-stated", "level-not-as-stated",
     "load-never-falls", "load-zero-drifts", "load-zero-wrong", "load-negative",
     "load-falls-with-stretch", "pushed-in-cycles", "reference-length-under-preload",

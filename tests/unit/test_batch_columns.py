@@ -1,11 +1,13 @@
-"""Warnings of columns and files that are named twice, or of another specimen."""
+"""Warnings of columns, files and marks that are named twice, or of another specimen."""
 
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
-from reduction.batch.plausibility import _of_columns, _of_pairs
+from reduction.batch.plausibility import _of_columns, _of_marks, _of_pairs
 from reduction.readers.layout import Layout
+from reduction.record.measurement import SpliceMarks
 
 
 def layout(load, *, position="Position", time="Time", sheet=1):
@@ -87,3 +89,31 @@ def test_rubber_that_was_stretched_further_before_may_be_softer(kind, last, told
     tests = [pulled(order, *one) for order, one in enumerate([*virgin, last], start=1)]
     found = list(_of_pairs(campaign, tests, {}))
     assert [(test, one.code) for test, one in found] == [("T-6", code) for code in told]
+
+
+def tape(specimen, *readings, holds=("slack", "slack", "min", "max")):
+    near, far, thimble = np.array(readings, dtype=float).T
+    return SpliceMarks(specimen, ("T",) * near.size, holds[-near.size :], near, far, thimble)
+
+
+_READ = [(0.63, 3.18, 3.74), (0.63, 3.19, 3.74), (0.75, 5.24, 5.90), (0.81, 6.63, 7.35)]
+
+
+@pytest.mark.parametrize(
+    ("readings", "strain", "n_notes"),
+    [
+        (_READ, 0.0, 1),
+        (_READ, 0.03, 0),  # what the specimens differ by is stated
+        ([(0.62, 3.20, 3.75), *_READ[1:]], 0.0, 1),  # slack read on each, the others copied
+        ([*_READ[:3], (0.80, 6.64, 7.35)], 0.0, 0),
+        (_READ[2:], 0.0, 0),  # two rows can be equal by chance
+    ],
+)
+def test_marks_that_were_read_on_another_specimen_are_told(readings, strain, n_notes):
+    marks = {"A": tape("A", *_READ), "B": tape("B", *readings)}
+    campaign = SimpleNamespace(marks=marks, uncertainty=SimpleNamespace(strain_gain=strain))
+    assert list(_of_marks(campaign, "A")) == []
+    found = list(_of_marks(campaign, "B"))
+    assert len(found) == n_notes
+    assert all(one.code == "marks-of-another" for one in found)
+    assert all("those of A" in str(one) for one in found)
