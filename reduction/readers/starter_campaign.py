@@ -12,6 +12,7 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
+from reduction.readers.channel_names import is_unit
 from reduction.readers.layout import UNKNOWN
 from reduction.readers.raw_log import unreadable
 from reduction.readers.sniff import (
@@ -25,6 +26,8 @@ from reduction.record.errors import LogError
 from reduction.record.plain_text import safe_cell, toml_comment, toml_text
 
 _WRITTEN = ("campaign.toml", "tests.csv")
+
+_PRODUCTS = ("processed", "reports")
 
 _MARKS = {"test", "specimen", "hold"}
 
@@ -128,7 +131,11 @@ def starter_campaign(folder: Path) -> dict[str, str]:
     refused: list[str] = []
     blind: list[Path] = []
     for path in sorted(folder.iterdir(), key=lambda entry: _natural(entry.name)):
-        if not path.is_file() or path.name.startswith(".") or path.name in _WRITTEN:
+        if path.name.startswith(".") or path.name in _WRITTEN:
+            continue
+        if path.is_dir() and path.name not in _PRODUCTS:
+            refused.append(f"{path.name}/: a folder; move its logs up, or draft it as a campaign")
+        if not path.is_file():
             continue
         if not path.resolve().is_relative_to(folder.resolve()):
             refused.append(f"{path.name}: a link that leads out of the folder")
@@ -183,6 +190,8 @@ _MOST_SAID = 12
 def _one_layout(alike: list[_Log]) -> tuple[str, list[str]]:
     """Common layout of similar logs; a zero or datum that differs becomes a question."""
     toml, remarks = alike[0].sniffed.toml, list(alike[0].sniffed.remarks)
+    if (said := _units_said(alike[0])) and f'unit = "{UNKNOWN}"' in toml:
+        remarks.append(f"from the log: units {', '.join(said)}")
     texts = [log.sniffed.toml.split("\n") for log in alike]
     merged = []
     for number, line in enumerate(toml.split("\n")):
@@ -191,12 +200,33 @@ def _one_layout(alike: list[_Log]) -> tuple[str, list[str]]:
             line = re.sub(r'zero = "[^"]*"', f'zero = "{UNKNOWN}"', line)
             if 'datum = "' in line:
                 line = re.sub(r", datum = .*?(?= })", f', datum = "{UNKNOWN}"', line)
+            unlike = [
+                log.file for log, text in zip(alike, texts, strict=True)
+                if number < len(text) and text[number] != texts[0][number]
+            ]  # fmt: skip
+            more = f" and {len(unlike) - _MOST_NAMED} more" if len(unlike) > _MOST_NAMED else ""
             remarks.append(
-                f"unknown: {line.split(' = ')[0]}: the logs differ in how they begin; a log with a"
+                f"unknown: {line.split(' = ')[0]}: the logs differ in how they begin"
+                f" ({', '.join(unlike[:_MOST_NAMED])}{more} unlike {alike[0].file}); a log with a"
                 " zero or datum of its own needs a layout of its own"
             )
         merged.append(line)
     return "\n".join(merged), remarks
+
+
+_MOST_NAMED = 5
+
+
+def _units_said(log: _Log) -> tuple[str, ...]:
+    """Units in brackets above the table."""
+    said = re.findall(r"[\[(]\s*([^\s\[\]()\d]+)\s*[\])]", " ".join(log.sniffed.preamble))
+    return tuple(dict.fromkeys(unit for unit in said if is_unit(unit)))
+
+
+def _form(log: _Log) -> tuple[str, tuple[str, ...]]:
+    """What logs of one layout have in common; of columns without a unit also what is above them."""
+    settings = log.sniffed.settings
+    return settings, _units_said(log) if f'unit = "{UNKNOWN}"' in settings else ()
 
 
 def _natural(name: str) -> list[tuple[int, str]]:
@@ -206,14 +236,14 @@ def _natural(name: str) -> list[tuple[int, str]]:
 
 
 def _texts(folder: Path, logs: list[_Log], marks: list[str], refused: list[str]) -> dict[str, str]:
-    layouts: dict[str, tuple[str, list[_Log]]] = {}
+    layouts: dict[tuple[str, tuple[str, ...]], tuple[str, list[_Log]]] = {}
     taken: set[str] = set()
     rows = []
     for log in logs:
-        if log.sniffed.settings not in layouts:
+        if _form(log) not in layouts:
             wish = _slug(f"{Path(log.file).suffix[1:]}-{log.sheet}") if log.sheet else "log"
-            layouts[log.sniffed.settings] = _unique(wish, taken), []
-        layouts[log.sniffed.settings][1].append(log)
+            layouts[_form(log)] = _unique(wish, taken), []
+        layouts[_form(log)][1].append(log)
         name = f"{Path(log.file).stem}-{log.sheet}" if log.sheet else Path(log.file).stem
         rows.append((_slug(name), log))
     # with one log, its specimens cannot have been in another one
@@ -254,6 +284,6 @@ def _texts(folder: Path, logs: list[_Log], marks: list[str], refused: list[str])
     ids: set[str] = set()
     for wish, log in rows:
         specimens = ";".join(alone or [UNKNOWN] * log.n_specimens)
-        layout, _ = layouts[log.sniffed.settings]
+        layout, _ = layouts[_form(log)]
         writer.writerow((_unique(wish, ids), "", safe_cell(log.file), layout, "", specimens))
     return {"campaign.toml": "\n".join(lines) + "\n", "tests.csv": table.getvalue()}

@@ -48,6 +48,15 @@ def test_logs_that_look_alike_share_a_layout(folder):
     assert set(tomllib.loads(files["campaign.toml"])["layouts"]) == {"log", "log-2"}
 
 
+def test_logs_whose_units_stand_above_the_table_share_a_layout_only_with_their_like(tmp_path):
+    log = LOG.replace("time_s,crosshead_ft,load_new_lb,load_used_lb", "time,crosshead,one,two")
+    for name, above in (("A", "[ft]; loads [lbf]"), ("B", "[ft]; loads [N]"), ("C", "[ft] [lbf]")):
+        (tmp_path / f"{name}.csv").write_text(f"# crosshead {above}\n{log}")
+    files = starter_campaign(tmp_path)
+    assert [row["layout"] for row in rows(files)] == ["log", "log-2", "log"]
+    assert "# from the log: units ft, N\n[layouts.log-2]" in files["campaign.toml"]
+
+
 def test_each_load_of_a_log_asks_for_its_specimen(folder):
     files = starter_campaign(folder)
     assert [row["specimens"] for row in rows(files)] == ["?;?", "?;?", "?;?", "?"]
@@ -63,6 +72,7 @@ def test_marks_are_used_and_what_is_no_log_is_listed(folder):
     assert tomllib.loads(text)["defaults"]["strain"] == {"marks": "marks-2.csv"}
     assert "#   notes.md: no table of numbers" in text
     assert "#   marks.csv: another table of marks" in text
+    assert "#   deeper/: a folder; move its logs up" in text
     assert ".hidden" not in text
 
 

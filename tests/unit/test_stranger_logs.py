@@ -316,7 +316,7 @@ def test_logs_that_begin_unlike_share_a_layout_with_a_question(tmp_path):
     files = starter_campaign(tmp_path)
     (layout,) = tomllib.loads(files["campaign.toml"])["layouts"].values()
     assert layout["channels"]["tension"]["1"]["zero"] == "?"
-    assert "the logs differ in how they begin" in files["campaign.toml"]
+    assert "differ in how they begin (T-2.csv unlike T-1.csv)" in files["campaign.toml"]
 
 
 @pytest.mark.parametrize("content", [b"just words\n" * 9, "荷重なし\n".encode("cp932")])
