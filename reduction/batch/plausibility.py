@@ -67,6 +67,8 @@ _GREATER = 1.05  # ratio of stretch before a test to that in the test
 
 _MOST_COMPARED = 40  # tests of one specimen
 
+_FEWEST_LIKE = 3  # other specimens of the same kind
+
 _FEWEST_COPIED = 3  # rows of marks: fewer can be equal by chance
 
 _FALLEN = 0.5  # of the maximum tension, at the end
@@ -499,6 +501,50 @@ def _of_pairs(
         yield from unlike
         if not unlike:
             yield from _off_the_others(name, compared, models, softens=softens)
+    if len(by_specimen) > _FEWEST_LIKE:
+        yield from _off_other_specimens(campaign, by_specimen, models)
+
+
+def _off_other_specimens(
+    campaign: Campaign, by_specimen: Mapping[str, Sequence[Survey]], models: Models
+) -> Iterator[tuple[str, Note]]:
+    """Find tests whose modulus differs from that of most other specimens of the same kind."""
+    groups: dict[tuple[str, ...], list[tuple[Survey, str, float, float]]] = {}
+    for name, several in by_specimen.items():
+        made = campaign.specimens[name]
+        if not made.has_area or made.kind == "other":
+            continue
+        make = made.kind, made.material, made.construction, made.condition
+        rows = groups.setdefault(make, [])
+        for survey, strain, before in zip(several, *_strains(name, several, models), strict=True):
+            stress = survey.extremes.greatest_tension.get(name, np.nan) / made.area
+            # what was stretched further before may be softer
+            if strain > 0 and stress > 0 and before <= _GREATER * strain:
+                rows.append((survey, name, strain, stress / strain))
+    for rows in groups.values():
+        if len({name for _, name, _, _ in rows}) <= _FEWEST_LIKE:
+            continue
+        kind = np.array([survey.plan.kind for survey, _, _, _ in rows])
+        rate = np.array([
+            np.nan if survey.levels is None else survey.levels.frequency for survey, *_ in rows
+        ])  # fmt: skip
+        names = np.array([name for _, name, _, _ in rows])
+        strain, modulus = np.array([row[2:] for row in rows]).T
+        for place, (survey, name, _, _) in enumerate(rows):
+            like = (names != name) & (kind == kind[place])
+            for values, limit in ((strain, _LIKE_STRAIN), (rate, _LIKE_RATE)):
+                like &= np.abs(np.log(values / values[place])) < np.log(limit)
+            others = np.unique(names[like])
+            ratio = modulus[place] / modulus[like]
+            for far in (ratio > _JUMP, ratio < 1 / _JUMP):
+                unlike = np.setdiff1d(others, names[like][~far])
+                if others.size >= _FEWEST_LIKE and 3 * unlike.size > 2 * others.size:
+                    seen = dict.fromkeys(words_of_ratio(one) for one in np.sort(ratio[far]))
+                    yield survey.plan.id, note(
+                        "stiffness-off-others", name, ratio=float(np.median(ratio[far])),
+                        n_others=int(unlike.size), n_like=int(others.size),
+                        like=", ".join(filter(None, seen)),
+                    )  # fmt: skip
 
 
 def _strains(name: str, several: Sequence[Survey], models: Models) -> tuple[Floats, Floats]:

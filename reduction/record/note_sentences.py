@@ -1872,6 +1872,14 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             " specimen are not swapped"
         ),
     ),
+    "stiffness-off-others": (
+        "warning",
+        lambda ratio, n_others, n_like, like: (
+            f"it is {ratio:.3g} times as stiff as {n_others} of {n_like} other specimens of its"
+            f" kind{_is_like(like)}. Check the unit, gain and factor of its load, and its diameter;"
+            " if it is of another make, state its material, construction or condition"
+        ),
+    ),
     "peak-off-others": (
         "warning",
         lambda ratio, like: (
@@ -1973,7 +1981,8 @@ CAUSES = (
     "tape-off-crosshead", "marks-alike", "loops-run-backward",
     "extensometer-against-stroke", "gauge-against-length",
     "modulus-outside-band", "strength-outside-band", "tension-above-strength", "stiffness-jumps",
-    "peak-off-others", "run-off-plan", "mean-tension-ramps", "cord-stress-outside-band",
+    "stiffness-off-others", "peak-off-others", "run-off-plan", "mean-tension-ramps",
+    "cord-stress-outside-band",
     "cords-do-not-fit", "hose-rubber-outside-band", "wrap-angle-outside-band",
     "dead-length-large", "two-designs-of-one", "hose-length-not-tested", "static-at-frequency",
     "hose-not-of-design", "hose-unlike-design",

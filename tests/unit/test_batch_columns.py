@@ -5,9 +5,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from reduction.batch.plausibility import _of_columns, _of_marks, _of_pairs
+from reduction.batch.plausibility import _of_columns, _of_marks, _of_pairs, _off_other_specimens
+from reduction.pipeline.reduce_test import Extremes
 from reduction.readers.layout import Layout
-from reduction.record.measurement import SpliceMarks
+from reduction.record.measurement import Specimen, SpliceMarks
 
 
 def layout(load, *, position="Position", time="Time", sheet=1):
@@ -117,3 +118,37 @@ def test_marks_that_were_read_on_another_specimen_are_told(readings, strain, n_n
     assert len(found) == n_notes
     assert all(one.code == "marks-of-another" for one in found)
     assert all("those of A" in str(one) for one in found)
+
+
+def five_specimens(stiffness, *, material="rubber"):
+    """Five specimens, pulled once each to a strain of 1; of the first the stiffness is given."""
+    tests, specimens = {}, {}
+    for place, one in enumerate((stiffness, 400.0, 450.0, 500.0, 550.0)):
+        name = f"S-{place}"
+        plan = SimpleNamespace(id=f"T-{place}", kind="cyclic", order=1)
+        extremes = Extremes(
+            greatest_tension={name: one}, greatest_measured_strain={name: 1.0}, is_stepwise=True
+        )
+        levels = SimpleNamespace(frequency=0.1)
+        tests[name] = [SimpleNamespace(plan=plan, extremes=extremes, levels=levels)]
+        made = material if place == 0 else "rubber"
+        specimens[name] = Specimen(name=name, kind="elastomer", diameter=(0.025,), material=made)
+    return SimpleNamespace(specimens=specimens), tests
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "material", "n_notes"),
+    [
+        (460.0 * 4.448, "rubber", 1),
+        (460.0 / 4.448, "rubber", 1),
+        (460.0 * 4.448, "hard rubber", 0),
+        (460.0 * 1.8, "rubber", 0),
+    ],
+)
+def test_a_specimen_unlike_most_others_of_its_make_is_told(stiffness, material, n_notes):
+    campaign, tests = five_specimens(stiffness, material=material)
+    found = dict(_off_other_specimens(campaign, tests, {}))
+    assert list(found) == ["T-0"][:n_notes]
+    for one in found.values():
+        unit = "lbf for N" if stiffness > 1000 else "N for lbf"
+        assert "4 of 4 other specimens" in str(one) and unit in str(one)
