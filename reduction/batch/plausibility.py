@@ -478,6 +478,7 @@ def _of_pairs(
 ) -> Iterator[tuple[str, Note]]:
     """Find tests with the same load, and tests of one specimen with different stiffness."""
     read: dict[tuple[tuple[str, ...], ...], list[TestPlan]] = {}
+    by_readings: dict[tuple[bytes, ...], list[TestPlan]] = {}
     for survey in surveys:
         # one file may contain several tests side by side
         logs = tuple(
@@ -489,6 +490,14 @@ def _of_pairs(
         before.append(survey.plan)
         if twice:
             yield survey.plan.id, note("log-used-twice", other=twice[0].log)
+            continue
+        some = survey.extremes.all_over.values()  # at the same places of logs of the same length
+        readings = tuple(one.position.tobytes() + one.tension.tobytes() for one in some)
+        if readings and survey.plan.step_range is None:
+            again = by_readings.setdefault(readings, [])
+            if again:
+                yield survey.plan.id, note("readings-used-twice", other=again[0].log)
+            again.append(survey.plan)
     by_specimen: dict[str, list[Survey]] = {}
     for survey in surveys:
         if survey.levels is not None and not survey.plan.failed and not survey.plan.step_place:
@@ -540,10 +549,11 @@ def _off_other_specimens(
                 unlike = np.setdiff1d(others, names[like][~far])
                 if others.size >= _FEWEST_LIKE and 3 * unlike.size > 2 * others.size:
                     seen = dict.fromkeys(words_of_ratio(one) for one in np.sort(ratio[far]))
+                    words = [one for one in seen if one and "second" not in one]  # not of time
                     yield survey.plan.id, note(
                         "stiffness-off-others", name, ratio=float(np.median(ratio[far])),
                         n_others=int(unlike.size), n_like=int(others.size),
-                        like=", ".join(filter(None, seen)),
+                        like=", ".join(words),
                     )  # fmt: skip
 
 

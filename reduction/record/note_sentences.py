@@ -1858,6 +1858,11 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "its log is identical to that of test {other}, byte for byte. Check whether the same file"
         " is named twice",
     ),
+    "readings-used-twice": (
+        "warning",
+        "its readings are those of test {other}, although the files differ: one log was exported"
+        " twice. Check whether a log of this test has the name of the other",
+    ),
     "marks-of-another": (
         "warning",
         "its {n_marks} marks are those of {other}, digit by digit. Splices differ from specimen to"
@@ -1971,8 +1976,8 @@ SENTENCES: Mapping[str, tuple[Severity, str | Callable[..., str]]] = {
 """Severity and sentence of each note, by code."""
 
 CAUSES = (
-    "log-used-twice", "marks-of-another", "channels-alike", "column-of-another",
-    "diameter-readings-apart", "stretched-diameters-apart",
+    "log-used-twice", "readings-used-twice", "marks-of-another", "channels-alike",
+    "column-of-another", "diameter-readings-apart", "stretched-diameters-apart",
     "cycles-in-other-kind", "rate-not-as-stated", "level-not-as-stated",
     "load-never-falls", "load-zero-drifts", "load-zero-wrong", "load-negative",
     "load-falls-with-stretch", "pushed-in-cycles", "reference-length-under-preload",

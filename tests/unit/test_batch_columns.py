@@ -25,7 +25,8 @@ def survey(name, layout="log", specimen="b", digest="0" * 64):
         id=name, log=name, files=((None, layout),), specimens=(specimen,), failed=False,
         step_place=None, step_range=None,
     )  # fmt: skip
-    return SimpleNamespace(plan=plan, sources=(SimpleNamespace(sha256=digest),), levels=None)
+    sources = (SimpleNamespace(sha256=digest),)
+    return SimpleNamespace(plan=plan, sources=sources, levels=None, extremes=Extremes())
 
 
 @pytest.mark.parametrize(
@@ -62,12 +63,23 @@ def test_steps_of_one_file_in_two_tests_are_told_only_where_they_overlap(ranges,
     assert len(list(_of_pairs(campaign, tests, {}))) == n_notes
 
 
+def test_a_log_that_was_exported_twice_is_told():
+    campaign = SimpleNamespace(layouts={"log": layout("Force")})
+    tests = [survey(f"T-{place}", digest=str(place) * 64) for place in range(3)]
+    position = np.linspace(3.7, 7.4, 50)
+    for one, slope in zip(tests, (100.0, 100.0, 100.1), strict=True):
+        samples = SimpleNamespace(position=position, tension=slope * (position - 3.7))
+        one.extremes = SimpleNamespace(all_over={"b": samples})
+    ((test, found),) = _of_pairs(campaign, tests, {})
+    assert test == "T-1" and found.code == "readings-used-twice" and "test T-0" in str(found)
+
+
 def pulled(order, strain, tension, kind="cyclic"):
     """A test of one specimen that went so far; rubber by no law, numbers that are written down."""
     one = survey(f"T-{order}", digest=f"{order:064d}")
     one.plan.kind, one.plan.order = kind, order
     one.levels = SimpleNamespace(frequency=0.1)
-    one.extremes = SimpleNamespace(
+    one.extremes = Extremes(
         is_stepwise=True, greatest_measured_strain={"b": strain}, greatest_tension={"b": tension}
     )
     return one
