@@ -116,6 +116,21 @@ def clock_to_seconds(
     read, dates = seconds[valid], days[valid]
     if np.isfinite(dates).all():
         day = dates - dates[0]
+        for before in np.flatnonzero((np.diff(day) > 27) & (np.diff(read) < -DAY / 2)):
+            last, then = (date.fromordinal(int(one)) for one in dates[before : before + 2])
+            if last.day == then.day and (then - last).days < 32:
+                index = int(valid[before + 1])
+                raise LogError(
+                    path,
+                    "the date goes on by a month at midnight: day and month are read in the wrong"
+                    " order",
+                    row=first_row + index if row is None else int(row[index]),
+                    channel=channel,
+                    found=f"{then} after {last}",
+                    needed="the next day",
+                    hint="Set date_order of the time to the other order, or write the dates as "
+                    "2024-05-31.",
+                )
     elif np.isnan(dates).all():
         day = np.cumsum(np.diff(read, prepend=read[0]) < -DAY / 2).astype(np.float64)
     else:

@@ -108,6 +108,15 @@ def test_dates_are_read_in_the_order_that_is_stated():
     assert seconds(*(plain_date(text, "month first") for text in texts)) == [0.0, 86400.0]
 
 
+def test_a_month_at_midnight_is_a_wrong_order_of_dates():
+    texts = ["05/04/2026 23:59:59", "05/05/2026 00:00:01"]
+    assert seconds(*(plain_date(text, "month first") for text in texts)) == [0.0, 2.0]
+    with pytest.raises(LogError, match="found 2026-05-05 after 2026-04-05.*date_order"):
+        seconds(*(plain_date(text, "day first") for text in texts))
+    # a reading a month later at a later time of day is a pause
+    assert seconds("05.04.2026 10:00", "05.05.2026 10:00") == [0.0, 30 * 86400.0]
+
+
 def test_months_by_name_and_years_first_need_no_order():
     texts = ["30-Sep-2005 12:00", "1 october 2005 12:00"]
     assert seconds(*(plain_date(text, None) for text in texts)) == [0.0, 86400.0]
