@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+import csv
 import os
 from contextlib import suppress
 from pathlib import Path
 
 from reduction.archive.atomic_write import atomic_file
 from reduction.record.errors import ArchiveError
+from reduction.record.plain_text import bare_cell
 
 OF_CAMPAIGN = ("surfaces", "predictions", "comparisons", "outcomes", "change_in_length")
 """Archives of a whole campaign by file name, which no test may have."""
 
 SUPERSEDED = "superseded"
 """Folder beside the archives of a campaign for those that it no longer makes."""
+
+STATUS_NAME = "status.csv"
+"""File that every run leaves beside its archives."""
 
 CLIENT_PAGE_NAME = "client-report.html"
 """Report to a client, beside the page of a campaign."""
@@ -47,6 +52,23 @@ def record_campaign(folder: Path, campaign: Path) -> None:
     # optional: the campaign is also found in its usual place
     with suppress(OSError), atomic_file(folder / CAMPAIGN_PLACE) as begun:
         begun.write_text(Path(place).as_posix() + "\n", encoding="utf-8")
+
+
+def failure_words(archive: Path) -> tuple[str, ...]:
+    """Why the last run could not make an archive of a test, which is then of an earlier run."""
+    try:
+        with (archive.parent / STATUS_NAME).open(encoding="utf-8", newline="") as file:
+            # of a log that could not be read, the archives of its steps are kept
+            names = (archive.stem, archive.stem.partition(".")[0])
+            rows = [row for row in csv.DictReader(file) if row["test"] in names]
+    except (OSError, KeyError, ValueError, csv.Error):
+        return ()  # an archive without its campaign
+    return tuple(
+        f"{archive.stem} could not be reduced in the last run, and this is from an earlier one:"
+        f" {bare_cell(row['message'] or '')}"
+        for row in rows
+        if row["status"] == "failed"
+    )
 
 
 def archives_in(folder: Path) -> list[Path]:

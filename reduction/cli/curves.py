@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import ExitStack
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any, cast
 
@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 
 from reduction.archive.open import failing_reads, open_archive
-from reduction.archive.product_files import archives_of_tests
+from reduction.archive.product_files import archives_of_tests, failure_words
 from reduction.campaign.assembly_spec import AssemblyCase, load_assembly_case
 from reduction.campaign.toml_file import at_place, in_toml
 from reduction.cli.output import CommandOutput
@@ -77,7 +77,13 @@ def piece_source(
                     found=", ".join(specimens_of(one)) or "no archive of a test",
                     needed="tests of one specimen",
                 )
-        return source_of_tests(datasets, name, branch=branch or "mean")
+        made = source_of_tests(datasets, name, branch=branch or "mean")
+        failed = [
+            f"DOUBTFUL: {text}"
+            for path, one in zip(paths, datasets, strict=True) if name in specimens_of(one)
+            for text in failure_words(path)
+        ]  # fmt: skip
+        return replace(made, notes=(*failed, *made.notes))
 
 
 def _published(

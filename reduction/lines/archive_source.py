@@ -18,7 +18,7 @@ import numpy as np
 import xarray as xr
 
 from reduction.archive.open import Opener, ReadOnce, reading
-from reduction.archive.product_files import archives_of_tests
+from reduction.archive.product_files import archives_of_tests, failure_words
 from reduction.archive.shared_errors import components_of, shared_contributions
 from reduction.archive.surfaces_dataset import surface_names, surfaces_of
 from reduction.archive.uncertainty_budget import break_in_cycles, random_freedom
@@ -515,7 +515,9 @@ def lines_of_archive(path: Path) -> list[LineSource]:
 
 def _lines_at(path: Path, opener: Opener) -> list[LineSource]:
     with opener(path) as archive:
-        return lines_of_open_archive(archive, path, opener)
+        lines = lines_of_open_archive(archive, path, opener)
+    failed = failure_words(path)
+    return [replace(one, warnings=(*failed, *one.warnings)) for one in lines] if failed else lines
 
 
 def lines_of_open_archive(

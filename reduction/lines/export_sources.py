@@ -22,6 +22,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from reduction.archive.open import reading
+from reduction.archive.product_files import failure_words
 from reduction.archive.variables import stored
 from reduction.lines.archive_pieces import alignment_words, check_words, parts_of
 from reduction.lines.assembly import DeployedLine
@@ -64,7 +65,9 @@ def line_from_archive(
 ) -> ExportLine:
     """Read one curve of an archive as a line."""
     with reading(path) as archive:
-        return _line_from_open_archive(archive, path.stem, curve=curve, specimen=specimen, **stated)
+        line = _line_from_open_archive(archive, path.stem, curve=curve, specimen=specimen, **stated)
+    failed = tuple(f"DOUBTFUL: {text}" for text in failure_words(path))
+    return replace(line, notes=(*failed, *line.notes))
 
 
 def _line_from_open_archive(

@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike
 
 from reduction import __version__
 from reduction.archive.open import Opener, reading
-from reduction.archive.product_files import DESIGN_PAGE_NAME
+from reduction.archive.product_files import DESIGN_PAGE_NAME, STATUS_NAME
 from reduction.archive.write import write_text_atomically
 from reduction.experiments.surface_points import ABOVE_LEVERAGE
 from reduction.lines.archive_source import archives_of_lines, lines_of_open_archive, unique_names
@@ -234,9 +234,6 @@ def _errata_notes(lines: Iterable[LineSource]) -> dict[str, list[str]]:
 
 _SURFACES = "surfaces"
 
-_STATUS = "status.csv"
-"""File that every run leaves beside its archives."""
-
 # exceptions from a damaged or hand-made file
 _FAULTS = (ReductionError, OSError, RuntimeError, KeyError, IndexError, ValueError, TypeError)
 
@@ -364,7 +361,7 @@ def _folders(processed: Path) -> list[Path]:
         found = sorted(processed.iterdir())
     except FileNotFoundError:
         return []
-    return [one for one in found if (one / _STATUS).is_file() and archives_of_lines(one)]
+    return [one for one in found if (one / STATUS_NAME).is_file() and archives_of_lines(one)]
 
 
 def _stamp(path: Path) -> str:

@@ -8,6 +8,7 @@ import pytest
 import xarray as xr
 
 from reduction.archive.open import reading
+from reduction.batch import campaign_status
 from reduction.cli.lookup import one_line_of
 from reduction.lines.lookup_product import LineLevels
 from reduction.lines.published_source import published_sources
@@ -121,6 +122,24 @@ def test_a_search_in_a_campaign(command, two_tests):
     assert none.returncode == 2
     assert "no line matches; found material 'nylon'; needed material Natsyn rubber" in none.stderr
     assert "condition new or used" in none.stderr
+
+
+def test_what_the_last_run_could_not_reduce_is_answered_with_a_warning(
+    command, synthetic, tmp_path
+):
+    (tmp_path / "T-1.nc").symlink_to(synthetic.processed / "T-1.nc")
+    ask = ("lookup", tmp_path, "--line", "new", "--quantity", "tangent_modulus", "--strain",
+           "100 %", "--branch", "ascending")  # fmt: skip
+    told = "warning: T-1 could not be reduced in the last run"
+    for status, n_told in (("unchanged", 0), ("failed", 1)):
+        row = campaign_status.TestStatus("T-1", status, 4, "the marks differ", 0, 0, "", 0.0)
+        (tmp_path / "status.csv").write_text(campaign_status.status_csv([row]), newline="")
+        assert command(*ask).stdout.count(told) == n_told
+    exported = command("export", tmp_path / "T-1.nc", "--specimen", "new", "--to", "csv",
+                       "--out", tmp_path / "line.csv")  # fmt: skip
+    assert "DOUBTFUL: T-1 could not be reduced in the last run" in exported.stdout
+    joined = command("composite", tmp_path, "--specimen", "new")
+    assert "DOUBTFUL: T-1 could not be reduced in the last run" in joined.stdout
 
 
 def test_a_tether_has_its_stiffness_at_the_level_of_each_test(command, two_tests):
