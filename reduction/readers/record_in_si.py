@@ -22,6 +22,7 @@ from reduction.record.samples import (
     empty_like,
     finite_extremes,
     join_columns,
+    readings_between,
     sample_blocks,
     zeros_like,
 )
@@ -106,7 +107,7 @@ def _on_common_time(
     *,
     gap_factor: float,
 ) -> _CommonTime:
-    """Bring channels to the time axis of the slowest by linear interpolation."""
+    """Bring channels to the time axis of the slowest."""
     axes: list[_Axis] = []
     trimmed: dict[str, Floats] = {}
     for key, series in values.items():
@@ -184,7 +185,7 @@ def _interpolate(
         place = np.clip(np.searchsorted(stamps, time, side="right") - 1, 0, stamps.size - 1)
         result = series[place]
     else:
-        result = np.interp(time, stamps, series)
+        result = readings_between(time, stamps, series)
     in_gap = (stamps[after] - stamps[after - 1] > gap_factor * axis.step) & (
         (time > stamps[after - 1]) & (time < stamps[after])
     )

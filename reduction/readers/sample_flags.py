@@ -25,6 +25,7 @@ from reduction.record.samples import (
     first_sample,
     interval_labels,
     over_intervals,
+    readings_between,
     sample_blocks,
     take_samples,
     zeros_like,
@@ -799,7 +800,10 @@ def _at_updates(record: Record) -> tuple[Record, Integers | None]:
         if own is None or _alike(own, rows):
             kept.append(take_samples(one, rows))
         else:  # this channel lags in these rows too
-            kept.append(np.interp(rows, own, take_samples(one, own), left=np.nan, right=np.nan))
+            at = rows.astype(np.float64)
+            known = (rows >= own[0]) & (rows <= own[-1])
+            read = readings_between(at, own.astype(np.float64), take_samples(one, own))
+            kept.append(np.where(known, read, np.nan))
     at_rows = _at_rows(record, rows)
     said = note(
         "rows-repeated" if all_repeat else "read-less-often",

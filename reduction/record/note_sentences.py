@@ -110,8 +110,8 @@ _OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "resampled": (
         "note",
-        "{channels}: resampled from {rate:.4g} Hz to the {base_rate:.4g} Hz of {base} by linear"
-        " interpolation",
+        "{channels}: resampled from {rate:.4g} Hz to the {base_rate:.4g} Hz of {base}, by"
+        " cubics through four readings",
     ),
     "interpolated-by-logger": (
         "warning",

@@ -390,6 +390,76 @@ def take_samples(series: NDArray[Any], index: NDArray[np.integer[Any]]) -> NDArr
     return taken.reshape(*series.shape[:-1], *index.shape)
 
 
+def readings_between(
+    at: NDArray[np.float64], stamps: NDArray[np.float64], series: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    r"""Readings of a channel at other times, by cubics through the four readings around each.
+
+    Parameters
+    ----------
+    at : ndarray, shape (n_samples,)
+        Times, finite or NaN. [s]
+    stamps : ndarray, shape (n_readings,)
+        Times of the readings, increasing. [s]
+    series : ndarray, shape (n_readings,)
+        Readings. [any]
+
+    Returns
+    -------
+    values : ndarray, shape (n_samples,)
+        NaN between two readings of which one is missing; beyond the ends those of the ends. [as
+        series]
+
+    Raises
+    ------
+    ValueError
+        If there is no reading.
+
+    Notes
+    -----
+    A straight line between two readings cuts the crest of a wave off: half way between two of n
+    readings a cycle it leaves :math:`\cos(\pi / n)` of the amplitude, 3.4 % less at n = 12.  The
+    cubic is the line plus the second divided differences :math:`D_1, D_2` at its two readings:
+
+    .. math:: (x - x_1)(x - x_2) \frac{D_1 (x_3 - x) + D_2 (x - x_0)}{x_3 - x_0}
+
+    Beside a jump, a corner, or a level at which a channel stays, only one of them differs from
+    zero, and a cubic overshoots: neither counts as more than three times the other, and if they
+    differ in sign, as noise makes them, the line is kept.
+
+    Examples
+    --------
+    Half way between twelve readings a cycle of a sine, and beside a level:
+
+    >>> rows = np.arange(24.0)
+    >>> found = readings_between(rows + 0.5, rows, np.cos(np.pi / 6 * rows))
+    >>> print(round(float(found[12] / np.cos(np.pi / 12)), 3))
+    0.998
+    >>> print(readings_between(np.array([1.5]), rows[:4], np.array([0.0, 8.0, 8.0, 8.0])))
+    [8.]
+    """
+    values = empty_like(at, dtype=np.float64)
+    for part in sample_blocks(at.size, at, stamps, series, values):
+        place = at[part]
+        second = np.clip(np.searchsorted(stamps, place), 1, max(stamps.size - 1, 1))
+        begin, end = max(int(second.min()) - 2, 0), int(second.max()) + 2
+        t, x = stamps[begin:end], series[begin:end]
+        values[part] = np.interp(place, t, x)
+        if t.size < 4:
+            continue
+        slope = np.diff(x) / np.diff(t)
+        bend = np.diff(slope) / (t[2:] - t[:-2])
+        first = np.clip(second - begin - 2, 0, t.size - 4)  # reading before the two beside
+        one, other = bend[first], bend[first + 1]
+        is_inside = (place > t[first + 1]) & (place < t[first + 2]) & (one * other > 0)
+        most = 3 * np.minimum(abs(one), abs(other))
+        one, other = np.clip(one, -most, most), np.clip(other, -most, most)
+        before, after = place - t[first], t[first + 3] - place
+        cubic = (place - t[first + 1]) * (place - t[first + 2]) * (one * after + other * before)
+        values[part] += np.where(is_inside, cubic / (before + after), 0.0)
+    return values
+
+
 def count_samples(where: NDArray[Any]) -> int:
     """Number of samples that are true or nonzero."""
     return sum(int(np.count_nonzero(where[part])) for part in sample_blocks(where.size, where))

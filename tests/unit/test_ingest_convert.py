@@ -254,8 +254,8 @@ def test_channels_with_their_own_time_come_to_the_slower_one():
     assert np.all(record.quality_flag[1] & Quality.RESAMPLED)
     assert not np.any(record.quality_flag[0] & Quality.RESAMPLED)
     assert str(record.notes[0]) == (
-        "crosshead_position, tension.2: resampled from 10 Hz to the 2 Hz of tension.1 by linear "
-        "interpolation"
+        "crosshead_position, tension.2: resampled from 10 Hz to the 2 Hz of tension.1, by cubics "
+        "through four readings"
     )
     assert (record.n_rows_read, record.n_samples) == (200, 40)
 

@@ -39,8 +39,34 @@ def test_the_faster_channel_comes_to_the_slower_one():
     np.testing.assert_allclose(result.values["tension.1"], SLOW)
     assert result.resampled == {"crosshead_position"}
     assert tuple(map(str, result.notes)) == (
-        "crosshead_position: resampled from 100 Hz to the 10 Hz of tension.1 by linear interpolation",
+        "crosshead_position: resampled from 100 Hz to the 10 Hz of tension.1, by cubics through four readings",
     )
+
+
+def test_a_load_whose_lag_is_in_its_stamps_keeps_the_crest_of_a_wave():
+    # the phase and amplitude of a sine are known in closed form; a straight line leaves cos(pi/16)
+    step, lag = 1 / 16, 0.5 / 16
+    rows = np.arange(0, 10, step)
+    load = np.sin(2 * np.pi * (rows - lag))
+    result = common(
+        rows, {"crosshead_position": np.sin(2 * np.pi * rows), "tension.1": load},
+        {"tension.1": rows - lag},
+    )  # fmt: skip
+    inside = slice(16, -16)
+    turn = np.exp(-2j * np.pi * rows)[inside]
+    found = 2 * np.mean(result.values["tension.1"][inside] * turn)
+    assert abs(found / (2 * np.mean(np.sin(2 * np.pi * rows)[inside] * turn)) - 1) < 1e-3
+
+
+def test_a_load_beside_a_jump_or_at_its_limit_is_not_overshot():
+    load = np.where(FAST < 5, 0.0, 1.0)
+    clipped = np.clip(np.sin(FAST), -0.5, 0.5)
+    for series in (load, clipped):
+        result = common(
+            FAST, {"crosshead_position": FAST, "tension.1": series}, {"tension.1": FAST + 0.004}
+        )
+        known = result.values["tension.1"][1:]
+        assert known.min() >= series.min() and known.max() <= series.max()
 
 
 def test_a_slower_column_that_ends_before_the_table_is_cut_to_its_stamps():
