@@ -168,6 +168,45 @@ def acceleration(time: ArrayLike, position: ArrayLike, *, half_width: float) -> 
     return np.asarray(np.interp(all_times, t, found) / half_width**2)
 
 
+def length_by_stroke(position: Floats, cycles: Cycles, strain_amplitude: ArrayLike) -> float:
+    """Stroke of the crosshead over range of strain, where an extensometer measures the strain.
+
+    Parameters
+    ----------
+    position : ndarray, shape (n_samples,)
+        Of the crosshead. [m]
+    cycles : Cycles
+        Cycles with the turns.
+    strain_amplitude : array_like
+        Of the test, or of each cycle. [1]
+
+    Returns
+    -------
+    length : float
+        Length that all that stretches between the pins would have at this strain. [m]
+
+    Raises
+    ------
+    ValueError
+        Never by itself.
+
+    Examples
+    --------
+    3 m from pin to pin, strained from 0.1 to 0.2:
+
+    >>> none = np.empty(0)
+    >>> branch = np.array([[0, 1]])
+    >>> cycles = Cycles(np.array([0]), np.array([2]), branch, branch + 1, np.ones((1, 2)),
+    ...     none.astype(int), none.astype(int), none > 0, 0.01)
+    >>> print(round(length_by_stroke(np.array([3.3, 3.6, 3.3]), cycles, 0.05), 3))
+    3.0
+    """
+    valley, peak = (
+        take_samples(position, at[:, 0]) for at in (cycles.branch_first, cycles.branch_last)
+    )
+    return float(np.nanmedian(peak - valley) / np.nanmedian(2 * np.asarray(strain_amplitude)))
+
+
 def turn_acceleration(
     time: Floats,
     position: Floats,

@@ -20,7 +20,7 @@ import numpy as np
 
 from reduction.record.contributions import InstrumentErrors
 from reduction.record.notes import Note, note
-from reduction.stages.load_train import turn_acceleration
+from reduction.stages.load_train import length_by_stroke, turn_acceleration
 from reduction.stages.moduli.modulus_product import AmplitudeSummary
 from reduction.stages.reduced_test import ReducedTest
 from reduction.stages.strain.strain_model import position_by_model
@@ -291,8 +291,11 @@ def _length_of_strain(test: ReducedTest, summary: AmplitudeSummary, index: int) 
     """Stroke of the crosshead over range of strain: that of the gauge with its splices. [m]."""
     model = test.strain_models[index]
     if model.method == "extensometer":
-        # it does not measure the stroke between its feet; the crosshead has that of all
-        return float("nan")
+        if test.record is None or test.cycles is None:
+            return float("nan")
+        return length_by_stroke(
+            test.record.crosshead_position, test.cycles, summary.strain_amplitude[index]
+        )
     way = np.array([1.0, -1.0])
     strain = summary.mean_strain[index] + way * summary.strain_amplitude[index]
     tension = summary.mean_tension[index] + way * summary.tension_amplitude[index]

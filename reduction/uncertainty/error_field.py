@@ -449,6 +449,8 @@ class Inertia:
         Its independent standard uncertainties. [kg]
     frequency, mean_strain, mean_tension : ndarray, shape (...)
         Values of the cycles; they have or broadcast to the shape of the points. [Hz], [1], [N]
+    length_by_stroke : float
+        Stroke over range of strain; NaN where the strain model knows the length. [m]
     """
 
     mass: float
@@ -456,6 +458,7 @@ class Inertia:
     frequency: Floats
     mean_strain: Floats
     mean_tension: Floats
+    length_by_stroke: float = np.nan
 
     def acceleration(
         self, model: StrainModel, *, strain: Floats, tension: Floats
@@ -474,15 +477,18 @@ class Inertia:
         >>> print(found.round(4), over_strain.round(4))
         [-0.987] [-9.8696]
         """
-        step = _steps_of(tension)
+        square = -((2 * np.pi * self.frequency) ** 2)
         middle = np.broadcast_to(self.mean_strain, tension.shape)
+        if np.isfinite(self.length_by_stroke):
+            over_strain = np.broadcast_to(square * self.length_by_stroke, tension.shape)
+            return over_strain * (strain - middle), over_strain, np.zeros(tension.shape)
+        step = _steps_of(tension)
         level = np.broadcast_to(self.mean_tension, tension.shape)
         position, further, longer, shorter, centre = position_by_model(
             model,
             strain=np.stack([strain, strain + _REACH, strain, strain, middle]),
             tension=np.stack([tension, tension, tension + step, tension - step, level]),
         )
-        square = -((2 * np.pi * self.frequency) ** 2)
         return (
             np.asarray(square * (position - centre)),
             np.asarray(square * (further - position) / _REACH),
@@ -628,7 +634,7 @@ def error_field(
             np.broadcast_to(one, load.shape).ravel()[part]
             for one in (inertia.frequency, inertia.mean_strain, inertia.mean_tension)
         )
-        return Inertia(inertia.mass, inertia.error, frequency, strain, tension)
+        return replace(inertia, frequency=frequency, mean_strain=strain, mean_tension=tension)
 
     # point by point, in pieces that stay in the processor cache
     parts = [slice(begin, begin + _PIECE) for begin in range(0, max(load.size, 1), _PIECE)]

@@ -28,7 +28,7 @@ from reduction.record.contributions import (
     renamed,
     stacked,
 )
-from reduction.record.measurement import Floats, Integers, LoadTrain, Record, areas_of
+from reduction.record.measurement import Floats, Integers, Record, areas_of
 from reduction.record.notes import Note, note
 from reduction.record.samples import empty_like, full_like, release_pages, take_samples
 from reduction.record.settings import CycleSettings
@@ -43,6 +43,7 @@ from reduction.stages.cycles.cycle_search import control_channel
 from reduction.stages.cycles.reading_noise import reading_noise
 from reduction.stages.cycles.turns import kind_of_turns
 from reduction.stages.holds.relaxation_and_creep import HoldResult, hold_numbers
+from reduction.stages.load_train import length_by_stroke
 from reduction.stages.moduli.elastomer_laws import LAWS
 from reduction.stages.moduli.modulus_product import (
     AmplitudeSummary,
@@ -203,11 +204,17 @@ def _speed_ratio(
 
 
 def _inertia_of(
-    train: LoadTrain, loops: Loops | AmplitudeSummary, index: int, errors: InstrumentErrors
+    record: Record | None,
+    loops: Loops | AmplitudeSummary,
+    index: int,
+    errors: InstrumentErrors,
+    model: StrainModel,
+    cycles: Cycles | None,
 ) -> Inertia | None:
     """Inertia subtracted from the tension of a specimen, for each cycle or for the means."""
-    if not train.end_mass:
+    if record is None or not record.load_train.end_mass:
         return None
+    train = record.load_train
     error = []
     if train.load_cell_at == "moving" and errors.attached_mass:
         of_machine = Component("attached_mass", errors.position_instrument)
@@ -217,15 +224,15 @@ def _inertia_of(
         error.append((Component("linear_density", errors.specimen), of_specimen))
     if not (train.end_mass[index] or error):
         return None
+    length = np.nan
+    if model.method == "extensometer" and cycles is not None:
+        length = length_by_stroke(record.crosshead_position, cycles, loops.strain_amplitude[index])
     return Inertia(
         train.end_mass[index], tuple(error),
         *(np.asarray(getattr(loops, name)[index])
           for name in ("frequency", "mean_strain", "mean_tension")),
+        length,
     )  # fmt: skip
-
-
-def _train_of(record: Record | None) -> LoadTrain:
-    return LoadTrain() if record is None else record.load_train
 
 
 # a cycle is steeper than the compliance of a relaxed specimen, for rubber by up to a factor of two:
@@ -319,7 +326,7 @@ def _of_loops(
         control=settings.control,
         speed_ratio=_speed_ratio(loops, index, model, cycles, settings, record),
         has_corners=_has_corners(cycles, settings, record),
-        inertia=_inertia_of(_train_of(record), loops, index, errors),
+        inertia=_inertia_of(record, loops, index, errors, model, cycles),
     )  # fmt: skip
 
 
@@ -861,7 +868,7 @@ def _of_ends(
     if loops is None or ends is None:
         return
     mean, half = loops.mean_strain[index], loops.strain_amplitude[index]
-    inertia = _inertia_of(_train_of(test.record), loops, index, errors)
+    inertia = _inertia_of(test.record, loops, index, errors, model, test.cycles)
     high, low = (
         error_field(errors, model, strain=strain, tension=tension[index], inertia=inertia)
         for strain, tension in (
@@ -1510,7 +1517,7 @@ def _of_specimen(
         inertia = (
             None
             if summary is None or cycles.waveform == "triangular"
-            else _inertia_of(_train_of(test.record), summary, index, errors)
+            else _inertia_of(test.record, summary, index, errors, model, test.cycles)
         )
         at_curves = _slipped(test, index, errors, test.curves.selected_cycle - 1)
         yield _of_curves(test.curves, "", index, at_curves, model, area, rate, inertia)

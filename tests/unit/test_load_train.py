@@ -1,5 +1,8 @@
 """What a load cell and a crosshead's scale see beside the specimen."""
 
+from dataclasses import replace
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from pydantic import ValidationError
@@ -7,12 +10,16 @@ from scipy.linalg import solve_banded
 
 from reduction.pipeline.located_test import locate
 from reduction.readers.layout import Channel, Layout
+from reduction.record.contributions import InstrumentErrors
 from reduction.record.errors import DataError
 from reduction.record.measurement import LoadTrain, Record, Specimen
 from reduction.record.settings import CycleSettings, ReductionSettings
 from reduction.stages.cycles.cycle_product import Cycles
 from reduction.stages.load_train import acceleration, end_mass, turn_acceleration
+from reduction.stages.strain.strain_model import StrainModel
 from reduction.uncertainty.effects_on_answers import _wave_left
+from reduction.uncertainty.error_field import error_field
+from reduction.uncertainty.shared_contributions import _inertia_of
 
 SETTINGS = ReductionSettings(cycles=CycleSettings(waveform="sinusoidal"))
 
@@ -209,3 +216,33 @@ def test_a_corner_between_two_readings_has_no_acceleration_that_a_log_resolves()
     # 2 v / h over h at a corner, and a smooth second derivative over any h
     assert ratio[0] == pytest.approx(2, rel=1e-6)
     assert ratio[1] == pytest.approx(1, rel=0.01)
+
+
+def test_of_an_extensometer_the_crosshead_tells_how_far_the_mass_moves():
+    # 3 m from pin to pin, 0.02 of strain to either side at 1.5 Hz; 0.5 kg of doubt
+    length, amplitude, frequency, spread = 3.0, 0.02, 1.5, 0.5
+    time = np.arange(0, 4, 1 / 240)
+    strain = 0.05 - amplitude * np.cos(2 * np.pi * frequency * time)
+    turns = np.arange(0, time.size - 160, 160)
+    branch = np.stack([turns, turns + 80], axis=1)
+    none = np.zeros(time.size, dtype=int)
+    cycles = Cycles(
+        turns, turns + 160, branch, branch + 80, np.ones(branch.shape), none, none, none > 0, 0.01
+    )
+    record = Record(
+        "R", ("line",), time, length * (1 + strain), np.zeros((1, time.size)),
+        np.zeros((1, time.size), np.uint16), np.zeros(time.size, np.uint16),
+        load_train=LoadTrain("moving", 8.0, end_mass=(8.0,), end_mass_by_density=(0.0,)),
+    )  # fmt: skip
+    level = {"mean_strain": [0.05], "mean_tension": [1e4], "frequency": [frequency]}
+    loops = SimpleNamespace(
+        strain_amplitude=np.array([amplitude]),
+        **{name: np.array(value) for name, value in level.items()},
+    )
+    errors = replace(InstrumentErrors("line"), attached_mass=spread)
+    model = StrainModel("line", "extensometer", {})
+    inertia = _inertia_of(record, loops, 0, errors, model, cycles)
+    at = np.array([0.05 - amplitude, 0.05, 0.05 + amplitude])
+    field = error_field(errors, model, strain=at, tension=np.full(3, 1e4), inertia=inertia)
+    force = spread * length * amplitude * (2 * np.pi * frequency) ** 2
+    np.testing.assert_allclose(field.tension[0], [-force, 0, force], rtol=1e-9, atol=1e-9)
