@@ -111,7 +111,7 @@ def test_nothing_known_is_not_judged():
 
 def test_a_wrong_shape_inside_the_band_is_noted():
     rng = np.random.default_rng(6)
-    test = pulled(1000 + rng.normal(0, 2, STROKE.size), tension_offset=100.0)
+    test = pulled(1000 + rng.normal(0, 0.5, STROKE.size), tension_offset=100.0)
     found = validate_curve(1000 + 60 * test.strain, test, input_error=exact(test))
     assert found.agrees and found.chi_square_probability < 0.01
     assert any("shape of the difference" in text for text in map(str, found.notes))
@@ -146,6 +146,15 @@ def test_a_difference_where_no_stated_error_can_be_is_noted():
     found = validate_curve(50 * test.strain, test, input_error=exact(test))
     assert found.chi_square_freedom == 1
     assert any("cannot come from any stated error" in text for text in map(str, found.notes))
+
+
+def test_the_noise_of_a_test_is_a_stated_error():
+    """A load cell that may be 400 N off and reads 20 N high: its noise is 0.02 % of the square."""
+    noise = np.random.default_rng(4).normal(0, 0.5, STROKE.size)
+    test = pulled(1000 * STROKE + noise, tension_offset=400.0)
+    found = validate_curve(1000 * test.strain - 20, test, input_error=exact(test))
+    assert found.agrees and found.chi_square_freedom < test.strain.size
+    assert not any("cannot come from any stated error" in text for text in map(str, found.notes))
 
 
 @pytest.mark.parametrize("n_tests", [12, pytest.param(60, marks=pytest.mark.nightly)])
