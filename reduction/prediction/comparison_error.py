@@ -520,6 +520,14 @@ _LEAST_SHARE = 0.1  # change of slope over the mean slope: cords cause more
 
 _ORDER = 3  # of the polynomial on either side
 
+_TOES = (
+    1.0,
+    1.1,
+    1.2,
+    1.35,
+    1.5,
+)  # powers with which the load of a cord begins
+
 _TINY = 1e-9  # N: points without scatter
 
 
@@ -540,6 +548,8 @@ class _Fit(NamedTuple):
     jump: float
     jump_uncertainty: float
     is_inside: bool
+    squares: float
+    unit: float  # of the squares: one variance of the residuals, times their autocorrelation length
 
 
 class _Fitted(NamedTuple):
@@ -555,15 +565,18 @@ def measured_pick_up(measured: MeasuredCurve) -> PickUp:
     r"""Find the strain at which a measured curve bends, independently of the prediction.
 
     .. math:: D(\varepsilon) = \sum_{k=0}^{3} b_k \varepsilon^k
-              + \sum_{k=1}^{m} c_k (\varepsilon - \varepsilon_p)_+^k
+              + \sum_{k=0}^{m-1} c_k (\varepsilon - \varepsilon_p)_+^{q+k}
 
     Notes
     -----
     Below the bend the rubber alone carries, above it the cords as well ([4]_, sec. 1.2): the curve
-    is continuous and its slope has a jump, :math:`c_1`.  Every place of the bend is tried [5]_,
-    evaluated as the samples were, in the initial part of the curve that shows it best.  Its
-    uncertainty combines the width over which the sum of squares stays within one variance of the
-    residuals, times their autocorrelation length, and the difference to a curve of second degree
+    is continuous and, with q = 1, its slope has a jump, :math:`c_0`.  Every place of the bend is
+    tried [5]_, evaluated as the samples were, in the initial part of the curve that shows it best.
+    A cord whose load begins as a power of its strain rounds the bend, and with q = 1 the place
+    found is then too high.  So the place is the mean over five q from 1 to 1.5, weighted by
+    their likelihoods, the unit of the squares being one variance of the residuals times their
+    autocorrelation length.  Its uncertainty combines the spread of the five, the width over which
+    the sum of squares stays within one unit, and the difference to a curve of second degree
     above the bend over half as far, since neither is that of the cords.  An error of the strain
     moves the bend by the same amount.
 
@@ -594,19 +607,31 @@ def measured_pick_up(measured: MeasuredCurve) -> PickUp:
     strain = measured.strain[place]
     near = place[strain < (fit.strain + strain[-1]) / 2]
     of_model = _bend(measured, near, _ORDER - 1).strain - fit.strain
+    at, spread = _mean_of([fit, *(_bend(measured, place, _ORDER, toe) for toe in _TOES[1:])])
     return PickUp(
-        strain=fit.strain,
+        strain=at,
         standard_uncertainty=float(
             np.linalg.norm(
                 [
                     fit.uncertainty,
                     of_model,
-                    *(np.interp(fit.strain, measured.strain, row) for row in measured.strain_error),
+                    spread,
+                    *(np.interp(at, measured.strain, row) for row in measured.strain_error),
                 ]
             )
         ),
         reason="",
     )
+
+
+def _mean_of(fits: list[_Fit]) -> tuple[float, float]:
+    """Mean place of the bend and its standard deviation over the fits, by their likelihoods."""
+    fits = [one for one in fits if one.is_inside]
+    best = min(fits, key=lambda one: one.squares)
+    weight = np.exp([(best.squares - one.squares) / (2 * best.unit) for one in fits])
+    place = np.array([one.strain for one in fits])
+    mean = float(np.average(place, weights=weight))
+    return mean, float(np.sqrt(np.average((place - mean) ** 2, weights=weight)))
 
 
 def _nothing(reason: str) -> PickUp:
@@ -631,13 +656,13 @@ def _window(measured: MeasuredCurve, place: Integers) -> Integers:
     return kept
 
 
-def _bend(measured: MeasuredCurve, place: Integers, degree: int) -> _Fit:
+def _bend(measured: MeasuredCurve, place: Integers, degree: int, toe: float = 1.0) -> _Fit:
     strain, node = measured.strain[place], measured.reading.node
     step = float(measured.strain[1] - measured.strain[0])
     low, high = float(strain[_MARGIN]), float(strain[-1 - _MARGIN])
 
     def squares_at(tried: Floats, axis: Floats) -> Floats:
-        return _fitted(measured, place, tried, degree, axis).squares
+        return _fitted(measured, place, tried, degree, axis, toe).squares
 
     tried = strain[_MARGIN:-_MARGIN]
     at = float(tried[np.argmin(squares_at(tried, measured.strain))])
@@ -645,7 +670,7 @@ def _bend(measured: MeasuredCurve, place: Integers, degree: int) -> _Fit:
     for _ in range(2):
         tried = np.linspace(max(low, at - width), min(high, at + width), _CANDIDATES)
         at, width = float(tried[np.argmin(squares_at(tried, node))]), 2 * width / _CANDIDATES
-    fit = _Fitted(*(one[0] for one in _fitted(measured, place, np.array([at]), degree, node)))
+    fit = _Fitted(*(one[0] for one in _fitted(measured, place, np.array([at]), degree, node, toe)))
     freedom = max(place.size - _ORDER - 2 - degree, 1)
     unit = max(float(fit.squares) / freedom, 1e-12) * autocorrelation_length(fit.residual)
     around = np.linspace(max(low, at - 3 * step), min(high, at + 3 * step), _CANDIDATES)
@@ -663,16 +688,23 @@ def _bend(measured: MeasuredCurve, place: Integers, degree: int) -> _Fit:
         jump=float(fit.jump),
         jump_uncertainty=float(np.sqrt(fit.variance * unit)),
         is_inside=low + step < at < high - step,
+        squares=float(fit.squares),
+        unit=unit,
     )
 
 
 def _fitted(
-    measured: MeasuredCurve, place: Integers, at: Floats, degree: int, axis: Floats
+    measured: MeasuredCurve,
+    place: Integers,
+    at: Floats,
+    degree: int,
+    axis: Floats,
+    toe: float = 1.0,
 ) -> _Fitted:
     """Least squares with the bend at each strain, on the nodes of the reading or at the centres."""
     x, past = axis / axis[-1], np.maximum(axis - at[:, None], 0.0)  # scaled against collinearity
     below = [np.broadcast_to(x**k, past.shape) for k in range(_ORDER + 1)]
-    above = [past * (past / axis[-1]) ** k for k in range(degree)]
+    above = [past * (past / axis[-1]) ** (toe - 1 + k) for k in range(degree)]
     curves = np.stack([*below, *above], axis=1)
     is_node = axis.size == measured.reading.node.size
     basis = (measured.reading.of(curves) if is_node else curves)[..., place].swapaxes(1, 2)

@@ -39,6 +39,26 @@ def test_intervals_of_a_bend_hold_it():
     assert np.sum(hits) >= 16  # 19 expected; less in one of 400 seeds
 
 
+@pytest.mark.parametrize("toe", [1.1, 1.25])
+def test_cords_that_take_load_as_a_power_of_their_strain_do_not_shift_the_bend(toe):
+    """Slack cords of a hose at 64 degrees: T = N P (l cos^2 a - sin^2 a / 2 l^2) / (lc cos a)."""
+    angle = np.radians(64)
+    stretch = 1 + np.linspace(0, 0.98, 1000)
+    along, across = stretch * np.cos(angle), np.sin(angle) / np.sqrt(stretch)
+    cord = np.hypot(along, across)
+    load = 133.4 * (np.maximum(cord - 1, 0) / 0.26) ** toe
+    tension = 748 * load * (along**2 - across**2 / 2) / (cord * stretch)
+    tension += 4370 * (stretch - stretch**-2)
+    taut = (np.sqrt(1 + 4 * np.tan(angle) ** 2) - 3) / 2
+    away = []
+    for seed in range(4):
+        noise = np.random.default_rng(seed).normal(0, 6, stretch.size)
+        found = measured_pick_up(measured_curve(stretch - 1, tension + noise, loading="static"))
+        away.append((found.strain - taut) / found.standard_uncertainty)
+        assert found.standard_uncertainty < 0.006
+    assert np.mean(away) < 2 and np.max(np.abs(away)) < 3
+
+
 def test_what_the_position_may_be_off_by_is_in_it():
     plain = measured_pick_up(pulled(Truth(), 1.0))
     unsure = measured_pick_up(pulled(Truth(), 1.0, strain_offset=0.03, strain_gain=0.02))
