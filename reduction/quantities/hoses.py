@@ -173,11 +173,11 @@ OF_PREDICTIONS: tuple[Quantity, ...] = (
             SETTING,
             tables=("hoses",),
         ),
-        measured("cord_load_scale", "1", "scale scale factor of the cord load", tables=("hoses",)),
+        measured("cord_load_scale", "1", "scale factor of the cord load", tables=("hoses",)),
         measured(
             "cord_strain_scale",
             "1",
-            "scale scale factor of the cord strain",
+            "scale factor of the cord strain",
             tables=("hoses",),
         ),
         measured(
