@@ -27,7 +27,6 @@ from reduction.report.experiment_report import (
     confounding_words,
     draw_checks,
     draw_contours,
-    draw_cube,
     draw_derived,
     draw_effects,
     draw_forms,
@@ -176,11 +175,7 @@ def _surface_parts(
         parts.append(
             make_part(
                 _capital(heading),
-                [
-                    *on_planes,
-                    *draw_cube(view, surfaces, index),
-                    *draw_pareto(view, surfaces, index),
-                ],
+                [*on_planes, *draw_pareto(view, surfaces, index)],
                 (),
                 [
                     quality_words(view, surfaces, index),

@@ -6,17 +6,15 @@ from dataclasses import replace
 import numpy as np
 import plotly.graph_objects as go
 import pytest
-from experiment_views import CODED, law_experiment, view_of
+from experiment_views import law_experiment, view_of
 from experiments import screening_experiment, surface_experiment
 
 from reduction.experiments.response_surfaces import fit_surfaces
-from reduction.experiments.surface_points import evaluate_surfaces
 from reduction.report.campaign_sections import _make_experiment_section
 from reduction.report.experiment_report import (
     _term_words,
     draw_checks,
     draw_contours,
-    draw_cube,
     draw_derived,
     draw_effects,
     draw_forms,
@@ -105,53 +103,6 @@ def test_contours_share_a_scale_and_veil_where_the_runs_say_less(lawful):
     assert all(figure.title.startswith(f"{lawful.name}: ") for figure in figures)
 
 
-def test_the_cube_has_the_law_at_corners_edges_and_centre(lawful):
-    (figure,) = draw_cube(lawful, lawful.surfaces, 0)
-    full, thin = figure.data[2:]
-    assert len(full["x"]) == 13
-    assert len(thin["x"]) == 8
-    shown = sorted(float(text.replace(",", "")) for text in thin["text"])
-    corners = [law(f, m, a) for f in (-1, 1) for m in (-1, 1) for a in (-1, 1)]
-    assert shown == pytest.approx(sorted(corners), abs=0.6)
-
-
-@pytest.mark.parametrize(
-    ("units", "unit", "factor"), [("si", "kN", 1e-3), ("us", "lbf", 1 / 4.4482216152605)]
-)
-def test_numbers_on_the_cube_end_where_their_interval_does(units, unit, factor):
-    def thousandfold(*coded):
-        return 1000 * law(*coded)
-
-    view = view_of(
-        law_experiment({"apparent_spring_constant": thousandfold}, noise=3e-3), units=units
-    )
-    (figure,) = draw_cube(view, view.surfaces, 0)
-    assert f"[{unit}]" in figure.caption
-    at = evaluate_surfaces(view.surfaces, np.array([[0.0, 0.0, 0.0]]), units="coded")
-    low, high = at.confidence_interval[0, 0] * factor
-    (centre,) = [
-        text for trace in figure.data[2:]
-        for x, y, text in zip(trace["x"], trace["y"], trace["text"], strict=True)
-        if (x, y) == pytest.approx((0.73, 0.67))
-    ]  # fmt: skip
-    number = float(centre.replace(",", ""))
-    # two digits of the half width, which is some units of the third or fourth digit here
-    assert number == pytest.approx(at.value[0, 0] * factor, abs=(high - low) / 40)
-    assert len(centre.replace(",", "").replace(".", "").rstrip("0")) <= 5
-
-
-def test_levels_that_were_not_quite_reached_leave_no_edge_of_the_cube_open():
-    rng = np.random.default_rng(3)
-    near = view_of(
-        law_experiment(
-            {"apparent_spring_constant": law},
-            coded=CODED * (1 - 1e-3 * rng.random(CODED.shape)),
-        )
-    )
-    (figure,) = draw_cube(near, near.surfaces, 0)
-    assert [len(trace["x"]) for trace in figure.data[2:]] == [13, 8]
-
-
 def test_terms_stand_by_size_with_the_critical_t_of_five_degrees_of_freedom(lawful):
     (figure,) = draw_pareto(lawful, lawful.surfaces, 0)
     limit = figure.data[-1]
@@ -178,9 +129,6 @@ def test_a_response_without_a_surface_has_a_reason_and_no_figure():
     runs = result.runs
     few = runs.response.copy()
     few[1, 5:] = np.nan
-    refit = law_experiment({"apparent_spring_constant": law})
-    del refit
-
     surfaces = fit_surfaces(
         runs.level, few, factor_names=result.factor_names, response_names=result.response_names,
         low=result.low, high=result.high, run_names=runs.names,
