@@ -59,7 +59,7 @@ from numpy.typing import ArrayLike
 
 from reduction.record.arrays import as_finite, as_positive
 from reduction.record.errors import DataError, SettingsError
-from reduction.record.measurement import Bools, Floats, read_only_arrays
+from reduction.record.measurement import Floats, read_only_arrays
 
 Core = Literal["isochoric", "rigid"]
 
@@ -413,13 +413,8 @@ class _CordStrainChart:
     Hose strains refer to the whole relaxed length.
     """
 
-    wrap_angle: Floats
-    strain: Floats
     cord_strain: Floats
-    slackest_strain: Floats
-    slackest_cord_strain: Floats
     pick_up_strain: Floats
-    neutral_angle: float
 
 
 def cord_strain_chart(
@@ -429,8 +424,7 @@ def cord_strain_chart(
 
     Notes
     -----
-    Eq. 8 of [1]_ (module).  The report reads "about 54 degrees" from its figure for the angle
-    above which cords go slack; it is the arctangent of the square root of two.
+    Eq. 8 of [1]_ (module).
 
     Examples
     --------
@@ -439,20 +433,12 @@ def cord_strain_chart(
     [[ 0.102 0.307]
      [-0.015 0.083]
      [-0.057 -0.004]]
-    >>> print((100 * chart.slackest_cord_strain).round(2) + 0)
-    [ 0. -2.74 -5.77]
     """
     angle, along = _series("wrap_angle", wrap_angle), _series("strain", strain)
     free = _free(dead_length_share)
-    slackest = slackest_stretch_ratio(angle)
     return _CordStrainChart(
-        wrap_angle=np.array(angle),
-        strain=np.array(along),
         cord_strain=cord_stretch_ratio(1 + along / free, angle[:, None]) - 1,
-        slackest_strain=free * (slackest - 1),
-        slackest_cord_strain=cord_stretch_ratio(slackest, angle) - 1,
         pick_up_strain=free * (pick_up_stretch_ratio(angle) - 1),
-        neutral_angle=NEUTRAL_ANGLE,
     )
 
 
@@ -483,19 +469,10 @@ class _LayerRange:
 
     least_strain: Floats
     greatest_strain: Floats
-    strain_at_least: Floats
-    strain_at_greatest: Floats
-    final_strain: Floats
-    is_compressed: Bools
-    is_over_limit: Bools
 
 
 def layer_range(
-    wrap_angle: ArrayLike,
-    hose_strain: ArrayLike,
-    *,
-    strain_limit: ArrayLike = np.inf,
-    dead_length_share: ArrayLike = 0.0,
+    wrap_angle: ArrayLike, hose_strain: ArrayLike, *, dead_length_share: ArrayLike = 0.0
 ) -> _LayerRange:
     """Least and greatest strain of a layer while the hose is stretched from rest.
 
@@ -506,18 +483,15 @@ def layer_range(
 
     Examples
     --------
-    A layer at 71.1 degrees over a working range of 146 %: not stretched, but compressed by 9 % at
-    62 %.
+    A layer at 71.1 degrees over a working range of 146 %: not stretched, but compressed by 9 %.
 
     >>> layer = layer_range(np.radians(71.1), 1.46)
-    >>> print(layer.greatest_strain, layer.least_strain.round(3), layer.strain_at_least.round(2))
-    0.0 -0.09 0.62
+    >>> print(layer.greatest_strain, layer.least_strain.round(3))
+    0.0 -0.09
     """
     angle = np.asarray(wrap_angle, dtype=np.float64)
     stretch = _stretch(hose_strain, dead_length_share)
-    limit = _limit("strain_limit", strain_limit)
-    angle, stretch, limit = np.broadcast_arrays(angle, stretch, limit)
-    share = np.asarray(dead_length_share, dtype=np.float64)
+    angle, stretch = np.broadcast_arrays(angle, stretch)
     shortest = np.minimum(slackest_stretch_ratio(angle), stretch)
     final, least = (
         # at rest nothing is strained, whatever the rounding
@@ -525,13 +499,7 @@ def layer_range(
         for one in (stretch, shortest)
     )
     return _LayerRange(
-        least_strain=np.asarray(least),
-        greatest_strain=np.asarray(np.maximum(final, 0)),
-        strain_at_least=np.asarray((1 - share) * (shortest - 1)),
-        strain_at_greatest=np.asarray(np.where(final > 0, (1 - share) * (stretch - 1), 0)),
-        final_strain=np.asarray(final),
-        is_compressed=np.asarray(least < 0),
-        is_over_limit=np.asarray(final > limit),
+        least_strain=np.asarray(least), greatest_strain=np.asarray(np.maximum(final, 0))
     )
 
 

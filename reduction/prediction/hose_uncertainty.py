@@ -26,10 +26,7 @@ from reduction.prediction.hose_product import HOSE_PARAMETERS, HoseDesign
 from reduction.prediction.hose_sensitivity import EventSensitivity, hose_sensitivity
 from reduction.prediction.hose_tension import find_events, predict_hose
 from reduction.record.errors import SettingsError
-from reduction.record.measurement import Bools, Floats, read_only_arrays
-
-WIDTH = 2.0
-"""Distance from a kink, in standard uncertainties, within which linear propagation fails."""
+from reduction.record.measurement import Floats, read_only_arrays
 
 PICK_UP = "pick_up"
 """Source of the load that cords may carry although they are slack in the design."""
@@ -68,16 +65,8 @@ class HoseUncertainty:
         At constant strain; NaN where the cords are broken. [N], [Pa]
     tension_standard_uncertainty, fill_pressure_standard_uncertainty : ndarray, (..., n_strain)
         Root of the sum of squares. [N], [Pa]
-    is_near_kink : ndarray of bool, shape (..., n_strain)
-        Within two standard uncertainties of the strain at pick-up or at break: in some of the
-        hoses that the design may represent the cords are slack, or broken, in others not.
     deepest_slack, pick_up, working, cord_break : EventUncertainty
         Where the cords are shortest, pick up, carry the working share of their break load, break.
-    strain_at_working_load_contribution : ndarray, shape (n_source, ...)
-        For the strain at which the hose carries the *nominal* working load, as read from a curve
-        at that load; ``working`` is where the cords carry their share. [1]
-    strain_at_working_load_standard_uncertainty : ndarray, shape (...)
-        Root of the sum of squares. [1]
     """
 
     source: tuple[str, ...]
@@ -86,13 +75,10 @@ class HoseUncertainty:
     fill_pressure_contribution: Floats
     tension_standard_uncertainty: Floats
     fill_pressure_standard_uncertainty: Floats
-    is_near_kink: Bools
     deepest_slack: EventUncertainty
     pick_up: EventUncertainty
     working: EventUncertainty
     cord_break: EventUncertainty
-    strain_at_working_load_contribution: Floats
-    strain_at_working_load_standard_uncertainty: Floats
 
 
 def propagate_hose(
@@ -121,7 +107,7 @@ def propagate_hose(
     SettingsError
         If a name is unknown, or an uncertainty is negative or not finite.
     DataError
-        If a strain is not finite, or outside the range of the prediction.
+        If a strain is not finite.
 
     Notes
     -----
@@ -137,22 +123,19 @@ def propagate_hose(
     tension cannot fall below that of the rubber.  Compared with sampling, for half a degree of
     angle at 68 degrees, it is a quarter too low at pick-up, a seventh too high half a standard
     uncertainty above, and within a twentieth from two on (`with_pick_up` adds the part missing
-    below).  Near the break some hoses are broken.  ``is_near_kink`` marks both, to two standard
-    uncertainties.
+    below).  Near the break some hoses are broken.
 
     The curve above pick-up is steep.  At *constant strain* the same half degree is 13 % of the
     tension at the working load; for the working load itself, whose strain changes too, it is
     3 %.  The uncertainty quoted with a working load is that of the event.
 
-    The strain at the working load has two meanings.  Where the *cords* carry their share
-    (``working``), the rubber, the diameters and the number of cords have no effect.  Where the
-    *hose* carries the computed load (``strain_at_working_load``), they do:
-    :math:`-(\partial T/\partial x_i)/(\partial T/\partial\varepsilon)` at constant strain.
+    ``working`` is where the *cords* carry their share: the rubber, the diameters and the number of
+    cords have no effect on its strain.
 
     Examples
     --------
     Half a degree of wrap angle is 6 points of stretch at the working load, 5 % of rubber
-    modulus none; at that *load* of the hose the rubber matters too.
+    modulus none.
 
     >>> from reduction.prediction.cord_curve import CordCurve
     >>> cord = CordCurve(np.array([0.0, 0.095, 0.26]), np.array([0.0, 44.5, 133.5]))
@@ -162,15 +145,12 @@ def propagate_hose(
     >>> found = propagate_hose(design, [0.5, 1.0, 1.5], known)
     >>> print(found.source, (100 * found.working.strain_contribution).round(1))
     ('wrap_angle', 'rubber_modulus') [6.2 0. ]
-    >>> print((100 * found.strain_at_working_load_contribution).round(1))
-    [ 5.6 -1.5]
     """
     source = tuple(name for name in HOSE_PARAMETERS if name in standard_uncertainty)
     _check(standard_uncertainty)
     rows = [HOSE_PARAMETERS.index(name) for name in source]
     spread = np.array([float(standard_uncertainty[name]) for name in source])
     slopes = hose_sensitivity(design, strain)
-    events, prediction = find_events(design), predict_hose(design, strain)
 
     def scaled(table: Floats) -> Floats:
         return np.asarray(table[rows] * spread.reshape(-1, *[1] * (table.ndim - 1)))
@@ -179,16 +159,7 @@ def propagate_hose(
         parts = [scaled(one) for one in (slope.strain, slope.tension, slope.fill_pressure)]
         return EventUncertainty(*parts, *(_together(one) for one in parts))
 
-    pick_up, working, cord_break = (
-        of_event(one) for one in (slopes.pick_up, slopes.working, slopes.cord_break)
-    )
     tension, pressure = scaled(slopes.tension), scaled(slopes.fill_pressure)
-    at_load = working.strain_contribution - working.tension_contribution / slopes.working.stiffness
-    is_near = [
-        np.abs(prediction.strain - event.strain[..., None])
-        < WIDTH * known.strain_standard_uncertainty[..., None]
-        for event, known in ((events.pick_up, pick_up), (events.cord_break, cord_break))
-    ]
     return HoseUncertainty(
         source=source,
         strain=slopes.strain,
@@ -196,13 +167,10 @@ def propagate_hose(
         fill_pressure_contribution=pressure,
         tension_standard_uncertainty=_together(tension),
         fill_pressure_standard_uncertainty=_together(pressure),
-        is_near_kink=is_near[0] | is_near[1],
         deepest_slack=of_event(slopes.deepest_slack),
-        pick_up=pick_up,
-        working=working,
-        cord_break=cord_break,
-        strain_at_working_load_contribution=at_load,
-        strain_at_working_load_standard_uncertainty=_together(at_load),
+        pick_up=of_event(slopes.pick_up),
+        working=of_event(slopes.working),
+        cord_break=of_event(slopes.cord_break),
     )
 
 

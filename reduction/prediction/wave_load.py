@@ -75,7 +75,7 @@ from reduction.prediction.wave_theory import (
     sum_at,
 )
 from reduction.record.arrays import as_finite, as_positive
-from reduction.record.errors import DataError, FitError, SettingsError
+from reduction.record.errors import DataError, FitError
 from reduction.record.measurement import Bools, Floats, read_only_arrays
 
 _STEP = 1e-14  # greatest last Newton step, relative to the root
@@ -740,19 +740,14 @@ def _load_range(
 class _LoadDifference:
     """Classic less improved load over the classic one."""
 
-    horizontal: Floats
-    vertical: Floats
     horizontal_of_maximum: Floats
     horizontal_of_minimum: Floats
     vertical_of_maximum: Floats
     vertical_of_minimum: Floats
-    minimum_share: float
 
 
-def _load_difference(
-    load: _WaveLoad, extremes: _LoadExtremes, *, minimum_share: float = 0.1
-) -> _LoadDifference:
-    """Reduction of the improved load relative to the classic one, where it is defined.
+def _load_difference(extremes: _LoadExtremes) -> _LoadDifference:
+    """Reduction of the extremes of the improved load relative to those of the classic one.
 
     Notes
     -----
@@ -768,36 +763,22 @@ def _load_difference(
 
     >>> from reduction.prediction.wave_load import _find_extremes
     >>> from reduction.prediction.wave_load import immerse_hose
-    >>> from reduction.prediction.wave_load import wave_load
     >>> from reduction.prediction.wave_theory import airy_wave
     >>> hose = immerse_hose(outer_diameter=0.114, wall_thickness=0.006, wall_density=1250.0,
     ...                     content_density=830.0, water_density=1025.0)
     >>> wave = airy_wave(wave_height=1.25, wave_period=3.57, water_depth=6.0, elevation=-0.038)
-    >>> load, extremes = wave_load(wave, hose, [0.0]), _find_extremes(wave, hose)
-    >>> difference = _load_difference(load, extremes)
-    >>> print(difference.horizontal.round(4), difference.horizontal_of_maximum.round(4))
-    [0.1656] 0.1595
+    >>> difference = _load_difference(_find_extremes(wave, hose))
+    >>> print(difference.horizontal_of_maximum.round(4))
+    0.1595
     """
-    if not 0 < minimum_share <= 1:
-        raise SettingsError(
-            "minimum_share is not a share", found=f"{minimum_share:g}", needed="above 0, at most 1"
-        )
-    pairs = {
-        "horizontal": (extremes.horizontal, extremes.horizontal_classic),
-        "vertical": (extremes.vertical, extremes.vertical_classic),
-    }
-    found: dict[str, Floats] = {}
-    for name, (improved, classic) in pairs.items():
-        whole = getattr(load, f"{name}_classic")
-        means_something = np.abs(whole) >= minimum_share * classic.greatest[..., None]
-        found[name] = _cut(getattr(load, name), np.where(means_something, whole, np.nan))
-        found[f"{name}_of_maximum"] = _cut(improved.maximum, classic.maximum)
-        found[f"{name}_of_minimum"] = _cut(improved.minimum, classic.minimum)
-    return _LoadDifference(**found, minimum_share=minimum_share)
-
-
-def _cut(improved: Floats, classic: Floats) -> Floats:
-    return np.asarray(1 - improved / np.where(classic == 0, np.nan, classic))
+    along, upwards = extremes.horizontal, extremes.vertical
+    classic_along, classic_upwards = extremes.horizontal_classic, extremes.vertical_classic
+    return _LoadDifference(
+        horizontal_of_maximum=np.asarray(1 - along.maximum / classic_along.maximum),
+        horizontal_of_minimum=np.asarray(1 - along.minimum / classic_along.minimum),
+        vertical_of_maximum=np.asarray(1 - upwards.maximum / classic_upwards.maximum),
+        vertical_of_minimum=np.asarray(1 - upwards.minimum / classic_upwards.minimum),
+    )
 
 
 AIR_DENSITY = 1.225
@@ -1092,7 +1073,7 @@ def predict_wave_load(
         hose_length=hose_length,
         load=load,
         extremes=extremes,
-        difference=_load_difference(load, extremes),
+        difference=_load_difference(extremes),
         regime=regime,
         anchor=_anchor_force(
             wave,

@@ -253,57 +253,6 @@ def _refuse_blocked(is_blocked: np.ndarray, current: Floats) -> None:
     )
 
 
-@dataclass(frozen=True)
-@read_only_arrays
-class _WaveLengthCheck:
-    """Comparison of a given length and period with the dispersion relation."""
-
-    period_of_length: Floats
-    length_of_period: Floats
-    period_mismatch: Floats
-    length_mismatch: Floats
-
-
-def _check_wave_length(
-    wave_length: ArrayLike,
-    wave_period: ArrayLike,
-    water_depth: ArrayLike,
-    *,
-    current_velocity: ArrayLike = 0.0,
-    gravity: float = STANDARD_GRAVITY,
-) -> _WaveLengthCheck:
-    """Mismatch of a given length and period for one wave.
-
-    Notes
-    -----
-    By the linear relation; a steep wave is faster, so its height may explain a few per cent.
-
-    Examples
-    --------
-    Table 4 of [1]_ at the depths of its two examples.
-
-    >>> check = _check_wave_length(20.0, 3.57, [6.0, 3.0])
-    >>> print(check.period_mismatch.round(3), check.length_mismatch.round(3))
-    [0.026 0.169] [0.045 0.227]
-    """
-    length = as_positive("wave_length", wave_length)
-    period = as_positive("wave_period", wave_period)
-    by_length = wave_period_of(
-        2 * pi / length, water_depth, current_velocity=current_velocity, gravity=gravity
-    )
-    by_period = (
-        2
-        * pi
-        / _wave_number(period, water_depth, current_velocity=current_velocity, gravity=gravity)
-    )
-    return _WaveLengthCheck(
-        period_of_length=by_length,
-        length_of_period=np.asarray(by_period),
-        period_mismatch=np.asarray(by_length / period - 1),
-        length_mismatch=np.asarray(length / by_period - 1),
-    )
-
-
 GREATEST_STEEPNESS = 0.142
 """Height over length of the steepest wave on deep water (Miche). [1]"""
 
@@ -1194,11 +1143,10 @@ def describe_wave(
     else:
         as_positive("wave_length", wave_length)
         length, number = wave_length, 2 * pi / wave_length
-        mismatch = float(
-            _check_wave_length(
-                length, wave_period, water_depth, current_velocity=current_velocity, gravity=gravity
-            ).length_mismatch
+        by_period = _wave_number(
+            wave_period, water_depth, current_velocity=current_velocity, gravity=gravity
         )
+        mismatch = float(length / (2 * pi / by_period) - 1)
     relative_depth, steepness = water_depth / length, wave_height / length
     theory = _theory_by_depth(relative_depth)
     surface, velocity = _second_harmonics(number * wave_height, number * water_depth)
