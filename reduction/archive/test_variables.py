@@ -463,10 +463,6 @@ def _both(name: str, pairs: Sequence[tuple[Floats, ...]]) -> Values:
     }
 
 
-_HELD_PAIR = ("held_pair",)
-
-_HELD_POINT = ("held_pair", "held_pair_point")
-
 _U = "_standard_uncertainty"
 
 _OVER = re.compile("_over_strength|^creep_compliance")

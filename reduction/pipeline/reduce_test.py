@@ -104,9 +104,6 @@ from reduction.uncertainty.shared_contributions import (
 
 _GREATEST_STRAIN = 10.0  # no rubber is stretched to eleven times its length
 
-# a sine logged thirteen times a cycle deviates by 1.5 % of its range, a triangle by 23 % more
-_OFF_THE_SINE = 0.05
-
 _TRIANGULAR_SHARE = 0.6  # of samples at a constant rate; a sine has half of them
 
 _MOST_DRIFT = 0.2  # of the range of a cycle: a rope that creeps drifts by a hundredth

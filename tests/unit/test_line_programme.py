@@ -214,7 +214,6 @@ class TestStatic:
         assert found.stiffness_at_reference == pytest.approx(expected, rel=1e-5)
         assert found.slope_per_decade == pytest.approx(-100, rel=1e-3)
         assert found.stiffness_over_strength == pytest.approx(expected / 1000, rel=1e-5)
-        assert found.slope_per_decade_over_strength == pytest.approx(-0.1, rel=1e-3)
         assert tuple(map(str, found.notes)) == ()
 
     def test_stated_uncertainties_are_the_scatter_of_holds_with_noise(self):
@@ -227,8 +226,6 @@ class TestStatic:
             mean = np.sqrt(np.mean([getattr(one, stated) ** 2 for one in found]))
             # short blocks at the start have few readings, which the weights know in part
             assert 0.7 * scatter < mean < 2 * scatter
-        inside = np.mean([one.slope_low < -100 < one.slope_high for one in found])
-        assert 0.9 <= inside <= 1
 
     def test_a_few_values_at_stated_times_do_too(self):
         t, load, strain = upper_hold()
@@ -280,16 +277,9 @@ class TestStatic:
         ):
             _static_stiffness(*upper_hold(), **{**LOW, "low_tension": 400.0})
 
-    @pytest.mark.parametrize(
-        ("changed", "message"),
-        [
-            ({"confidence": 95.0}, "a confidence is a share; found 95"),
-            ({"reference_time": 0.0}, "the reference time is not positive; found 0 s"),
-        ],
-    )
-    def test_settings_that_cannot_be_are_refused(self, changed, message):
-        with pytest.raises(SettingsError, match=message):
-            _static_stiffness(*upper_hold(), **{**LOW, **changed})
+    def test_a_reference_time_of_zero_is_refused(self):
+        with pytest.raises(SettingsError, match="the reference time is not positive; found 0 s"):
+            _static_stiffness(*upper_hold(), **{**LOW, "reference_time": 0.0})
 
 
 def hold(kind="creep", rate=0.002, refusals=()):

@@ -139,7 +139,6 @@ def test_original_stiffness_is_the_chord_of_the_first_rise_end_to_end():
                    rated_break_strength=500.0)  # fmt: skip
     assert (one.value, one.over_strength) == pytest.approx((2000.0, 4.0))
     assert one.standard_uncertainty == pytest.approx(0.5 * math.sqrt(2) / 0.03)
-    assert one.over_strength_standard_uncertainty == pytest.approx(one.standard_uncertainty / 500)
     assert (one.low_tension, one.high_tension) == (20.0, 80.0)
 
 
@@ -313,7 +312,7 @@ def test_a_share_of_the_strength_has_the_error_of_the_strength_beside_its_own():
     assert one.contribution == pytest.approx([8.0, 0.0])
     assert one.over_strength_contribution == pytest.approx([0.02, -0.1])
     assert one.degrees_of_freedom == 9.0
-    assert one.over_strength_standard_uncertainty == pytest.approx(math.hypot(0.02, 0.1, 0.0025))
+    assert one.over_strength_random_standard_uncertainty == pytest.approx(0.0025)
 
 
 def test_polymer_strain_moves_with_its_creep():

@@ -132,10 +132,8 @@ class TestCubic:
             slope_of_cubic(1.0, [1.0, 2.0, 3.0])
 
     def test_the_printed_form_of_a_curve_that_it_can_hold_is_exact(self):
-        fit, deviation = _printed_form(
-            np.linspace(0, 1000, 201), np.full(201, 1e4), centre=500, half=500
-        )
-        assert fit == pytest.approx([1e4, 0, 0, 0], abs=1e-7) and deviation < 1e-12
+        fit = _printed_form(np.linspace(0, 1000, 201), np.full(201, 1e4), centre=500, half=500)
+        assert fit == pytest.approx([1e4, 0, 0, 0], abs=1e-7)
 
 
 class TestPull:
@@ -218,7 +216,6 @@ class TestPull:
         assert pull.strain_rate_slowest == pytest.approx(pull.strain_rate_fastest, rel=0.01)
         assert pull.tension_rate == pytest.approx(8800 / 200, rel=0.03)
         assert pull.tension_low == pytest.approx(100, abs=20) and pull.tension_high == load[-1]
-        assert load[pull.first_sample] <= 100 and pull.last_sample == 1999
 
     def test_a_strain_that_is_not_zero_at_the_reference_tension_is_said(self):
         time, strain, load = rising()
@@ -253,14 +250,6 @@ class TestPull:
         assert np.sqrt(np.mean(((found - wanted) / uncertainty) ** 2)) < 1.5
         cubic = at[:, None] ** np.arange(4) @ pull.strain_coefficient
         assert np.abs(cubic / wanted - 1).max() > 0.02
-
-    def test_the_polynomial_of_the_spring_constant_is_as_far_off_as_it_says(self):
-        pull = fit_pull(*rising())
-        load = np.linspace(pull.tension_low, pull.tension_high, 301)
-        polynomial = load[:, None] ** np.arange(4) @ pull.polynomial_coefficient
-        constant, _ = quasi_static_spring_constant(pull, load)
-        off = np.abs(polynomial / constant - 1).max()
-        assert off == pytest.approx(pull.polynomial_deviation, rel=0.05)
 
     def test_a_turn_of_the_cubic_ends_the_range_of_use(self):
         load = np.linspace(0, 1000, 500)

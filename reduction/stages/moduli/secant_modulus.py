@@ -36,9 +36,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import stdtrit
 
-from reduction.record.arrays import as_positive, as_same_shape
+from reduction.record.arrays import as_positive
 from reduction.record.errors import DataError
-from reduction.record.measurement import Floats, read_only_arrays
+from reduction.record.measurement import Floats
 from reduction.record.notes import note
 from reduction.record.samples import take_samples
 from reduction.stages.cycles.cycle_product import Cycles, Loops
@@ -449,10 +449,9 @@ def summarise_amplitude(
         uncertainty[name] = np.hypot(uncertainty[name], shared)
     # noise may turn a loss angle negative: then there is no ellipse to read slopes from
     tangent = np.where(means["loss_factor"] >= 0, means["loss_factor"], np.nan)
-    means["slope_reading_spread"] = slope_readings(
-        means["apparent_spring_constant"], tangent
-    ).relative_spread
-    per_tangent = tangent / np.sqrt(1 + tangent**2) * (1 + 1 / (1 + tangent**2))
+    secant = np.sqrt(1 + tangent**2)
+    means["slope_reading_spread"] = secant - 1 / secant
+    per_tangent = tangent / secant * (1 + 1 / (1 + tangent**2))
     uncertainty["slope_reading_spread"] = per_tangent * uncertainty["loss_factor"]
     means["dynamic_modulus"] = means["apparent_spring_constant"] / areas
     uncertainty["dynamic_modulus"] = uncertainty["apparent_spring_constant"] / areas
@@ -870,69 +869,3 @@ def fit_peak_trend(
         mean_strain_drift=last_strain - first_strain,
         mean_strain_drift_standard_uncertainty=np.sqrt(2) * strain_scatter,
     )
-
-
-@dataclass(frozen=True)
-@read_only_arrays
-class _SlopeReadings:
-    """Slope of each loop by three readings; each array has the shape of the loops."""
-
-    amplitude_ratio: Floats
-    between_strain_extremes: Floats
-    between_tension_extremes: Floats
-    relative_spread: Floats
-
-
-def slope_readings(apparent_spring_constant: ArrayLike, loss_factor: ArrayLike) -> _SlopeReadings:
-    r"""Slope of an elliptical loop by amplitudes and by the two pairs of its extremes.
-
-    .. math:: |K| \cos\delta, \quad |K|, \quad |K| / \cos\delta, \qquad
-              \cos\delta = (1 + \tan^2\delta)^{-1/2}
-
-    Parameters
-    ----------
-    apparent_spring_constant : array_like, shape (...)
-        Tension amplitude over strain amplitude of each loop. [N]
-    loss_factor : array_like, shape (...)
-        Tangent of the loss angle of each loop. [1]
-
-    Returns
-    -------
-    readings : SlopeReadings
-        The three slopes and their spread. [N], [1]
-
-    Raises
-    ------
-    DataError
-        If the shapes differ, or a loss factor is negative.
-
-    Notes
-    -----
-    [6]_ reads K_ap from "the slope of the line drawn between the ends of the hysteresis
-    loop", and eq. 1 there gives the modulus: the amplitude ratio, which is used here.  The
-    others differ from it by 0.4 to 2.7 % at the loss angles of [6]_, 5.1 to 13.1 degrees.  A
-    loop with pointed ends has its extremes of strain and tension at one point, and all three
-    readings agree; there the spread is that of the ellipse with the same loss angle.
-    NaN in, NaN out.
-
-    Examples
-    --------
-    >>> readings = slope_readings(100.0, np.tan(np.radians([5.0, 13.0])).max())
-    >>> print(readings.between_strain_extremes.round(1), readings.between_tension_extremes.round(1))
-    97.4 102.6
-    >>> print(readings.relative_spread.round(3))
-    0.052
-    """
-    slope, tangent = as_same_shape(
-        apparent_spring_constant=apparent_spring_constant, loss_factor=loss_factor
-    )
-    bad = tangent < 0
-    if bad.any():
-        raise DataError(
-            f"{int(bad.sum())} of {bad.size} loss factors are negative",
-            found=f"{tangent[bad].flat[0]:g}",
-            needed="tension that leads strain",
-            hint="Check the signs of tension and position.",
-        )
-    secant = np.sqrt(1 + tangent**2)
-    return _SlopeReadings(slope + 0.0, slope / secant, slope * secant, secant - 1 / secant)

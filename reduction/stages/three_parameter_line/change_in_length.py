@@ -272,13 +272,6 @@ class ChangeInLength:
         """Shared and random parts together."""
         return _together(self.contribution, self.random_standard_uncertainty)
 
-    @property
-    def over_strength_standard_uncertainty(self) -> float:
-        """Shared and random parts of the uncertainty of the number over the strength, together."""
-        return _together(
-            self.over_strength_contribution, self.over_strength_random_standard_uncertainty
-        )
-
 
 def _together(contribution: Floats, random: float) -> float:
     return float(np.sqrt(np.sum(contribution**2) + random**2))

@@ -24,7 +24,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import stdtrit
 
 from reduction.record.arrays import as_positive, as_same_shape
 from reduction.record.errors import DataError, FitError, SettingsError
@@ -63,11 +62,7 @@ class _StaticStiffness:
     stiffness_at_reference_standard_uncertainty: float
     slope_per_decade: float
     slope_per_decade_standard_uncertainty: float
-    slope_low: float
-    slope_high: float
     stiffness_over_strength: float
-    slope_per_decade_over_strength: float
-    confidence: float
     notes: tuple[Note, ...] = ()
 
 
@@ -115,7 +110,6 @@ def _static_stiffness(
     reference_time: float,
     ramp_duration: float = 0.0,
     rated_break_strength: float = float("nan"),
-    confidence: float = 0.95,
 ) -> _StaticStiffness:
     r"""Secant stiffness from the end of a lower hold into an upper hold, against log time.
 
@@ -136,8 +130,6 @@ def _static_stiffness(
     >>> print(round(found.stiffness_at_reference), round(found.slope_per_decade))
     3800 -100
     """
-    if not 0 < confidence < 1:
-        raise SettingsError("a confidence is a share", found=f"{confidence:g}", needed="0 to 1")
     if not reference_time > 0:
         raise SettingsError(
             "the reference time is not positive", found=f"{reference_time:g} s", needed="above 0 s"
@@ -198,7 +190,6 @@ def _static_stiffness(
     at_reference = level - slope * centre
     if is_short:
         slope = u_slope = float("nan")
-    width = float(stdtrit(x.size - 2, (1 + confidence) / 2)) * u_slope
     return _StaticStiffness(
         elapsed=blocks.elapsed,
         stiffness=y,
@@ -207,11 +198,7 @@ def _static_stiffness(
         stiffness_at_reference_standard_uncertainty=u_level,
         slope_per_decade=slope,
         slope_per_decade_standard_uncertainty=u_slope,
-        slope_low=slope - width,
-        slope_high=slope + width,
         stiffness_over_strength=at_reference / rated_break_strength,
-        slope_per_decade_over_strength=slope / rated_break_strength,
-        confidence=confidence,
         notes=(
             *((note("stiffness-amid-ramp-times", reference=reference_time, ramp=ramp_duration),)
               if is_of_ramp else ()),

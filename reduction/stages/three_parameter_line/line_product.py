@@ -121,13 +121,9 @@ class SlowPull:
         Range of use: where there are readings and the slope is positive. [N]
     residual_deviation : float
         Standard deviation of the block means about the cubic. [1]
-    variance_inflation : float
-        Factor by which correlation between neighbouring residuals increases every variance. [1]
     n_samples, n_blocks : int
         Readings of the loading part, and number of means over equal steps of tension that were
         fitted.
-    first_sample, last_sample : int
-        Rows of the record at the ends of the loading part.
     strain_rate, strain_rate_slowest, strain_rate_fastest : float
         Mean over the loading part, and over the slowest and fastest quarter of its tension
         range; K_0 grows with the rate. [s-1]
@@ -143,8 +139,6 @@ class SlowPull:
         Tension at which it was read; NaN where not stated. [N]
     polynomial_coefficient : ndarray, shape (4,)
         K_0 as A + B T + C T^2 + D T^3, for those who need the printed form. [N N-k]
-    polynomial_deviation : float
-        Greatest distance of that form from the slope over the range of use, as a share. [1]
     notes : tuple of Note
         What a reader of the numbers needs to know.
     """
@@ -162,11 +156,8 @@ class SlowPull:
     tension_low: float
     tension_high: float
     residual_deviation: float
-    variance_inflation: float
     n_samples: int
     n_blocks: int
-    first_sample: int
-    last_sample: int
     strain_rate: float
     strain_rate_slowest: float
     strain_rate_fastest: float
@@ -176,7 +167,6 @@ class SlowPull:
     reference_length: float
     reference_tension: float
     polynomial_coefficient: Floats
-    polynomial_deviation: float
     notes: tuple[Note, ...] = ()
 
     @property
