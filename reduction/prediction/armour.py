@@ -681,9 +681,7 @@ class _AnglesOfUse:
     statement: tuple[str, ...]
 
 
-def _angles_of_use(
-    design: ArmourDesign, strain: float, *, tolerance: float, reference: Reference = "exact"
-) -> _AnglesOfUse:
+def _angles_of_use(design: ArmourDesign, strain: float, *, tolerance: float) -> _AnglesOfUse:
     """Winding angles at which each theory is within a tolerance, with a statement in words.
 
     Notes
@@ -707,7 +705,7 @@ def _angles_of_use(
             found=f"shape {design.shape} for {angle.size} angles",
             needed="the other numbers alike for all angles, or one for each",
         )
-    errors = theory_errors(design, strain, reference=reference)
+    errors = theory_errors(design, strain)
     is_within = np.abs(errors.error[..., 0]) <= tolerance
     ends = np.full((*is_within.shape[:2], 2), np.nan)
     sentences = []
@@ -718,7 +716,7 @@ def _angles_of_use(
                 ends[i, j] = angle[runs[np.argmax(runs[:, 1] - runs[:, 0])]]
             places = ", ".join(_degrees(angle[run]) for run in runs)
             sentences.append(
-                f"{theory} angles: {quantity} within {100 * tolerance:g} % of {reference} "
+                f"{theory} angles: {quantity} within {100 * tolerance:g} % of exact "
                 + (f"at {places} deg" if places else "nowhere")
             )
     return _AnglesOfUse(
@@ -825,18 +823,15 @@ def _layer_stiffness(design: ArmourDesign) -> _LayerStiffness:
     )
 
 
-YieldCriterion = Literal["axial", "normal", "von-mises"]
-
 _YIELD_STEPS = 100
 
 _CLOSE = 1e-10  # relative to the yield stress; strains of the cable are differences from one
 
 
-def _wire_stress(response: _ArmourResponse, *, criterion: YieldCriterion = "von-mises") -> Floats:
+def _wire_stress(response: _ArmourResponse) -> Floats:
     r"""Greatest stress on the section of a wire.
 
-    .. math:: |\sigma_T|,\quad |\sigma_T| + |\sigma_{G'}|,\quad
-       \sqrt{(|\sigma_T| + |\sigma_{G'}|)^2 + 3\sigma_H^2}
+    .. math:: \sqrt{(|\sigma_T| + |\sigma_{G'}|)^2 + 3\sigma_H^2}
 
     Notes
     -----
@@ -849,26 +844,16 @@ def _wire_stress(response: _ArmourResponse, *, criterion: YieldCriterion = "von-
     >>> from reduction.prediction.armour import predict_armour
     >>> design = ArmourDesign(np.radians(45.0), 2.5e-3, 25e-3, 210e9)
     >>> wire = predict_armour(design, 1e-3, theory="intermediate")
-    >>> print((_wire_stress(wire, criterion="normal") / 1e6).round(2))
+    >>> print(((np.abs(wire.axial_stress) + np.abs(wire.bending_stress)) / 1e6).round(2))
     [114.55]
+    >>> print((_wire_stress(wire) > np.abs(wire.axial_stress)).all())
+    True
     """
-    _known(criterion)
-    axial = np.abs(response.axial_stress)
-    if criterion == "axial":
-        return axial
-    normal = axial + np.abs(response.bending_stress)
-    if criterion == "normal":
-        return np.asarray(normal)
+    normal = np.abs(response.axial_stress) + np.abs(response.bending_stress)
     return np.asarray(np.hypot(normal, np.sqrt(3.0) * response.torsion_stress))
 
 
-def _yield_strain(
-    design: ArmourDesign,
-    yield_stress: ArrayLike,
-    *,
-    criterion: YieldCriterion = "von-mises",
-    theory: Literal["exact", "conjugate"] = "conjugate",
-) -> Floats:
+def _yield_strain(design: ArmourDesign, yield_stress: ArrayLike) -> Floats:
     """Strain of the cable at which the wires begin to yield in extension.
 
     Notes
@@ -883,27 +868,20 @@ def _yield_strain(
     Steel of 800 MPa at 20 and 80 deg: with steeper wires the cable may stretch more
 
     >>> design = ArmourDesign(np.radians([20.0, 80.0]), 2.5e-3, 25e-3, 210e9)
-    >>> strain = _yield_strain(design, 800e6, criterion="axial", theory="exact")
-    >>> print((100 * strain).round(3))
-    [ 0.431 11.944]
+    >>> print((100 * _yield_strain(design, 800e6)).round(3))
+    [0.422 9.871]
     """
-    _known(criterion)
-    if theory not in ("exact", "conjugate"):
-        raise SettingsError(
-            "no yield by this theory", found=repr(theory), needed="exact or conjugate"
-        )
     limit = np.asarray(yield_stress, dtype=np.float64)
     if not np.all((limit > 0) & np.isfinite(limit)):
         raise SettingsError(
             "yield_stress is not above zero", found=f"{limit.min():g} Pa", needed="above 0 Pa"
         )
-    predict = _predict_exact if theory == "exact" else _predict_conjugate
     shape = np.broadcast_shapes(design.shape, limit.shape)
     angle = np.broadcast_to(np.asarray(design.winding_angle, dtype=np.float64), shape)
     wire_strain = np.broadcast_to(limit / np.asarray(design.elastic_modulus), shape)
     for _ in range(_YIELD_STEPS):
         strain = hose_stretch_ratio(1 + wire_strain, angle, core="rigid") - 1
-        stress = _wire_stress(predict(design, strain[..., None]), criterion=criterion)[..., 0]
+        stress = _wire_stress(_predict_conjugate(design, strain[..., None]))[..., 0]
         if np.all(np.abs(stress - limit) <= _CLOSE * limit):
             return np.asarray(strain)
         wire_strain = wire_strain * limit / stress
@@ -934,15 +912,6 @@ def layer_strength(design: ArmourDesign, yield_stress: ArrayLike) -> Floats:
     """
     along = np.asarray(yield_stress, dtype=np.float64) * design.wire_area
     return np.asarray(np.asarray(design.n_wires) * along * np.cos(design.winding_angle))
-
-
-def _known(criterion: str) -> None:
-    if criterion not in get_args(YieldCriterion):
-        raise SettingsError(
-            "the yield criterion is not known",
-            found=repr(criterion),
-            needed=", ".join(get_args(YieldCriterion)),
-        )
 
 
 Lay = Literal["right", "left"]
@@ -1047,9 +1016,7 @@ class _LayersResponse:
     is_yielding: Bools
 
 
-def _predict_layers(
-    layers: ArmourLayers, strain: ArrayLike, *, theory: ArmourTheory = "conjugate"
-) -> _LayersResponse:
+def _predict_layers(layers: ArmourLayers, strain: ArrayLike) -> _LayersResponse:
     r"""Tension, torque, pressure and stress of a cable that is stretched and held against turning.
 
     .. math:: F = \sum n (T\cos\bar\alpha + N'\sin\bar\alpha),\quad
@@ -1073,11 +1040,7 @@ def _predict_layers(
     >>> print((cable.tension / 1e3).round(1), cable.torque_imbalance.round(2))
     [217.6] [0.12]
     """
-    if theory == "large":
-        raise SettingsError(
-            "layers on a core are no springs", found="large", needed="a theory of wires on a core"
-        )
-    wire = predict_armour(layers.design, strain, theory=theory)
+    wire = predict_armour(layers.design, strain, theory="conjugate")
     count = layers._spread("n_wires")[:, None]
     core_radius = layers._spread("core_radius")[:, None]
     layer_tension = count * wire.tension
@@ -1138,9 +1101,7 @@ class _CableStrength:
     tension: float
 
 
-def _cable_strength(
-    layers: ArmourLayers, *, criterion: YieldCriterion = "von-mises"
-) -> _CableStrength:
+def _cable_strength(layers: ArmourLayers) -> _CableStrength:
     """Strain at which the first wire of the cable yields, and the load of the cable there.
 
     Notes
@@ -1155,9 +1116,8 @@ def _cable_strength(
     >>> design = ArmourDesign(np.radians([35.0, 20.0]), 2.5e-3, np.array([25e-3, 30e-3]), 210e9,
     ...                       n_wires=np.array([26, 36]))
     >>> layers = ArmourLayers(design, ("right", "left"), np.array([800e6, 800e6]))
-    >>> strength = _cable_strength(layers, criterion="axial")
-    >>> strength.governing_layer, round(100 * strength.strain, 3)
-    (1, 0.431)
+    >>> _cable_strength(layers).governing_layer
+    1
     """
     bare = np.isnan(layers.yield_stress)
     if bare.any():
@@ -1165,7 +1125,7 @@ def _cable_strength(
             f"layer {int(np.flatnonzero(bare)[0]) + 1} has no yield stress",
             needed="one for every layer",
         )
-    strain = _yield_strain(layers.design, layers.yield_stress, criterion=criterion)
+    strain = _yield_strain(layers.design, layers.yield_stress)
     governing = int(np.argmin(strain))
     first = float(strain[governing])
     return _CableStrength(

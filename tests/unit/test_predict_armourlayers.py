@@ -91,7 +91,7 @@ def test_yielding_is_flagged_and_an_unknown_yield_stress_is_not():
 
 
 def test_the_less_steep_layer_governs_and_the_cable_is_weaker_than_its_sum():
-    strength = _cable_strength(cable((35.0, 20.0), n_wires=(26, 36)), criterion="axial")
+    strength = _cable_strength(cable((35.0, 20.0), n_wires=(26, 36)))
     assert strength.governing_layer == 1
     assert strength.strain == strength.layer_yield_strain[1] < strength.layer_yield_strain[0]
     assert strength.tension < strength.layer_strength.sum()
@@ -117,8 +117,3 @@ def test_yield_stresses_are_one_a_layer_and_above_zero():
         ArmourLayers(design, ("right", "left"), np.array([STEEL]))
     with pytest.raises(SettingsError, match="yield_stress of layer 2 is not above zero"):
         ArmourLayers(design, ("right", "left"), np.array([STEEL, -1.0]))
-
-
-def test_layers_are_no_springs():
-    with pytest.raises(SettingsError, match="layers on a core are no springs"):
-        _predict_layers(cable(), 1e-3, theory="large")
