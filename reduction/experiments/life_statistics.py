@@ -527,13 +527,12 @@ def fit_load_life(
     median = _scatter_quantile(0.5, scatter=scatter)
     # from (location, exponent, scale) to (median, exponent, scale)
     to_median = np.array([[1.0, 0.0, median], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
-    chi_square = p_value = float("nan")
+    p_value = float("nan")
     n_levels = int(level.max()) + 1
     n_failed = int((~suspended).sum())
     if n_levels > 2 and n_failed > n_failed_levels:
         best, n_levels = _log_likelihood_of_levels(about, load, suspended, scatter)
-        chi_square = max(2 * (best - fit.log_likelihood), 0.0)
-        p_value = float(chdtrc(n_levels - 2, chi_square))
+        p_value = float(chdtrc(n_levels - 2, max(2 * (best - fit.log_likelihood), 0.0)))
     return LoadLife(
         distribution=distribution,
         reference_load_ratio=reference,
@@ -542,9 +541,7 @@ def fit_load_life(
         log_scale=fit.scale,
         covariance=to_median @ fit.covariance @ to_median.T,
         log_likelihood=fit.log_likelihood - float(logs[~suspended].sum()),
-        lack_of_fit_chi_square=chi_square,
         lack_of_fit_p_value=p_value,
-        lack_of_fit_degrees_of_freedom=n_levels - 2,
         load_ratio_low=float(load.min()),
         load_ratio_high=float(load.max()),
         n_failed=n_failed,

@@ -169,8 +169,7 @@ class RatioOfMeans:
 class OneWay:
     """One-way analysis of groups; every array has the shape of the input without its last axis.
 
-    ``f_statistic`` assumes one deviation for all groups; ``welch_f_statistic`` one for each
-    group, with ``welch_within`` denominator degrees of freedom.
+    ``f_statistic`` assumes one deviation for all groups.
     """
 
     f_statistic: Floats
@@ -178,10 +177,6 @@ class OneWay:
     within: Integers
     p_value: Floats
     critical: Floats
-    pooled_standard_deviation: Floats
-    welch_f_statistic: Floats
-    welch_within: Floats
-    welch_p_value: Floats
     significance: float
     reason: NDArray[int8]
 
@@ -218,10 +213,9 @@ class ExposureTrend:
         For one break about the line.
     degrees_of_freedom : int
         Of that deviation.
-    lack_of_fit_f, lack_of_fit_p_value : float
+    lack_of_fit_p_value : float
         Test whether the means of the exposures lie on a line, compared with the deviation
         of breaks of one exposure; NaN if no exposure is repeated or there are only two.
-    lack_of_fit_degrees_of_freedom : tuple of (int, int)
     exposure_low, exposure_high : float
         Range of exposures. [year]
     n : int
@@ -233,9 +227,7 @@ class ExposureTrend:
     covariance: Floats
     residual_standard_deviation: float
     degrees_of_freedom: int
-    lack_of_fit_f: float
     lack_of_fit_p_value: float
-    lack_of_fit_degrees_of_freedom: tuple[int, int]
     exposure_low: float
     exposure_high: float
     n: int
@@ -312,10 +304,9 @@ class LoadLife:
         Of log_life, exponent and log_scale, from the observed information.
     log_likelihood : float
         For the cycles themselves.
-    lack_of_fit_chi_square, lack_of_fit_p_value : float
-        Twice the gain in log likelihood when each level has its own median;
+    lack_of_fit_p_value : float
+        Of the gain in log likelihood when each level has its own median;
         NaN if there are no more than two levels.
-    lack_of_fit_degrees_of_freedom : int
     load_ratio_low, load_ratio_high : float
         Range of peak loads tested, including run-outs. [1]
     """
@@ -327,9 +318,7 @@ class LoadLife:
     log_scale: float
     covariance: Floats
     log_likelihood: float
-    lack_of_fit_chi_square: float
     lack_of_fit_p_value: float
-    lack_of_fit_degrees_of_freedom: int
     load_ratio_low: float
     load_ratio_high: float
     n_failed: int
@@ -356,8 +345,6 @@ class SnapLevels:
         Highest level with no failure at or below it; NaN if there is none. [1]
     threshold_high : float
         Lowest level with a failure; NaN if nothing failed. [1]
-    n_never_slack : int
-        Number of tests left out, since their line stays taut.
     confidence : float
     notes : tuple of str
     """
@@ -371,6 +358,5 @@ class SnapLevels:
     failed_share_high: Floats
     threshold_low: float
     threshold_high: float
-    n_never_slack: int
     confidence: float
     notes: tuple[str, ...] = ()

@@ -54,10 +54,6 @@ class ReducedSurfaces:
     criterion, full_criterion : ndarray, shape (n_responses,)
         For the subset and for the full surface; infinite where there are too many terms for the
         correction. [1]
-    n_within_two : ndarray of int, shape (n_responses,)
-        Subsets that are not clearly worse: within 2 of the best. [1]
-    hierarchical : bool
-        Whether a square or an interaction keeps its linear terms.
     notes : tuple of Note
         What a reader of the numbers needs to know.
     """
@@ -72,12 +68,10 @@ class ReducedSurfaces:
     degrees_of_freedom: Integers
     criterion: Floats
     full_criterion: Floats
-    n_within_two: Integers
-    hierarchical: bool
     notes: tuple[Note, ...]
 
 
-def reduce_terms(surfaces: ResponseSurfaces, *, hierarchical: bool = True) -> ReducedSurfaces:
+def reduce_terms(surfaces: ResponseSurfaces) -> ReducedSurfaces:
     """Best subset of the terms of every surface by the corrected Akaike criterion.
 
     Notes
@@ -107,7 +101,7 @@ def reduce_terms(surfaces: ResponseSurfaces, *, hierarchical: bool = True) -> Re
             hint="Likelihoods of surfaces with other terms do not compare under REML.",
         )
     n_responses, n_terms = surfaces.coefficient.shape
-    subsets = _subsets(surfaces.exponents, hierarchical=hierarchical)
+    subsets = _subsets(surfaces.exponents)
     responses = surfaces.fitted + surfaces.residual
     out = {
         name: np.full((n_responses, n_terms), np.nan)
@@ -115,7 +109,7 @@ def reduce_terms(surfaces: ResponseSurfaces, *, hierarchical: bool = True) -> Re
     }
     is_kept = np.zeros((n_responses, n_terms), dtype=bool)
     sigma, best, full = (np.full(n_responses, np.nan) for _ in range(3))
-    freedom, close = np.zeros(n_responses, dtype=np.intp), np.zeros(n_responses, dtype=np.intp)
+    freedom = np.zeros(n_responses, dtype=np.intp)
     for index, used in enumerate(surfaces.is_used):
         rows = np.flatnonzero((surfaces.pattern == index) & np.isin(surfaces.reason, (0, 3)))
         if rows.size == 0:
@@ -132,7 +126,6 @@ def reduce_terms(surfaces: ResponseSurfaces, *, hierarchical: bool = True) -> Re
         choice = np.argmin(criterion, axis=0)
         best[rows] = criterion[choice, np.arange(rows.size)]
         full[rows] = criterion[-1]
-        close[rows] = np.sum(criterion <= best[rows] + 2, axis=0)
         for row, chosen in zip(rows.tolist(), choice.tolist(), strict=True):
             places = [0, *subsets[chosen]]
             found = regress(responses[row, used], np.hstack([terms[:, places], baseline[:, 1:]]))
@@ -152,32 +145,30 @@ def reduce_terms(surfaces: ResponseSurfaces, *, hierarchical: bool = True) -> Re
         degrees_of_freedom=freedom,
         criterion=best,
         full_criterion=full,
-        n_within_two=close,
-        hierarchical=hierarchical,
         notes=(note("terms-chosen-by-runs"),),
     )
 
 
-def _subsets(exponents: Integers, *, hierarchical: bool) -> list[Integers]:
-    """Indices of the terms other than the mean, fewest first, all of them last."""
+def _subsets(exponents: Integers) -> list[Integers]:
+    """Indices of the terms other than the mean, fewest first, all of them last.
+
+    A square or an interaction keeps its linear terms.
+    """
     order = exponents.sum(axis=1)
     linear = np.flatnonzero(order == 1)
     second = np.flatnonzero(order == 2)
-    if hierarchical:
-        families = []
-        for count in range(linear.size + 1):
-            for chosen in combinations(linear, count):
-                moved = exponents[list(chosen)].sum(axis=0) if chosen else 0 * exponents[0]
-                allowed = second[((exponents[second] > 0) <= moved).all(axis=1)]
-                families.append((chosen, tuple(allowed)))
-    else:
-        families = [((), (*linear, *second))]
+    families = []
+    for count in range(linear.size + 1):
+        for chosen in combinations(linear, count):
+            moved = exponents[list(chosen)].sum(axis=0) if chosen else 0 * exponents[0]
+            allowed = second[((exponents[second] > 0) <= moved).all(axis=1)]
+            families.append((chosen, tuple(allowed)))
     if sum(2 ** len(free) for _, free in families) > _MOST:
         raise SettingsError(
             "there are too many subsets of terms to look at",
             found=f"{len(order)} terms",
             needed=f"at most {_MOST} subsets",
-            hint="Keep the hierarchy, or fit fewer factors.",
+            hint="Fit fewer factors.",
         )
     found = [
         np.array(sorted((*chosen, *some)), dtype=np.intp)

@@ -62,8 +62,9 @@ def test_a_mean_of_nothing_is_refused():
 def test_a_group_of_one_counts_between_and_not_within():
     analysis = one_way([1.0, 2.0, 3.0], [np.nan, 0.5, 0.5], [1, 4, 4])
     assert analysis.within == 6
-    assert analysis.pooled_standard_deviation == pytest.approx(0.5)
-    assert np.isnan(analysis.welch_f_statistic)
+    # means 1, 2 and 3 of 1, 4 and 4 values about 21/9, within-group variance 1/4
+    between = ((1 - 21 / 9) ** 2 + 4 * (2 - 21 / 9) ** 2 + 4 * (3 - 21 / 9) ** 2) / 2
+    assert analysis.f_statistic == pytest.approx(between / 0.25)
 
 
 def test_groups_without_scatter_have_a_reason_and_no_f():
