@@ -28,6 +28,7 @@ from reduction.experiments.fit_results import (
     LackOfFit,
     ResponseSurfaces,
 )
+from reduction.experiments.run_sheet import SIGNIFICANCE
 from reduction.experiments.screening import ScreeningEffects, alias_matrix, half_normal_coordinates
 from reduction.experiments.stationary_point import canonical_slopes, ridge_path
 from reduction.experiments.stiffness_forms import FormQuality, StiffnessForm
@@ -35,7 +36,7 @@ from reduction.experiments.surface_points import evaluate_surfaces, plan_points
 from reduction.experiments.term_selection import ReducedSurfaces
 from reduction.quantities.names import RESPONSES, SURFACE_NAMES, SURFACE_SCHEMA
 from reduction.quantities.units import combined_unit
-from reduction.record.contributions import combined_standard_uncertainty
+from reduction.record.contributions import CONFIDENCE, combined_standard_uncertainty
 from reduction.record.errors import ArchiveError
 from reduction.record.measurement import Floats, Integers, Origin
 from reduction.record.notes import Note
@@ -61,7 +62,7 @@ def effect_values(effects: ScreeningEffects, response_names: Sequence[str]) -> V
     values: Values = {
         "effect_error_from": np.array(effects.error_from),
         "effect_degrees_of_freedom": np.array(effects.degrees_of_freedom),
-        "effect_significance": np.array(effects.significance),
+        "effect_significance": np.array(SIGNIFICANCE),
     }
     untested = np.full(effects.dummy_effect.shape[-1], np.nan)
     every = np.concatenate([effects.effect, effects.dummy_effect], axis=-1)
@@ -209,8 +210,6 @@ def _stiffness_values(forms: Sequence[StiffnessForm], quality: FormQuality) -> V
     return values | {"stiffness_equation": texts([*(form.equation for form in forms), *nothing])}
 
 
-_CONFIDENCE = 0.95
-
 _RADIUS = np.linspace(0.0, 1.0, 11)
 
 
@@ -234,12 +233,10 @@ def point_values(
         Values by names of `reduction.quantities.names`.
     """
     points = plan_points(plan)
-    found = evaluate_surfaces(
-        surfaces, points.coded, units="coded", confidence=_CONFIDENCE, outside="flag", plan=plan
-    )
+    found = evaluate_surfaces(surfaces, points.coded, units="coded", outside="flag", plan=plan)
     both = with_shared_at_points(surfaces, found, *_rows(surfaces, shared))
     values: Values = {
-        "interval_confidence": np.array(found.confidence),
+        "interval_confidence": np.array(CONFIDENCE),
         "point": np.arange(1, len(points.name) + 1),
         "point_name": texts(points.name),
         "point_kind": texts(points.kind),
@@ -334,7 +331,6 @@ def ridge_values(surfaces: ResponseSurfaces, shared: SharedSurfaces | None = Non
         surfaces,
         np.nan_to_num(coded).reshape(n_responses * n_points, -1),
         units="coded",
-        confidence=_CONFIDENCE,
         outside="flag",
     )
     both = with_shared_at_points(surfaces, found, *_rows(surfaces, shared))

@@ -25,6 +25,7 @@ from reduction.experiments.fit_results import (
 )
 from reduction.experiments.response_surfaces import fit_surfaces
 from reduction.experiments.run_sheet import (
+    SIGNIFICANCE,
     Caution,
     ExpectedPrecision,
     RunSheet,
@@ -48,6 +49,7 @@ from reduction.experiments.surface_warnings import (
     stray_runs,
 )
 from reduction.quantities.units import UnitSystem, combined_unit, display_unit
+from reduction.record.contributions import CONFIDENCE
 from reduction.record.errors import DataError, FitError, SettingsError
 from reduction.uncertainty.surface_errors import surfaces_between_runs
 
@@ -224,7 +226,7 @@ def _show_precision(
         )
         return
     output.say(
-        f"expected with sigma {sigma}: half widths of {100 * precision.confidence:g} % intervals, "
+        f"expected with sigma {sigma}: half widths of {100 * CONFIDENCE:g} % intervals, "
         f"{precision.degrees_of_freedom} degrees of freedom [{unit}]"
     )
     table = table_of("term", "half width")
@@ -284,7 +286,7 @@ def _document(
         expected |= {"smallest_significant_effect": precision, "significance": 0.10}
     elif isinstance(precision, ExpectedPrecision) and expected is not None:
         expected |= {
-            "confidence": precision.confidence,
+            "confidence": CONFIDENCE,
             "degrees_of_freedom": precision.degrees_of_freedom,
             "terms": list(precision.terms),
             "term_half_width": plain(precision.term_half_width),
@@ -464,7 +466,7 @@ def _effects_document(effects: ScreeningEffects, runs: RunSeries) -> dict[str, A
         "fit": "effects",
         "error_from": effects.error_from,
         "degrees_of_freedom": effects.degrees_of_freedom,
-        "significance": effects.significance,
+        "significance": SIGNIFICANCE,
         "responses": documents,
         "aliases": {
             name: {
@@ -640,7 +642,7 @@ def _show_effects(
         output.show(table)
         of = "the dummies" if effects.error_from == "dummy" else "Lenth"
         output.say(
-            f"significant at {100 * (1 - effects.significance):g} %: above "
+            f"significant at {100 * (1 - SIGNIFICANCE):g} %: above "
             f"{short(scale * effects.minimum_significant_effect[index])}, all factors together "
             f"{short(scale * effects.simultaneous_minimum_effect[index])}; standard error by {of} "
             f"{short(scale * effects.effect_standard_error[index])} with "

@@ -36,6 +36,7 @@ from scipy.special import fdtrc, fdtri, stdtr
 from reduction.experiments.fit_results import LackOfFit, LeastSquares
 from reduction.experiments.response_matrix import block_contrasts, patterns_of, times
 from reduction.experiments.run_sheet import is_singular
+from reduction.record.contributions import CONFIDENCE
 from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import Bools, Floats, Integers
 
@@ -258,9 +259,7 @@ class _OverallF(NamedTuple):
     printed_critical: Floats
 
 
-def statistics_from_r2(
-    r2: ArrayLike, *, n_runs: ArrayLike, n_terms: int, level: float = 0.05
-) -> _OverallF:
+def statistics_from_r2(r2: ArrayLike, *, n_runs: ArrayLike, n_terms: int) -> _OverallF:
     r"""Overall F of a surface from its r2, and the statistic printed in CG-D-39-80.
 
     .. math::
@@ -276,8 +275,6 @@ def statistics_from_r2(
         Number of runs fitted. [1]
     n_terms : int
         Including the mean; at least two.
-    level : float
-        Level of the test. [1]
 
     Returns
     -------
@@ -288,7 +285,7 @@ def statistics_from_r2(
     Raises
     ------
     SettingsError
-        If there are fewer than two terms, or the level is not between 0 and 1.
+        If there are fewer than two terms.
 
     Notes
     -----
@@ -312,18 +309,14 @@ def statistics_from_r2(
     """
     if n_terms < 2:
         raise SettingsError("a surface of the mean alone has no F", needed="two or more terms")
-    if not 0 < level < 1:
-        raise SettingsError(
-            "the level of a test is a probability", found=f"{level:g}", needed="between 0 and 1"
-        )
     share = np.asarray(r2, dtype=np.float64)
     runs = np.asarray(n_runs, dtype=np.float64)
     above, below = n_terms - 1.0, _positive_or_nan(runs - n_terms)
     printed_below = _positive_or_nan(runs - n_terms - 1)
     # critical values are slow to compute, and there are few different numbers of runs
     different, which = np.unique(runs, return_inverse=True)
-    right = fdtri(above, _positive_or_nan(different - n_terms), 1 - level)
-    transposed = fdtri(_positive_or_nan(different - n_terms - 1), n_terms, 1 - level)
+    right = fdtri(above, _positive_or_nan(different - n_terms), CONFIDENCE)
+    transposed = fdtri(_positive_or_nan(different - n_terms - 1), n_terms, CONFIDENCE)
     none_left = np.where(share >= 1, np.inf, np.nan)
     odds = np.divide(share, 1 - share, out=none_left, where=share < 1)
     f = odds * below / above

@@ -37,13 +37,14 @@ from scipy.special import chdtrc, log_ndtr, ndtri, stdtrit
 
 from reduction.experiments.outcomes import LifeDistribution, LifeFit, LoadLife
 from reduction.record.arrays import as_positive
+from reduction.record.contributions import CONFIDENCE
 from reduction.record.errors import DataError, FitError
 from reduction.record.measurement import Bools, Floats, Integers
 
 _MOST_DOUBLINGS = 60
 
 
-def cutoff(confidence: float, *, n_failed: int, n_coefficients: int) -> float:
+def cutoff(*, n_failed: int, n_coefficients: int) -> float:
     r"""Drop of twice the log likelihood at the ends of an interval.
 
     Notes
@@ -58,19 +59,15 @@ def cutoff(confidence: float, *, n_failed: int, n_coefficients: int) -> float:
     --------
     Three failures, then many (chi square: 3.841):
 
-    >>> print(round(cutoff(0.95, n_failed=3, n_coefficients=1), 2))
+    >>> print(round(cutoff(n_failed=3, n_coefficients=1), 2))
     6.99
-    >>> print(round(cutoff(0.95, n_failed=100_000, n_coefficients=1), 3))
+    >>> print(round(cutoff(n_failed=100_000, n_coefficients=1), 3))
     3.842
     """
-    if not 0 < confidence < 1:
-        raise DataError(
-            "a confidence is not between 0 and 1", found=f"{confidence:g}", needed="0 to 1"
-        )
     free = n_failed - n_coefficients
     if free < 1:
         return float("nan")
-    quantile = float(stdtrit(free, (1 + confidence) / 2))
+    quantile = float(stdtrit(free, (1 + CONFIDENCE) / 2))
     return n_failed * log1p(quantile**2 / free)
 
 
@@ -281,9 +278,7 @@ def _as_log_lives(cycles: ArrayLike, is_suspended: ArrayLike) -> tuple[Floats, B
     return np.log(lives), suspended
 
 
-def _runout_bound(
-    cycles: ArrayLike, *, failed_share: float = 0.5, confidence: float = 0.95
-) -> float:
+def _runout_bound(cycles: ArrayLike, *, failed_share: float = 0.5) -> float:
     """Life that the specimens reach where none has failed: a lower bound without any law.
 
     Notes
@@ -299,7 +294,7 @@ def _runout_bound(
     """
     lives = np.sort(as_positive("cycles", cycles))[::-1]
     _scatter_quantile(failed_share, scatter="normal")  # refuses an invalid fraction
-    enough = int(np.ceil(np.log((1 - confidence) / 2) / np.log1p(-failed_share) - 1e-12))
+    enough = int(np.ceil(np.log((1 - CONFIDENCE) / 2) / np.log1p(-failed_share) - 1e-12))
     return float(lives[enough - 1]) if lives.size >= enough else float("nan")
 
 
@@ -309,7 +304,6 @@ def fit_life(
     *,
     distribution: LifeDistribution = "weibull",
     failed_share: float = 0.5,
-    confidence: float = 0.95,
 ) -> LifeFit:
     """Life of specimens that were tested under equal conditions, by maximum likelihood.
 
@@ -334,9 +328,9 @@ def fit_life(
     scatter = SCATTER_OF[distribution]
     quantile = _scatter_quantile(failed_share, scatter=scatter)
     failed = logs[~suspended]
-    unknown = LifeFit(distribution, failed_share, confidence, failed.size, int(suspended.sum()))
+    unknown = LifeFit(distribution, failed_share, failed.size, int(suspended.sum()))
     if failed.size == 0:
-        low = _runout_bound(cycles, failed_share=failed_share, confidence=confidence)
+        low = _runout_bound(cycles, failed_share=failed_share)
         return replace(unknown, low=low, high=inf, reason=5)
     if failed.size == 1:
         return replace(unknown, reason=6)
@@ -358,7 +352,7 @@ def fit_life(
         estimate=location + quantile * fit.scale,
         maximum=fit.log_likelihood,
         step=spread_of_life,
-        drop=cutoff(confidence, n_failed=failed.size, n_coefficients=1),
+        drop=cutoff(n_failed=failed.size, n_coefficients=1),
     )
     with np.errstate(over="ignore"):
         life, low, high = np.exp(centre + np.array([location + quantile * fit.scale, low, high]))
@@ -383,7 +377,6 @@ def ratio_of_lives(
     is_reference: ArrayLike,
     *,
     distribution: LifeDistribution = "lognormal",
-    confidence: float = 0.95,
 ) -> tuple[float, float, float]:
     """Ratio of the life of one group to that of a reference group, run-outs included.
 
@@ -418,7 +411,7 @@ def ratio_of_lives(
         estimate=estimate,
         maximum=fit.log_likelihood,
         step=float(np.sqrt(fit.covariance[1, 1])),
-        drop=cutoff(confidence, n_failed=int((~suspended).sum()), n_coefficients=2),
+        drop=cutoff(n_failed=int((~suspended).sum()), n_coefficients=2),
     )
     return exp(estimate), exp(low), exp(high)
 
@@ -554,7 +547,6 @@ def life_at_load(
     peak_load_ratio: ArrayLike,
     *,
     failed_share: float = 0.5,
-    confidence: float = 0.95,
 ) -> tuple[Floats, Floats, Floats, Bools]:
     """Life at a peak load, with its bounds.
 
@@ -579,7 +571,7 @@ def life_at_load(
     middle = row @ np.array([fit.log_life, fit.exponent, fit.log_scale])
     variance = np.einsum("...i,ij,...j->...", row, fit.covariance, row)
     free = fit.n_failed - 2
-    t = stdtrit(free, (1 + confidence) / 2) if free > 0 else np.nan
+    t = stdtrit(free, (1 + CONFIDENCE) / 2) if free > 0 else np.nan
     half = t * np.sqrt(variance)
     is_inside = (load >= fit.load_ratio_low) & (load <= fit.load_ratio_high)
     with np.errstate(over="ignore"):
@@ -593,7 +585,6 @@ def ratio_to_published_life(
     reference_mean: float,
     reference_standard_deviation: float,
     reference_n: int,
-    confidence: float = 0.95,
 ) -> tuple[float, float, float]:
     r"""Median life over that of a group with only mean, deviation and number printed.
 
@@ -622,10 +613,10 @@ def ratio_to_published_life(
             f"n {reference_n}",
             needed="mean and deviation above zero, n of 2 or more",
         )
-    fit = fit_life(cycles, is_suspended, distribution="lognormal", confidence=confidence)
+    fit = fit_life(cycles, is_suspended, distribution="lognormal")
     spread = log1p((reference_standard_deviation / reference_mean) ** 2)
     reference = log(reference_mean) - spread / 2
-    half = float(stdtrit(reference_n - 1, (1 + confidence) / 2)) * sqrt(spread / reference_n)
+    half = float(stdtrit(reference_n - 1, (1 + CONFIDENCE) / 2)) * sqrt(spread / reference_n)
     if not fit.life > 0:
         return float("nan"), float("nan"), float("nan")
     own = log(fit.life)

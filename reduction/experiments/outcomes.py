@@ -160,7 +160,6 @@ class RatioOfMeans:
     high: Floats
     standard_uncertainty: Floats
     degrees_of_freedom: Floats
-    confidence: float
     reason: NDArray[int8]
 
 
@@ -177,7 +176,6 @@ class OneWay:
     within: Integers
     p_value: Floats
     critical: Floats
-    significance: float
     reason: NDArray[int8]
 
 
@@ -188,7 +186,6 @@ class CensoredMean:
     ``low`` and ``high`` are ends of the interval of the mean; ``reason`` a key of `REASONS`.
     """
 
-    confidence: float
     n: int
     n_lower_bound: int
     mean: float = nan
@@ -272,7 +269,6 @@ class LifeFit:
 
     distribution: LifeDistribution
     failed_share: float
-    confidence: float
     n_failed: int
     n_suspended: int
     life: float = nan
@@ -345,7 +341,6 @@ class SnapLevels:
         Highest level with no failure at or below it; NaN if there is none. [1]
     threshold_high : float
         Lowest level with a failure; NaN if nothing failed. [1]
-    confidence : float
     notes : tuple of str
     """
 
@@ -358,5 +353,4 @@ class SnapLevels:
     failed_share_high: Floats
     threshold_low: float
     threshold_high: float
-    confidence: float
     notes: tuple[str, ...] = ()

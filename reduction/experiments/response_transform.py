@@ -35,6 +35,7 @@ from numpy.typing import ArrayLike
 
 from reduction.experiments.designs import engineering_from_coded
 from reduction.experiments.response_matrix import highest_of_each, patterns_of, times
+from reduction.record.contributions import CONFIDENCE
 from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import Bools, Floats
 
@@ -257,9 +258,7 @@ class _BoxCoxExponent(NamedTuple):
     high: Floats
 
 
-def box_cox_exponent(
-    matrix: ArrayLike, responses: ArrayLike, *, confidence: float = 0.95
-) -> _BoxCoxExponent:
+def box_cox_exponent(matrix: ArrayLike, responses: ArrayLike) -> _BoxCoxExponent:
     r"""Exponent of each response that minimises its residuals, by profile likelihood.
 
     .. math::
@@ -281,12 +280,6 @@ def box_cox_exponent(
     >>> print(abs(found.exponent.round(6)), (found.low < 0) & (found.high > 0))
     [0.] [ True]
     """
-    if not 0 < confidence < 1:
-        raise SettingsError(
-            "the confidence of an interval is a probability",
-            found=f"{confidence:g}",
-            needed="between 0 and 1",
-        )
     columns = np.asarray(matrix, dtype=np.float64)
     logarithm = transform(responses, 0.0)
     is_used, pattern = patterns_of(np.isfinite(logarithm))
@@ -300,7 +293,7 @@ def box_cox_exponent(
             continue
         part = logarithm[rows][:, used]
         scaled = np.exp(part - part.mean(axis=1, keepdims=True))
-        drop = float(scipy.special.chdtri(1, 1 - confidence)) / 2
+        drop = float(scipy.special.chdtri(1, 1 - CONFIDENCE)) / 2
         found[:, rows] = _profile(_likelihood(scaled, basis), rows.size, drop)
     return _BoxCoxExponent(*found)
 

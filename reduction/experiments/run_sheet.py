@@ -48,6 +48,7 @@ from reduction.experiments.designs import (
 )
 from reduction.experiments.response_matrix import times
 from reduction.record.arrays import as_finite, as_positive, as_same_shape
+from reduction.record.contributions import CONFIDENCE
 from reduction.record.errors import DataError, FitError, SettingsError
 from reduction.record.measurement import Bools, Floats, Integers, read_only_arrays
 
@@ -507,7 +508,12 @@ def levels_off_plan(
     )
 
 
-def smallest_effect(design: Design, *, sigma: ArrayLike, significance: float = 0.10) -> Floats:
+SIGNIFICANCE = 0.10
+
+"""Two-sided level at which an effect of a screening counts: the 90 % of CG-D-39-80."""
+
+
+def smallest_effect(design: Design, *, sigma: ArrayLike) -> Floats:
     r"""Smallest effect that the screening is expected to find significant.
 
     .. math:: E_{min} = t_{1 - \alpha/2;\, m}\, \frac{2 \sigma}{\sqrt{n}}
@@ -525,15 +531,9 @@ def smallest_effect(design: Design, *, sigma: ArrayLike, significance: float = 0
     >>> print(smallest_effect(plackett_burman(5), sigma=1.0).round(3))
     1.122
     """
-    if not 0 < significance < 1:
-        raise SettingsError(
-            "the level of significance is not a share",
-            found=f"{significance:g}",
-            needed="between 0 and 1",
-        )
     freedom = design.dummy.shape[1] or design.n_factors / 3
     error = as_positive("sigma", sigma) * 2 / np.sqrt(design.n_runs)
-    return np.asarray(scipy.special.stdtrit(freedom, 1 - significance / 2) * error)
+    return np.asarray(scipy.special.stdtrit(freedom, 1 - SIGNIFICANCE / 2) * error)
 
 
 _SINGULAR = 1e-9
@@ -718,8 +718,6 @@ class ExpectedPrecision:
         True where the variance factor exceeds that of every run.
     degrees_of_freedom : int
         Of the residual.
-    confidence : float
-        Of each interval alone. [1]
     condition_number : float
         Of the model matrix. [1]
     """
@@ -734,7 +732,6 @@ class ExpectedPrecision:
     prediction_half_width: Floats
     is_beyond_design: Bools
     degrees_of_freedom: int
-    confidence: float
     condition_number: float
 
 
@@ -753,7 +750,6 @@ def expected_precision(
     coded: ArrayLike,
     *,
     sigma: ArrayLike,
-    confidence: float = 0.95,
     factor_names: Sequence[str] | None = None,
 ) -> ExpectedPrecision:
     """Half width of the interval of each term and of the response, for a stated scatter.
@@ -784,10 +780,6 @@ def expected_precision(
             needed="one row a run, one column a factor",
         )
     scatter = as_positive("sigma", sigma)
-    if not 0 < confidence < 1:
-        raise SettingsError(
-            "the confidence is not a share", found=f"{confidence:g}", needed="between 0 and 1"
-        )
     n_runs, n_factors = runs.shape
     exponents = quadratic_exponents(n_factors)
     names = [f"X{i + 1}" for i in range(n_factors)] if factor_names is None else factor_names
@@ -806,7 +798,7 @@ def expected_precision(
     of_term = np.diagonal(factor)
     of_point = variance_factor(model_matrix(points, exponents), factor)
     of_run = variance_factor(matrix, factor)
-    reach = scipy.special.stdtrit(freedom, (1 + confidence) / 2) * scatter[..., None]
+    reach = scipy.special.stdtrit(freedom, (1 + CONFIDENCE) / 2) * scatter[..., None]
     return ExpectedPrecision(
         terms=terms,
         term_variance_factor=of_term,
@@ -818,6 +810,5 @@ def expected_precision(
         prediction_half_width=reach * np.sqrt(1 + of_point),
         is_beyond_design=of_point > of_run.max() * (1 + 1e-9),
         degrees_of_freedom=freedom,
-        confidence=confidence,
         condition_number=float(np.linalg.cond(matrix)),
     )

@@ -33,6 +33,7 @@ from scipy.special import ndtri, stdtrit
 
 from reduction.experiments.designs import Design
 from reduction.experiments.least_squares_fit import two_sided_p
+from reduction.experiments.run_sheet import SIGNIFICANCE
 from reduction.record.arrays import as_finite
 from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import Bools, Floats, Integers, read_only_arrays
@@ -206,7 +207,6 @@ class ScreeningEffects:
     minimum_significant_effect: Floats
     simultaneous_minimum_effect: Floats
     is_significant: Bools
-    significance: float
     reason: np.ndarray[tuple[int, ...], np.dtype[np.str_]]
 
 
@@ -256,7 +256,6 @@ def screening_effects(
     response: ArrayLike,
     *,
     names: Sequence[str] | None = None,
-    significance: float = 0.10,
 ) -> ScreeningEffects:
     """Effects of a two-level screening, their error, and the smallest significant one.
 
@@ -269,8 +268,6 @@ def screening_effects(
         [unit of the response]
     names : sequence of str, optional
         Names of the factors; None: X1, X2, ..
-    significance : float
-        Two-sided level; 0.10 is the 90 % of [3]_. [1]
 
     Returns
     -------
@@ -281,7 +278,7 @@ def screening_effects(
     Raises
     ------
     SettingsError
-        If the names do not fit, or the level is not a fraction.
+        If the names do not fit.
     DataError
         If the design is not of two levels, balanced and orthogonal, or the response
         does not fit its runs.
@@ -331,12 +328,6 @@ def screening_effects(
             found=", ".join(labels),
             needed=f"{design.n_factors} different names",
         )
-    if not 0 < significance < 1:
-        raise SettingsError(
-            "the level of significance is not a share",
-            found=f"{significance:g}",
-            needed="between 0 and 1",
-        )
     is_whole = np.asarray(np.isfinite(values).all(axis=-1))
     usable = np.where(is_whole[..., None], values, np.nan)
     effects = usable @ columns * (2 / n_runs)
@@ -350,7 +341,7 @@ def screening_effects(
         error = np.full(is_whole.shape, np.nan)
         error[is_whole] = _pseudo_standard_error(effects[is_whole])
     reach, together = stdtrit(
-        freedom, 1 - np.array([significance, 1 - (1 - significance) ** (1 / len(labels))]) / 2
+        freedom, 1 - np.array([SIGNIFICANCE, 1 - (1 - SIGNIFICANCE) ** (1 / len(labels))]) / 2
     )
     with np.errstate(divide="ignore", invalid="ignore"):
         t_value = effect / error[..., None]
@@ -369,7 +360,6 @@ def screening_effects(
         minimum_significant_effect=smallest,
         simultaneous_minimum_effect=together * error,
         is_significant=np.abs(effect) > smallest[..., None],
-        significance=significance,
         reason=np.select(
             [~is_whole, stands_still],
             [

@@ -34,6 +34,7 @@ from reduction.experiments.designs import model_matrix, quadratic_exponents
 from reduction.experiments.fit_results import FIT_REASONS, LeastSquares
 from reduction.experiments.least_squares_fit import fit_least_squares, two_sided_p
 from reduction.record.arrays import as_same_shape
+from reduction.record.contributions import CONFIDENCE
 from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import Floats, read_only_arrays
 
@@ -270,18 +271,13 @@ def _form(
     spring_constant: ArrayLike,
     mean: Floats,
     strength: float,
-    confidence: float,
 ) -> StiffnessForm:
-    if not 0 < confidence < 1:
-        raise SettingsError(
-            "the confidence is not a share", found=f"{confidence:g}", needed="between 0 and 1"
-        )
     relative, shape = _relative_stiffness(spring_constant, strength, matrix.shape[0])
     fit = fit_least_squares(matrix, relative)
     covariance = fit.covariance_factor[fit.pattern] * fit.sigma[:, None, None] ** 2
     uncertainty = np.sqrt(np.diagonal(covariance, axis1=1, axis2=2))
     freedom = np.where(fit.degrees_of_freedom > 0, fit.degrees_of_freedom, np.nan)[:, None]
-    reach = stdtrit(freedom, (1 + confidence) / 2) * uncertainty
+    reach = stdtrit(freedom, (1 + CONFIDENCE) / 2) * uncertainty
     with np.errstate(divide="ignore", invalid="ignore"):
         p_value = two_sided_p(fit.coefficient / uncertainty, freedom)
     n = len(names)
@@ -304,7 +300,7 @@ def _form(
             (float(known.min()), float(known.max())) if known.size else (float("nan"), float("nan"))
         ),
         rated_break_strength=strength,
-        confidence=confidence,
+        confidence=CONFIDENCE,
     )
 
 
@@ -316,7 +312,6 @@ def fit_del_vecchio_stiffness(
     frequency: ArrayLike,
     rated_break_strength: float | None,
     load_amplitude: LoadAmplitude,
-    confidence: float = 0.95,
 ) -> StiffnessForm:
     r"""Coefficients of the form of Del Vecchio.
 
@@ -355,7 +350,6 @@ def fit_del_vecchio_stiffness(
         spring_constant,
         mean,
         strength,
-        confidence,
     )
 
 
@@ -364,7 +358,6 @@ def fit_mean_load_stiffness(
     *,
     mean_tension: ArrayLike,
     rated_break_strength: float | None,
-    confidence: float = 0.95,
 ) -> StiffnessForm:
     r"""Coefficients of the form used by MoorDyn and MoorPy.
 
@@ -399,7 +392,6 @@ def fit_mean_load_stiffness(
         spring_constant,
         mean,
         strength,
-        confidence,
     )
 
 

@@ -32,6 +32,7 @@ from reduction.experiments.outcomes import (
     reason_codes,
 )
 from reduction.record.arrays import as_finite, as_positive
+from reduction.record.contributions import CONFIDENCE
 from reduction.record.errors import DataError, FitError
 from reduction.record.measurement import Bools, Floats, Integers
 
@@ -44,7 +45,6 @@ def ratio_of_means(
     reference_mean: ArrayLike,
     reference_standard_deviation: ArrayLike,
     reference_n: ArrayLike,
-    confidence: float = 0.95,
 ) -> RatioOfMeans:
     r"""Change of a mean against a reference mean, with its interval.
 
@@ -60,8 +60,6 @@ def ratio_of_means(
         Of the reference, in the same unit. [N, 1]
     reference_n : array_like of int
         Number of values of the reference. [1]
-    confidence : float
-        Of the interval, two-sided. [1]
 
     Returns
     -------
@@ -110,7 +108,7 @@ def ratio_of_means(
         v0 = np.where(has_both, s0**2 / n0, np.nan)
         variance = v1 + ratio**2 * v0
         freedom = variance**2 / (v1**2 / (n1 - 1) + ratio**4 * v0**2 / (n0 - 1))
-        t = stdtrit(freedom, (1 + confidence) / 2)
+        t = stdtrit(freedom, (1 + CONFIDENCE) / 2)
         # roots of the quadratic in rho; the leading term is positive for a closed interval
         lead = m0**2 - t**2 * v0
         root = t * np.sqrt(v0 * m1**2 + v1 * m0**2 - t**2 * v0 * v1)
@@ -123,7 +121,6 @@ def ratio_of_means(
         high=high,
         standard_uncertainty=np.sqrt(variance) / m0,
         degrees_of_freedom=freedom,
-        confidence=confidence,
         reason=reason_codes(
             ratio.shape,
             [
@@ -135,9 +132,7 @@ def ratio_of_means(
     )
 
 
-def one_way(
-    mean: ArrayLike, standard_deviation: ArrayLike, n: ArrayLike, *, significance: float = 0.05
-) -> OneWay:
+def one_way(mean: ArrayLike, standard_deviation: ArrayLike, n: ArrayLike) -> OneWay:
     r"""One-way F of groups from their means, deviations and numbers.
 
     .. math:: F = \frac{\sum n_i (m_i - m)^2 / (k - 1)}{\sum (n_i - 1) s_i^2 / (N - k)}
@@ -148,8 +143,6 @@ def one_way(
         In one unit; the deviation of a group of one is not used. [N, 1]
     n : array_like of int, shape (..., n_groups)
         Number of values of each group. [1]
-    significance : float
-        For the critical value. [1]
 
     Returns
     -------
@@ -201,8 +194,7 @@ def one_way(
         between=np.full(within.shape, k - 1, dtype=np.intp),
         within=within,
         p_value=np.asarray(fdtrc(k - 1, within, statistic), dtype=np.float64),
-        critical=np.asarray(fdtri(k - 1, within, 1 - significance), dtype=np.float64),
-        significance=significance,
+        critical=np.asarray(fdtri(k - 1, within, CONFIDENCE), dtype=np.float64),
         reason=reason_codes(within.shape, [(~(pooled > 0), 4)]),
     )
 
@@ -317,8 +309,6 @@ def fit_exposure_trend(
 def strength_after(
     trend: ExposureTrend,
     exposure: ArrayLike,
-    *,
-    confidence: float = 0.95,
 ) -> tuple[Floats, Floats, Floats, Bools]:
     """Strength on the line with its interval.
 
@@ -337,14 +327,12 @@ def strength_after(
         + 2 * years * trend.covariance[0, 1]
         + years**2 * trend.covariance[1, 1]
     )
-    half = stdtrit(trend.degrees_of_freedom, (1 + confidence) / 2) * np.sqrt(variance)
+    half = stdtrit(trend.degrees_of_freedom, (1 + CONFIDENCE) / 2) * np.sqrt(variance)
     is_inside = (years >= trend.exposure_low) & (years <= trend.exposure_high)
     return strength, strength - half, strength + half, np.asarray(is_inside)
 
 
-def share_lost_per_year(
-    trend: ExposureTrend, *, confidence: float = 0.95
-) -> tuple[float, float, float]:
+def share_lost_per_year(trend: ExposureTrend) -> tuple[float, float, float]:
     """Fraction of the new strength that the line loses in a year, with Fieller's interval.
 
     Examples
@@ -356,7 +344,7 @@ def share_lost_per_year(
     """
     if trend.intercept <= 0:
         raise FitError("the line has no strength when new", found=f"{trend.intercept:g}")
-    t = float(stdtrit(trend.degrees_of_freedom, (1 + confidence) / 2))
+    t = float(stdtrit(trend.degrees_of_freedom, (1 + CONFIDENCE) / 2))
     (v_new, v_both), (_, v_slope) = trend.covariance
     lead = trend.intercept**2 - t**2 * v_new
     middle = -(trend.slope * trend.intercept - t**2 * v_both)
@@ -438,9 +426,7 @@ def group_statistics(
         )
 
 
-def censored_mean(
-    value: ArrayLike, is_lower_bound: ArrayLike, *, confidence: float = 0.95
-) -> CensoredMean:
+def censored_mean(value: ArrayLike, is_lower_bound: ArrayLike) -> CensoredMean:
     r"""Mean strength where a break in the splice counts as a lower bound.
 
     Notes
@@ -464,7 +450,7 @@ def censored_mean(
         )  # fmt: skip
     n_own = int((~bound).sum())
     own = values[~bound]
-    unknown = CensoredMean(confidence=confidence, n=n_own, n_lower_bound=int(bound.sum()))
+    unknown = CensoredMean(n=n_own, n_lower_bound=int(bound.sum()))
     if n_own < 2 or not np.ptp(own) > 0:
         return replace(unknown, reason=4 if n_own > 1 else 1)
     centre, ones = own.mean(), np.ones((values.size, 1))
@@ -478,7 +464,7 @@ def censored_mean(
         estimate=estimate,
         maximum=fit.log_likelihood,
         step=float(np.sqrt(fit.covariance[0, 0])),
-        drop=cutoff(confidence, n_failed=n_own, n_coefficients=1),
+        drop=cutoff(n_failed=n_own, n_coefficients=1),
     )
     return replace(
         unknown,
@@ -512,8 +498,6 @@ def summarise_snap_loading(
     minimum_load_ratio: ArrayLike,
     cycles: ArrayLike,
     is_suspended: ArrayLike,
-    *,
-    confidence: float = 0.95,
 ) -> SnapLevels:
     """Effect of each level of peak load on lines that go slack, and onset of failures.
 
@@ -539,10 +523,6 @@ def summarise_snap_loading(
             found=f"shapes {load.shape}, {least.shape}, {lives.shape}, {stopped.shape}",
             needed="equal lengths",
         )
-    if not 0 < confidence < 1:
-        raise DataError(
-            "a confidence is not between 0 and 1", found=f"{confidence:g}", needed="0 to 1"
-        )
     slack = least <= 0.0
     if not slack.any():
         raise DataError(
@@ -564,7 +544,7 @@ def summarise_snap_loading(
     mean_load = np.bincount(level, weights=load) / np.bincount(level)
     with np.errstate(invalid="ignore", divide="ignore"):
         mean_cycles = np.bincount(level[~stopped], lives[~stopped], n_levels) / failed
-        share = 1 - (1 - confidence) ** (1 / suspended)
+        share = 1 - (1 - CONFIDENCE) ** (1 / suspended)
     low, high, contradiction = _threshold(mean_load, failed, suspended)
     return SnapLevels(
         peak_load_ratio=mean_load,
@@ -576,6 +556,5 @@ def summarise_snap_loading(
         failed_share_high=np.where(failed == 0, share, np.nan),
         threshold_low=low,
         threshold_high=high,
-        confidence=confidence,
         notes=notes + contradiction,
     )

@@ -37,7 +37,8 @@ from reduction.experiments.response_matrix import times
 from reduction.experiments.response_transform import back_transform, retransformed_mean
 from reduction.experiments.run_sheet import ON_PLAN, variance_factor
 from reduction.record.arrays import as_finite
-from reduction.record.errors import DataError, SettingsError
+from reduction.record.contributions import CONFIDENCE
+from reduction.record.errors import DataError
 from reduction.record.measurement import Bools, Floats, read_only_arrays
 
 ABOVE_LEVERAGE = 1 + 1e-9
@@ -251,7 +252,6 @@ class SurfaceValues:
     is_inside: Bools
     above_leverage: Bools
     degrees_of_freedom: Floats
-    confidence: float
     notes: tuple[str, ...] = ()
 
 
@@ -260,7 +260,6 @@ def evaluate_surfaces(
     points: ArrayLike,
     *,
     units: Literal["engineering", "coded"] = "engineering",
-    confidence: float = 0.95,
     outside: Literal["refuse", "flag"] = "refuse",
     plan: ArrayLike | None = None,
 ) -> SurfaceValues:
@@ -274,8 +273,6 @@ def evaluate_surfaces(
         Points at which to evaluate. [SI unit of each factor, or 1 where coded]
     units : {'engineering', 'coded'}
         Units of the points.
-    confidence : float
-        Confidence of each interval. [1]
     outside : {'refuse', 'flag'}
         Treatment of a point beyond the levels of the plan.
     plan : array_like, shape (n_runs, n_factors), optional
@@ -288,8 +285,6 @@ def evaluate_surfaces(
 
     Raises
     ------
-    SettingsError
-        If the confidence is not between 0 and 1.
     DataError
         If a point is not finite, has other factors, or is outside and is to be refused.
 
@@ -313,12 +308,6 @@ def evaluate_surfaces(
     >>> print(at.value, at.variance_factor.round(3), at.confidence_interval.round(2))
     [[3.5]] [[0.5]] [[[1.91 5.09]]]
     """
-    if not 0 < confidence < 1:
-        raise SettingsError(
-            "the confidence of an interval is a probability",
-            found=f"{confidence:g}",
-            needed="between 0 and 1",
-        )
     asked = as_finite("points", points)
     if asked.ndim != 2 or asked.shape[1] != surfaces.coded.shape[1]:
         raise DataError(
@@ -348,9 +337,9 @@ def evaluate_surfaces(
         between = surfaces.blocks.standard_deviation[:, None]
     deviation = sigma * np.sqrt(factor)
     of_run = np.sqrt(sigma**2 + between**2 + deviation**2)
-    student = np.asarray(scipy.special.stdtrit(freedom, (1 + confidence) / 2))[:, None]
+    student = np.asarray(scipy.special.stdtrit(freedom, (1 + CONFIDENCE) / 2))[:, None]
     n_terms = len(surfaces.term_names)
-    scheffe = np.sqrt(n_terms * np.asarray(scipy.special.fdtri(n_terms, freedom, confidence)))[
+    scheffe = np.sqrt(n_terms * np.asarray(scipy.special.fdtri(n_terms, freedom, CONFIDENCE)))[
         :, None
     ]
 
@@ -382,7 +371,6 @@ def evaluate_surfaces(
         is_inside=is_inside,
         above_leverage=is_inside & (factor > ABOVE_LEVERAGE * greatest[:, None]),
         degrees_of_freedom=freedom,
-        confidence=confidence,
         notes=_notes(surfaces),
     )
 

@@ -32,10 +32,9 @@ from reduction.lines.line_levels import INTERPOLATED
 from reduction.lines.line_lookup import interval_note
 from reduction.lines.line_search import DIAMETER_TOLERANCE
 from reduction.lines.lookup_product import DesignValues, LineSource
+from reduction.record.contributions import CONFIDENCE
 from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import Floats, read_only_arrays
-
-CONFIDENCE = 0.95
 
 FEWEST_SPECIMENS = 3
 """With two, the one-sided factor of 95 % is 26 and the two-sided one 37: useless limits."""

@@ -212,6 +212,7 @@ class LineSpread:
 
 
 CONFIDENCE = 0.95
+"""Of every interval. [1]"""
 
 _FEWEST, _MANY = 1.0, 1e9
 """Degrees of freedom below which none are counted, and above which Student's t is normal."""
@@ -310,15 +311,13 @@ def effective_degrees_of_freedom(
     return np.asarray(np.where(np.isnan(part), np.nan, effective))
 
 
-def coverage_factor(degrees_of_freedom: ArrayLike, *, confidence: float = CONFIDENCE) -> Floats:
+def coverage_factor(degrees_of_freedom: ArrayLike) -> Floats:
     """Coverage factor of the expanded uncertainty.
 
     Parameters
     ----------
     degrees_of_freedom : array_like, shape (...)
         Effective degrees of freedom; below 1 counts as 1. [1]
-    confidence : float
-        Confidence level of the interval. [1]
 
     Returns
     -------
@@ -343,7 +342,7 @@ def coverage_factor(degrees_of_freedom: ArrayLike, *, confidence: float = CONFID
     """
     freedom = np.asarray(degrees_of_freedom, dtype=np.float64)
     bounded = np.clip(freedom, _FEWEST, _MANY)
-    return np.asarray(scipy.special.stdtrit(bounded, (1 + confidence) / 2))
+    return np.asarray(scipy.special.stdtrit(bounded, (1 + CONFIDENCE) / 2))
 
 
 def merged(parts: Sequence[Contributions]) -> Contributions:

@@ -34,7 +34,7 @@ from reduction.experiments.surface_points import (
     greatest_leverage,
 )
 from reduction.quantities.names import QUANTITIES, RESPONSES, SCALES
-from reduction.record.contributions import coverage_factor, effective_degrees_of_freedom
+from reduction.record.contributions import CONFIDENCE, coverage_factor, effective_degrees_of_freedom
 from reduction.record.measurement import Bools, Floats, Integers
 from reduction.record.notes import urgency
 from reduction.report.answer_tables import AnswerBudget
@@ -466,8 +466,6 @@ def _thin_region(x: Floats, y: Floats, ratio: Floats) -> Trace:
         "fillcolor": faded("#555555", 0.38), "line": {"color": _INK, "width": 1.5, "dash": "dash"},
     }  # fmt: skip
 
-
-CONFIDENCE = 0.95
 
 _CHECK_GREY = "#8C8C8C"
 
@@ -931,7 +929,7 @@ def answer_table(view: ExperimentView, surfaces: ResponseSurfaces) -> PageTable 
             ],
         )
         .cells("at the centre", [shown_ for shown_, _ in cells])
-        .cells(f"{100 * middle.confidence:g} % interval", [ends for _, ends in cells])
+        .cells(f"{100 * CONFIDENCE:g} % interval", [ends for _, ends in cells])
         .cells("minimum", [number(float(least[k]), unit) for k, _, unit in kept])
         .cells("maximum", [number(float(greatest[k]), unit) for k, _, unit in kept])
         .table(

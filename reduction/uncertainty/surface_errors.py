@@ -42,6 +42,7 @@ from reduction.experiments.surface_discrepancy import discrepancy_of
 from reduction.experiments.surface_points import SurfaceValues, evaluate_surfaces
 from reduction.quantities.names import response_of_surface
 from reduction.record.contributions import (
+    CONFIDENCE,
     combined_standard_uncertainty,
     coverage_factor,
     effective_degrees_of_freedom,
@@ -223,11 +224,11 @@ def with_shared_at_points(
         effective = effective_degrees_of_freedom(
             random, freedom, contribution=rows, of_contribution=of_contribution
         )
-        factor = coverage_factor(effective, confidence=values.confidence)
+        factor = coverage_factor(effective)
         if is_everywhere:
             n_terms = len(surfaces.term_names)
             bounded = np.minimum(effective, _MANY)
-            factor = np.sqrt(n_terms * fdtri(n_terms, bounded, values.confidence))
+            factor = np.sqrt(n_terms * fdtri(n_terms, bounded, CONFIDENCE))
         half = factor * combined_standard_uncertainty(rows, random)
         return np.stack([back(fitted - half), back(fitted + half)], axis=-1)
 

@@ -10,13 +10,13 @@ from reduction.record.errors import DataError
 
 
 def test_few_failures_need_a_larger_drop_than_chi_square():
-    drops = [cutoff(0.95, n_failed=n, n_coefficients=1) for n in (2, 3, 5, 20)]
+    drops = [cutoff(n_failed=n, n_coefficients=1) for n in (2, 3, 5, 20)]
     assert drops == sorted(drops, reverse=True)
     assert drops[-1] > stats.chi2.ppf(0.95, 1)
 
 
 def test_no_failure_to_spare_gives_no_drop_and_no_bounds():
-    assert math.isnan(cutoff(0.95, n_failed=2, n_coefficients=2))
+    assert math.isnan(cutoff(n_failed=2, n_coefficients=2))
     bounds = profile_bounds(lambda v: -(v**2), estimate=0, maximum=0, step=1, drop=math.nan)
     assert all(map(math.isnan, bounds))
 
@@ -27,12 +27,6 @@ def test_a_side_that_never_drops_is_open():
     )
     assert high == math.inf
     assert low == pytest.approx(-math.log(2))
-
-
-@pytest.mark.parametrize("confidence", [0, 1, 95])
-def test_a_confidence_outside_its_range_is_refused(confidence):
-    with pytest.raises(DataError, match="a confidence is not between 0 and 1; found"):
-        cutoff(confidence, n_failed=5, n_coefficients=1)
 
 
 def test_a_step_of_nothing_is_refused():

@@ -67,8 +67,3 @@ def test_lines_that_all_keep_a_tension_are_refused():
 def test_series_that_do_not_pair_up_are_refused():
     with pytest.raises(DataError, match="loads, cycles and suspensions do not pair up; found"):
         summarise(lives=LIVES[:3])
-
-
-def test_a_confidence_in_per_cent_is_refused():
-    with pytest.raises(DataError, match="a confidence is not between 0 and 1; found 95"):
-        summarise(confidence=95)

@@ -6,7 +6,7 @@ from scipy import stats
 from reduction.experiments.designs import box_behnken, model_matrix, quadratic_exponents
 from reduction.experiments.response_surfaces import fit_surfaces
 from reduction.experiments.surface_points import evaluate_surfaces
-from reduction.record.errors import DataError, SettingsError
+from reduction.record.errors import DataError
 
 RUNS = box_behnken(3).coded
 EXPONENTS = quadratic_exponents(3)
@@ -37,11 +37,11 @@ def responses():
 
 def test_intervals_are_those_of_statsmodels(responses):
     points = np.random.default_rng(5).uniform(-1, 1, (7, 3))
-    found = evaluate_surfaces(surfaces(responses), points, units="coded", confidence=0.9)
+    found = evaluate_surfaces(surfaces(responses), points, units="coded")
     for row, response in enumerate(responses):
         has = np.isfinite(response)
         other = sm.OLS(response[has], MATRIX[has]).fit()
-        frame = other.get_prediction(model_matrix(points, EXPONENTS)).summary_frame(alpha=0.1)
+        frame = other.get_prediction(model_matrix(points, EXPONENTS)).summary_frame(alpha=0.05)
         np.testing.assert_allclose(found.value[row], frame["mean"], rtol=1e-9)
         np.testing.assert_allclose(
             found.fitted_standard_uncertainty[row], frame["mean_se"], rtol=1e-9
@@ -152,11 +152,6 @@ def test_another_specimen_scatters_as_specimens_do():
     fixed = evaluate_surfaces(surfaces(values, runs, blocks=names), centre, units="coded")
     assert np.diff(fixed.prediction_interval[0, 0])[0] / 2 < 0.3
     assert "not of another specimen" in fixed.notes[0]
-
-
-def test_a_confidence_that_is_no_probability_is_refused(responses):
-    with pytest.raises(SettingsError, match="confidence of an interval is a probability"):
-        evaluate_surfaces(surfaces(responses), [[0, 0, 0]], units="coded", confidence=95)
 
 
 def test_points_with_other_factors_are_refused(responses):

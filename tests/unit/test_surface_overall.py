@@ -35,10 +35,6 @@ def test_noise_alone_has_the_r2_of_its_degrees_of_freedom():
     assert rejected.mean() == pytest.approx(0.05, abs=0.005)
 
 
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [({"n_terms": 1}, "the mean alone has no F"), ({"level": 1.0}, "level of a test")],
-)
-def test_statistics_that_cannot_be_are_refused(change, message):
-    with pytest.raises(SettingsError, match=message):
-        statistics_from_r2(0.9, **{"n_runs": 15, "n_terms": 10, **change})
+def test_the_mean_alone_has_no_statistics():
+    with pytest.raises(SettingsError, match="the mean alone has no F"):
+        statistics_from_r2(0.9, n_runs=15, n_terms=1)

@@ -11,7 +11,7 @@ from reduction.experiments.designs import (
     quadratic_exponents,
 )
 from reduction.experiments.run_sheet import expected_precision
-from reduction.record.errors import DataError, FitError, SettingsError
+from reduction.record.errors import DataError, FitError
 
 FIFTEEN = box_behnken(3).coded
 
@@ -40,8 +40,8 @@ def test_only_the_corners_lie_beyond_the_design():
 
 
 def test_widths_are_students_times_the_root_of_the_factor():
-    precision = expected_precision(FIFTEEN, sigma=0.02, confidence=0.9)
-    reach = stats.t.ppf(0.95, 5) * 0.02
+    precision = expected_precision(FIFTEEN, sigma=0.02)
+    reach = stats.t.ppf(0.975, 5) * 0.02
     assert precision.term_half_width[0] == pytest.approx(reach * np.sqrt(1 / 3))
     assert precision.confidence_half_width[0] == pytest.approx(reach * np.sqrt(1 / 3))
     assert precision.prediction_half_width[0] == pytest.approx(reach * np.sqrt(4 / 3))
@@ -97,8 +97,6 @@ def test_a_scatter_that_cannot_be_is_refused(sigma):
         expected_precision(FIFTEEN, sigma=sigma)
 
 
-def test_a_confidence_or_a_table_that_cannot_be_is_refused():
-    with pytest.raises(SettingsError, match="confidence is not a share; found 95"):
-        expected_precision(FIFTEEN, sigma=1.0, confidence=95)
+def test_a_table_that_cannot_be_is_refused():
     with pytest.raises(DataError, match=r"not a table of runs; found shape \(15,\)"):
         expected_precision(FIFTEEN[:, 0], sigma=1.0)

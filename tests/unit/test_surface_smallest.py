@@ -6,7 +6,7 @@ import pytest
 from reduction.experiments.designs import plackett_burman
 from reduction.experiments.run_sheet import smallest_effect
 from reduction.experiments.screening import screening_effects
-from reduction.record.errors import DataError, SettingsError
+from reduction.record.errors import DataError
 
 
 def test_it_is_the_t_of_the_report_times_the_error_of_a_difference_of_means():
@@ -28,8 +28,6 @@ def test_it_is_what_screenings_of_noise_come_to(n_factors):
     assert ratio * error == pytest.approx(float(expected), rel=0.01 if n_factors == 5 else 0.15)
 
 
-def test_what_is_no_share_and_no_scatter_is_refused():
-    with pytest.raises(SettingsError, match="the level of significance is not a share"):
-        smallest_effect(plackett_burman(5), sigma=1.0, significance=1.0)
+def test_what_is_no_scatter_is_refused():
     with pytest.raises(DataError, match="sigma"):
         smallest_effect(plackett_burman(5), sigma=0.0)

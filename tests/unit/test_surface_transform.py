@@ -11,7 +11,7 @@ from reduction.experiments.response_transform import (
     retransformed_mean,
     transform,
 )
-from reduction.record.errors import DataError, SettingsError
+from reduction.record.errors import DataError
 
 RUNS = box_behnken(3).coded
 MATRIX = model_matrix(RUNS, quadratic_exponents(3))
@@ -128,8 +128,3 @@ def test_the_end_of_an_interval_may_lie_beyond_every_number():
 def test_values_not_above_nought_are_refused():
     with pytest.raises(DataError, match="2 of 3 values are not above zero .* found -1"):
         transform([-1.0, 0.0, 1.0], 0.5)
-
-
-def test_a_confidence_that_is_no_probability_is_refused():
-    with pytest.raises(SettingsError, match="confidence of an interval is a probability"):
-        box_cox_exponent(MATRIX, np.ones((1, 15)), confidence=0.0)

@@ -37,6 +37,7 @@ from numpy.typing import ArrayLike
 from scipy.special import stdtrit
 
 from reduction.record.arrays import as_positive
+from reduction.record.contributions import CONFIDENCE
 from reduction.record.errors import DataError
 from reduction.record.measurement import Floats
 from reduction.record.notes import note
@@ -458,8 +459,6 @@ def summarise_amplitude(
     return AmplitudeSummary(**means, uncertainty=uncertainty)
 
 
-_CONFIDENCE = 0.95
-
 _MANY = 1e9
 """Degrees of freedom for hundreds of samples."""
 
@@ -482,7 +481,7 @@ def _ratio(strain: Floats, above: _Side, below: _Side) -> Ratio:
         # Welch-Satterthwaite, [3]_ eq. G.2b
         freedom = total**2 / (relative[0] ** 2 / above.freedom + relative[1] ** 2 / below.freedom)
         uncertainty = np.abs(ratio) * np.sqrt(total)
-        reach = uncertainty * stdtrit(np.where(total > 0, freedom, 1), (1 + _CONFIDENCE) / 2)
+        reach = uncertainty * stdtrit(np.where(total > 0, freedom, 1), (1 + CONFIDENCE) / 2)
     is_apart = not np.isfinite(ratio).any()
     low, high = ratio - reach, ratio + reach
     return Ratio(

@@ -16,11 +16,10 @@ from numpy.typing import ArrayLike
 from scipy.special import stdtrit
 
 from reduction.record.arrays import as_positive
+from reduction.record.contributions import CONFIDENCE
 from reduction.record.errors import DataError
 from reduction.record.measurement import Floats, Specimen
 from reduction.record.notes import Note, note
-
-_CONFIDENCE = 0.95
 
 # of the diameter: a single stretched reading has no scatter; twice what calipers squeeze
 _OF_ONE_READING = 0.1
@@ -158,7 +157,7 @@ def check_constant_volume(specimen: Specimen) -> tuple[Note, ...]:
     if implied.size > 1:
         scatter = float(np.std(implied, ddof=1))
         standard_error = scatter * sqrt(1 / implied.size + 1 / len(specimen.diameter))
-        allowed = float(stdtrit(implied.size - 1, (1 + _CONFIDENCE) / 2)) * standard_error
+        allowed = float(stdtrit(implied.size - 1, (1 + CONFIDENCE) / 2)) * standard_error
     else:
         allowed = _OF_ONE_READING * mean
     if abs(mean - stated) <= allowed:

@@ -85,7 +85,8 @@ import scipy
 from numpy.typing import ArrayLike, NDArray
 
 from reduction.record.arrays import as_positive, as_same_shape
-from reduction.record.errors import DataError, SettingsError
+from reduction.record.contributions import CONFIDENCE
+from reduction.record.errors import DataError
 from reduction.record.measurement import Floats, Integers, read_only_arrays
 from reduction.record.notes import Note, note
 from reduction.stages.three_parameter_line.line_product import REASONS, LineParameters
@@ -868,16 +869,21 @@ def _power_of_frequency(
     return slope, uncertainty, np.maximum(left, 0).astype(np.int64)
 
 
-def _quantile(degrees_of_freedom: Integers, confidence: float) -> Floats:
+def _quantile(degrees_of_freedom: Integers) -> Floats:
     """Half width of an interval in standard uncertainties; normal where these were stated."""
-    t = scipy.special.stdtrit(np.maximum(degrees_of_freedom, 1), (1 + confidence) / 2)
-    return np.where(degrees_of_freedom > 0, t, scipy.special.ndtri((1 + confidence) / 2))
+    t = scipy.special.stdtrit(np.maximum(degrees_of_freedom, 1), (1 + CONFIDENCE) / 2)
+    return np.where(degrees_of_freedom > 0, t, scipy.special.ndtri((1 + CONFIDENCE) / 2))
 
 
 def _tail(distance: Floats, degrees_of_freedom: Integers) -> Floats:
     """Two-sided probability of a distance at least as large, in standard uncertainties."""
     t = 2 * scipy.special.stdtr(np.maximum(degrees_of_freedom, 1), -np.abs(distance))
     return np.where(degrees_of_freedom > 0, t, 2 * scipy.special.ndtr(-np.abs(distance)))
+
+
+_TOLERANCE = 0.1
+"""An exponent this close to 0 or 1 counts as equal: otherwise many runs would distinguish 0.95 from
+1, and no line is exactly either. [1]"""
 
 
 def check_single_time(
@@ -887,8 +893,6 @@ def check_single_time(
     *,
     group: ArrayLike | None = None,
     relative_standard_uncertainty: ArrayLike | None = None,
-    confidence: float = 0.95,
-    tolerance: float = 0.1,
 ) -> SingleTimeCheck:
     r"""Test whether one relaxation time holds over the frequencies of some runs.
 
@@ -907,11 +911,6 @@ def check_single_time(
     relative_standard_uncertainty : array_like, shape (..., n_runs), optional
         Of tau, without the part of K_0, which is common to runs at equal loads; used where the
         runs leave no degree of freedom, as two frequencies at one load do. [1]
-    confidence : float, optional
-        Of the intervals. [1]
-    tolerance : float, optional
-        An exponent this close to 0 or 1 counts as equal: otherwise many runs would distinguish
-        0.95 from 1, and no line is exactly either. [1]
 
     Returns
     -------
@@ -922,8 +921,6 @@ def check_single_time(
     ------
     DataError
         If shapes do not fit or a frequency is not positive.
-    SettingsError
-        If the confidence is not between 0 and 1, or the tolerance not between 0 and 0.5.
 
     Notes
     -----
@@ -940,12 +937,6 @@ def check_single_time(
     >>> print(check.exponent.round(2), check.time_ratio.round(1), VERDICTS[int(check.verdict)][:34])
     1.01 5.1 the relaxation time follows 1/f: t
     """
-    if not 0 < confidence < 1:
-        raise SettingsError("a confidence is a share", found=f"{confidence:g}", needed="0 to 1")
-    if not 0 <= tolerance < 0.5:
-        raise SettingsError(
-            "a tolerance of the exponent", found=f"{tolerance:g}", needed="0 to 0.5"
-        )
     slope, uncertainty, left = _power_of_frequency(
         frequency,
         relaxation_time,
@@ -956,8 +947,8 @@ def check_single_time(
         frequency, loss_factor, group=group
     )
     exponent = -slope
-    width = _quantile(left, confidence) * uncertainty
-    loss_width = _quantile(loss_left, confidence) * loss_uncertainty
+    width = _quantile(left) * uncertainty
+    loss_width = _quantile(loss_left) * loss_uncertainty
     rates = np.asarray(frequency, dtype=np.float64)
     used = np.asarray(relaxation_time) > 0
     highest = np.where(used, rates, -np.inf).max(axis=-1)
@@ -966,7 +957,7 @@ def check_single_time(
     low, high = exponent - width, exponent + width
     with np.errstate(divide="ignore", invalid="ignore"):
         holds_none, holds_one = (
-            (low <= exact + tolerance) & (high >= exact - tolerance) for exact in (0, 1)
+            (low <= exact + _TOLERANCE) & (high >= exact - _TOLERANCE) for exact in (0, 1)
         )
         verdict = np.select(
             [~np.isfinite(width), holds_none & holds_one, holds_none, holds_one],
@@ -993,6 +984,6 @@ def check_single_time(
         loss_exponent_low=loss_slope - loss_width,
         loss_exponent_high=loss_slope + loss_width,
         verdict=verdict,
-        confidence=confidence,
-        tolerance=tolerance,
+        confidence=CONFIDENCE,
+        tolerance=_TOLERANCE,
     )
