@@ -119,12 +119,6 @@ def _fit_random_intercept(
     [7.5] [1.]
     """
     columns, values = np.asarray(matrix, dtype=np.float64), np.asarray(responses, dtype=np.float64)
-    if block.shape != columns.shape[:1] or values.shape[1:] != columns.shape[:1]:
-        raise DataError(
-            "the blocks do not pair up with the runs",
-            found=f"{block.size} blocks, matrix {columns.shape}, responses {values.shape}",
-            needed="one block a run",
-        )
     n_blocks, n_columns = int(block.max()) + 1, columns.shape[1]
     member = (block[:, None] == np.arange(n_blocks)).astype(np.float64)
     shape = (values.shape[0], n_columns)

@@ -378,12 +378,6 @@ def gradient_matrix(coded: ArrayLike, exponents: Integers) -> Floats:
 
 def _points(coded: ArrayLike, exponents: Integers) -> Floats:
     points = as_finite("the levels", coded)
-    if points.ndim == 0 or points.shape[-1] != exponents.shape[1]:
-        raise DataError(
-            "the points do not have the factors of the surface",
-            found=f"shape {points.shape}",
-            needed=f"{exponents.shape[1]} levels a point",
-        )
     return points
 
 

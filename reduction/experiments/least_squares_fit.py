@@ -198,12 +198,6 @@ def fit_least_squares(
 def _checked(matrix: ArrayLike, responses: ArrayLike) -> tuple[Floats, Floats]:
     columns = np.asarray(matrix, dtype=np.float64)
     values = np.asarray(responses, dtype=np.float64)
-    if columns.ndim != 2 or values.ndim != 2 or values.shape[1:] != columns.shape[:1]:
-        raise DataError(
-            "the responses do not pair up with the runs",
-            found=f"matrix {columns.shape}, responses {values.shape}",
-            needed="(n_runs, n_columns) and (n_responses, n_runs)",
-        )
     if values.shape[0] == 0:
         raise DataError("there is no response to fit", needed="at least one")
     huge = np.abs(values) > _HUGE
@@ -418,12 +412,6 @@ def lack_of_fit(
     [24.2] [0.0389]
     """
     columns = np.asarray(baseline, dtype=np.float64)
-    if cell.shape != fit.is_used.shape[1:] or columns.shape[0] != cell.size:
-        raise DataError(
-            "the cells do not pair up with the runs",
-            found=f"{cell.size} cells, {columns.shape[0]} rows of the baseline",
-            needed=f"{fit.is_used.shape[1]} runs",
-        )
     n_responses = fit.reason.size
     pure_df = np.zeros(n_responses, dtype=np.intp)
     pure = np.full(n_responses, np.nan)

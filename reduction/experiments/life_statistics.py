@@ -87,8 +87,6 @@ def profile_bounds(
     ...                      drop=4.0))
     (-2.0, 2.0)
     """
-    if not step > 0:
-        raise DataError("a first step is not above zero", found=f"{step:g}", needed="above 0")
     if drop != drop:
         return float("nan"), float("nan")
 
@@ -269,12 +267,6 @@ def _as_log_lives(cycles: ArrayLike, is_suspended: ArrayLike) -> tuple[Floats, B
     """
     lives = as_positive("cycles", cycles)
     suspended = np.asarray(is_suspended, dtype=np.bool_)
-    if lives.ndim != 1 or lives.shape != suspended.shape or not lives.size:
-        raise DataError(
-            "cycles and suspensions do not pair up",
-            found=f"shapes {lives.shape} and {suspended.shape}",
-            needed="equal lengths, one test or more",
-        )
     return np.log(lives), suspended
 
 
@@ -391,11 +383,6 @@ def ratio_of_lives(
     """
     logs, suspended = _as_log_lives(cycles, is_suspended)
     reference = np.asarray(is_reference, dtype=np.bool_)
-    if reference.shape != logs.shape:
-        raise DataError(
-            "cycles and groups do not pair up", found=f"{logs.shape} and {reference.shape}",
-            needed="equal lengths",
-        )  # fmt: skip
     for group, which in ((reference, "the reference group"), (~reference, "the other group")):
         if not (group & ~suspended).any():
             raise DataError(f"{which} has no failure", needed="one failure or more in each group")
@@ -497,11 +484,6 @@ def fit_load_life(
     """
     logs, suspended = _as_log_lives(cycles, is_suspended)
     load = as_positive("peak_load_ratio", peak_load_ratio)
-    if load.shape != logs.shape:
-        raise DataError(
-            "loads and cycles do not pair up", found=f"shapes {load.shape} and {logs.shape}",
-            needed="equal lengths",
-        )  # fmt: skip
     level = load_levels(load)
     n_failed_levels = np.unique(level[~suspended]).size
     if n_failed_levels < 2:

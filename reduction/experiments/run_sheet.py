@@ -49,7 +49,7 @@ from reduction.experiments.designs import (
 from reduction.experiments.response_matrix import times
 from reduction.record.arrays import as_finite, as_positive, as_same_shape
 from reduction.record.contributions import CONFIDENCE
-from reduction.record.errors import DataError, FitError, SettingsError
+from reduction.record.errors import FitError, SettingsError
 from reduction.record.measurement import Bools, Floats, Integers, read_only_arrays
 
 RepeatPlacing = Literal["together", "spread"]
@@ -418,7 +418,7 @@ def find_cautions(
     Raises
     ------
     SettingsError
-        If a limit is not above zero, or the names do not fit the runs.
+        If a limit is not above zero.
 
     Notes
     -----
@@ -447,10 +447,6 @@ def find_cautions(
                 f"{name} is not above zero", found=f"{limit:g}", needed="a limit above zero"
             )
     labels = tuple(str(run) for run in sheet.run) if run_names is None else tuple(run_names)
-    if len(labels) != sheet.n_runs:
-        raise SettingsError(
-            "the names do not fit the runs", found=str(len(labels)), needed=str(sheet.n_runs)
-        )
     names = dict(zip(sheet.run.tolist(), labels, strict=True))
     if np.isnan(sheet.peak_tension).any():
         loads = [
@@ -552,12 +548,6 @@ def _find_confounded(matrix: ArrayLike, names: Sequence[str]) -> tuple[str, ...]
     ('f^2 with mean',)
     """
     columns = np.asarray(matrix, dtype=np.float64)
-    if columns.ndim != 2 or columns.shape[1] != len(names):
-        raise DataError(
-            "the names do not pair up with the columns",
-            found=f"{len(names)} names, shape {columns.shape}",
-            needed="one name a column",
-        )
     size = np.linalg.norm(columns, axis=0)
     unit = columns / np.where(size > 0, size, 1.0)
     kept: list[int] = []
@@ -773,12 +763,6 @@ def expected_precision(
     [0.333 0.75  1.396]
     """
     runs = as_finite("coded", coded)
-    if runs.ndim != 2:
-        raise DataError(
-            "the coded levels are not a table of runs",
-            found=f"shape {runs.shape}",
-            needed="one row a run, one column a factor",
-        )
     scatter = as_positive("sigma", sigma)
     n_runs, n_factors = runs.shape
     exponents = quadratic_exponents(n_factors)

@@ -280,8 +280,7 @@ def screening_effects(
     SettingsError
         If the names do not fit.
     DataError
-        If the design is not of two levels, balanced and orthogonal, or the response
-        does not fit its runs.
+        If the design is not of two levels, balanced and orthogonal.
 
     Notes
     -----
@@ -315,12 +314,6 @@ def screening_effects(
             hint="Add the runs that are missing, or fit a surface to those there are.",
         )
     values = np.asarray(response, dtype=np.float64)
-    if values.ndim == 0 or values.shape[-1] != n_runs:
-        raise DataError(
-            "the response does not fit the runs",
-            found=f"shape {values.shape}",
-            needed=f"{n_runs} runs on the last axis",
-        )
     labels = tuple(f"X{i + 1}" for i in range(design.n_factors)) if names is None else tuple(names)
     if len(labels) != design.n_factors or len(set(labels)) != len(labels):
         raise SettingsError(

@@ -28,7 +28,6 @@ from reduction.experiments.designs import engineering_from_coded, gradient_matri
 from reduction.experiments.fit_results import Canonical
 from reduction.experiments.run_sheet import variance_factor
 from reduction.record.arrays import as_finite
-from reduction.record.errors import SettingsError
 from reduction.record.measurement import Floats, Integers
 
 
@@ -217,12 +216,6 @@ def ridge_path(
      [0.6 0.8]] [0. 5.]
     """
     length = as_finite("radius", radius)
-    if length.ndim != 1 or (length < 0).any():
-        raise SettingsError(
-            "the radii of a ridge path are a series of distances",
-            found=f"shape {length.shape}, smallest {length.min():g}",
-            needed="numbers of zero or more",
-        )
     values = np.asarray(coefficient, dtype=np.float64)
     sign = 1.0 if direction == "ascent" else -1.0
     known = np.atleast_1d(np.isfinite(values).all(axis=1))

@@ -239,10 +239,6 @@ def _del_vecchio_matrix(
 def _positive_levels(**named: ArrayLike) -> tuple[Floats, ...]:
     """Return levels as a series over the runs, all of them positive."""
     arrays = as_same_shape(**named)
-    if arrays[0].ndim != 1:
-        raise DataError(
-            "the levels are not a series of runs", found=f"shape {arrays[0].shape}", needed="1-D"
-        )
     for name, values in zip(named, arrays, strict=True):
         _above_zero(name, values)
     return arrays
@@ -253,12 +249,6 @@ def _relative_stiffness(
 ) -> tuple[Floats, tuple[int, ...]]:
     """Stiffness over break strength as (n_responses, n_runs), and the shape before the runs."""
     stiffness = np.asarray(spring_constant, dtype=np.float64)
-    if stiffness.ndim == 0 or stiffness.shape[-1] != n_runs:
-        raise DataError(
-            "the spring constants do not fit the runs",
-            found=f"shape {stiffness.shape}",
-            needed=f"{n_runs} runs on the last axis",
-        )
     return stiffness.reshape(-1, n_runs) / strength, stiffness.shape[:-1]
 
 
@@ -434,12 +424,6 @@ def compare_stiffness_forms(
         mean_tension=mean_tension, tension_amplitude=tension_amplitude, frequency=frequency
     )
     levels = np.asarray(coded, dtype=np.float64)
-    if levels.ndim != 2 or levels.shape[0] != mean.size:
-        raise DataError(
-            "the coded levels do not fit the runs",
-            found=f"shape {levels.shape}",
-            needed=f"{mean.size} rows, one column a factor",
-        )
     relative, shape = _relative_stiffness(spring_constant, strength, mean.size)
     first = _del_vecchio_matrix(mean, amplitude, rate, strength, "half-range")
     whole = np.isfinite(first).all(axis=1) & np.isfinite(levels).all(axis=1)

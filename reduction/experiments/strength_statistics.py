@@ -226,7 +226,7 @@ def fit_exposure_trend(
     Raises
     ------
     DataError
-        If the series do not pair up or a number is impossible.
+        If a number is impossible.
     FitError
         If there are fewer than two exposures, or no information on the scatter.
 
@@ -254,12 +254,6 @@ def fit_exposure_trend(
         if standard_deviation is None
         else np.asarray(standard_deviation, dtype=np.float64)
     )
-    if not years.shape == means.shape == size.shape == deviation.shape or years.ndim != 1:
-        raise DataError(
-            "exposures, means, deviations and numbers do not pair up",
-            found=f"shapes {years.shape}, {means.shape}, {deviation.shape}, {size.shape}",
-            needed="equal lengths",
-        )
     if (years < 0).any():
         raise DataError("an exposure is below zero", found=f"{years.min():g}", needed="0 or more")
     levels, place = np.unique(years, return_inverse=True)
@@ -392,12 +386,6 @@ def group_statistics(
     """
     values = as_positive("value", value)
     groups, uses = np.asarray(group, dtype=np.intp), np.asarray(use, dtype=np.intp)
-    if not values.shape == groups.shape == uses.shape or values.ndim != 1:
-        raise DataError(
-            "value, group and use do not pair up",
-            found=f"shapes {values.shape}, {groups.shape}, {uses.shape}",
-            needed="equal lengths",
-        )
     if groups.size and not (0 <= groups.min() and groups.max() < n_groups):
         raise DataError(
             "a group has no place", found=f"{groups.min()} to {groups.max()}",
@@ -443,11 +431,6 @@ def censored_mean(value: ArrayLike, is_lower_bound: ArrayLike) -> CensoredMean:
     """
     values = as_positive("value", value)
     bound = np.asarray(is_lower_bound, dtype=np.bool_)
-    if values.shape != bound.shape or values.ndim != 1:
-        raise DataError(
-            "values and bounds do not pair up", found=f"{values.shape} and {bound.shape}",
-            needed="equal lengths",
-        )  # fmt: skip
     n_own = int((~bound).sum())
     own = values[~bound]
     unknown = CensoredMean(n=n_own, n_lower_bound=int(bound.sum()))
@@ -517,12 +500,6 @@ def summarise_snap_loading(
     load, lives = as_positive("peak_load_ratio", peak_load_ratio), as_positive("cycles", cycles)
     least = np.asarray(minimum_load_ratio, dtype=np.float64)
     stopped: Bools = np.asarray(is_suspended, dtype=np.bool_)
-    if not load.shape == least.shape == lives.shape == stopped.shape or load.ndim != 1:
-        raise DataError(
-            "loads, cycles and suspensions do not pair up",
-            found=f"shapes {load.shape}, {least.shape}, {lives.shape}, {stopped.shape}",
-            needed="equal lengths",
-        )
     slack = least <= 0.0
     if not slack.any():
         raise DataError(

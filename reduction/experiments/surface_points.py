@@ -161,12 +161,6 @@ def plan_points(plan: ArrayLike) -> _PlanPoints:
     '(-1, -1, 0)'
     """
     levels = as_finite("plan", plan)
-    if levels.ndim != 2 or not levels.shape[1]:
-        raise DataError(
-            "the plan is not a table of runs and factors",
-            found=f"shape {levels.shape}",
-            needed="(n_runs, n_factors)",
-        )
     n_factors = levels.shape[1]
     corners = np.array(list(product((-1.0, 1.0), repeat=n_factors)))
     # adding zero converts -0 to 0
@@ -286,7 +280,7 @@ def evaluate_surfaces(
     Raises
     ------
     DataError
-        If a point is not finite, has other factors, or is outside and is to be refused.
+        If a point is not finite, or is outside and is to be refused.
 
     Notes
     -----
@@ -309,12 +303,6 @@ def evaluate_surfaces(
     [[3.5]] [[0.5]] [[[1.91 5.09]]]
     """
     asked = as_finite("points", points)
-    if asked.ndim != 2 or asked.shape[1] != surfaces.coded.shape[1]:
-        raise DataError(
-            "the points do not have the factors of the surface",
-            found=f"shape {asked.shape}",
-            needed=f"(n_points, {surfaces.coded.shape[1]})",
-        )
     limits = {"low": surfaces.low, "high": surfaces.high}
     coded = asked if units == "coded" else coded_from_engineering(asked, **limits)
     is_inside = is_within_levels(coded)

@@ -30,7 +30,6 @@ from reduction.experiments.response_matrix import block_contrasts
 from reduction.experiments.response_transform import back_transform
 from reduction.experiments.surface_points import extremes_in_box
 from reduction.quantities.names import SCALES, response_of_surface
-from reduction.record.errors import DataError
 from reduction.record.measurement import Floats
 from reduction.record.notes import Note, note
 
@@ -65,7 +64,7 @@ def drift_over_order(surfaces: ResponseSurfaces, order: ArrayLike) -> Drift:
 
     Raises
     ------
-    DataError
+    ValueError
         If the order does not pair up with the runs.
 
     Notes
@@ -88,12 +87,6 @@ def drift_over_order(surfaces: ResponseSurfaces, order: ArrayLike) -> Drift:
     True [ True]
     """
     place = np.array(order, dtype=np.float64)
-    if place.shape != surfaces.coded.shape[:1]:
-        raise DataError(
-            "the order does not pair up with the runs",
-            found=f"shape {place.shape}",
-            needed=f"{len(surfaces.coded)} places",
-        )
     known = np.isfinite(place) & np.isfinite(surfaces.coded).all(axis=1)
     if not known.any():
         return Drift(*np.full((4, surfaces.reason.size), np.nan))
@@ -194,7 +187,7 @@ def drifting_responses(surfaces: ResponseSurfaces, drift: Drift) -> tuple[Note, 
 
     Raises
     ------
-    DataError
+    ValueError
         If the drift belongs to other surfaces.
 
     Notes
@@ -215,12 +208,6 @@ def drifting_responses(surfaces: ResponseSurfaces, drift: Drift) -> tuple[Note, 
     >>> [str(one)[:34] for one in drifting_responses(found, drift_over_order(found, range(15)))]
     ['y drifts with run order: its resid']
     """
-    if drift.p_value.shape != surfaces.reason.shape:
-        raise DataError(
-            "the drift is not that of the surfaces",
-            found=f"{drift.p_value.size} responses",
-            needed=f"{surfaces.reason.size}",
-        )
     # for a logarithm the slope is itself relative
     size = np.where(
         surfaces.transform_exponent == 0, 1.0, np.nan_to_num(np.abs(surfaces.fitted)).mean(axis=1)

@@ -66,7 +66,6 @@ def test_share_lost_of_an_unknown_new_strength_has_no_interval():
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (([0, 1], [5.0]), "exposures, means, deviations and numbers do not pair up; found shapes"),
         (([-1, 1], [5.0, 4.0]), "an exposure is below zero; found -1; needed 0 or more"),
         (([0, 1], [5.0, -4.0]), "values of mean are not positive"),
     ],

@@ -77,11 +77,6 @@ def test_failures_that_lie_on_a_line_are_refused():
         fit_load_life([0.3, 0.5], [2e5, 3e4], [False, False])
 
 
-def test_loads_that_do_not_pair_up_are_refused():
-    with pytest.raises(DataError, match="loads and cycles do not pair up; found shapes"):
-        fit_load_life([0.3], [2e5, 3e4], [False, False])
-
-
 def test_a_load_of_nothing_is_refused():
     with pytest.raises(DataError, match="values of peak_load_ratio are not positive"):
         load_levels([0.0])

@@ -62,8 +62,3 @@ def test_without_failures_or_without_survivors_one_end_is_open():
 def test_lines_that_all_keep_a_tension_are_refused():
     with pytest.raises(DataError, match="no test has a line that goes slack; found least minimum"):
         summarise(least=[0.03] * 7)
-
-
-def test_series_that_do_not_pair_up_are_refused():
-    with pytest.raises(DataError, match="loads, cycles and suspensions do not pair up; found"):
-        summarise(lives=LIVES[:3])

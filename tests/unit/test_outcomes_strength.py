@@ -51,13 +51,6 @@ def test_a_strength_of_nothing_is_refused():
         group_statistics([1.0, 0.0], [0, 0], [0, 0], n_groups=1)
 
 
-def test_series_that_do_not_pair_up_are_refused():
-    with pytest.raises(DataError, match="value, group and use do not pair up; found shapes"):
-        group_statistics([1.0, 2.0], [0], [0, 0], n_groups=1)
-    with pytest.raises(DataError, match="values and bounds do not pair up; found"):
-        censored_mean([1.0, 2.0], [False])
-
-
 def test_a_group_without_a_place_is_refused():
     with pytest.raises(DataError, match="a group has no place; found 0 to 2; needed 0 to 1"):
         group_statistics([1.0, 2.0], [0, 2], [0, 0], n_groups=2)

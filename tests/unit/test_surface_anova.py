@@ -14,7 +14,7 @@ from reduction.experiments.least_squares_fit import (
     replicate_cells,
 )
 from reduction.experiments.surface_statistics import anova_table, regress_each
-from reduction.record.errors import DataError, SettingsError
+from reduction.record.errors import SettingsError
 
 EXPONENTS = quadratic_exponents(3)
 RUNS = box_behnken(3).coded
@@ -137,8 +137,3 @@ def test_runs_no_more_different_than_terms_cannot_lack_fit():
     fit = fit_least_squares(matrix, [[1.0, 2.0, 2.5, 4.0]])
     lack = lack_of_fit(fit, np.array([0, 1, 1, 2]), baseline=np.ones((4, 1)))
     assert LACK_OF_FIT_REASONS[lack.reason[0]] == "no more different runs than terms"
-
-
-def test_cells_that_do_not_pair_up_are_refused():
-    with pytest.raises(DataError, match="cells do not pair up with the runs; found 14 cells"):
-        lack_of_fit(fitted(np.arange(15.0)), np.zeros(14, dtype=int), baseline=MEAN)

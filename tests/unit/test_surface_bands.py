@@ -152,10 +152,3 @@ def test_another_specimen_scatters_as_specimens_do():
     fixed = evaluate_surfaces(surfaces(values, runs, blocks=names), centre, units="coded")
     assert np.diff(fixed.prediction_interval[0, 0])[0] / 2 < 0.3
     assert "not of another specimen" in fixed.notes[0]
-
-
-def test_points_with_other_factors_are_refused(responses):
-    with pytest.raises(
-        DataError, match=r"points do not have the factors .* needed \(n_points, 3\)"
-    ):
-        evaluate_surfaces(surfaces(responses), [[0.0, 0.0]], units="coded")

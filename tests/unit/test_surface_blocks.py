@@ -134,8 +134,3 @@ def test_columns_of_blocks_leave_the_mean_the_mean_over_blocks():
 def test_one_block_is_refused():
     with pytest.raises(DataError, match="one block and nothing to compare it with; found A"):
         block_columns(["A", "A"])
-
-
-def test_blocks_that_do_not_pair_up_are_refused(responses):
-    with pytest.raises(DataError, match="the blocks do not pair up with the runs; found 3 blocks"):
-        _fit_random_intercept(MATRIX, responses, block=BLOCK[:3])

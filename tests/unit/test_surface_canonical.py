@@ -5,7 +5,6 @@ from scipy.optimize import minimize
 from reduction.experiments.designs import model_matrix, quadratic_exponents
 from reduction.experiments.fit_results import STATIONARY_KINDS, STATIONARY_REASONS
 from reduction.experiments.stationary_point import _curvature, canonical_analysis, ridge_path
-from reduction.record.errors import SettingsError
 
 EXPONENTS = quadratic_exponents(3)
 # Treb: B1 .. B10 of the published data by least squares
@@ -122,9 +121,3 @@ def test_the_path_starts_at_the_centre_and_never_falls():
     assert (np.diff(path.value[0]) > 0).all()
     np.testing.assert_allclose(path.engineering[0], 0.5 + path.coded[0] / 2)
     assert np.isnan(path.coded[1]).all()
-
-
-@pytest.mark.parametrize("radius", [[-0.1], [[1.0]]])
-def test_a_radius_that_is_none_is_refused(radius):
-    with pytest.raises(SettingsError, match="radii of a ridge path are a series of distances"):
-        ridge_path([TREB], EXPONENTS, radius=radius, **BOX)

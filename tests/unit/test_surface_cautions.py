@@ -160,11 +160,6 @@ def test_runs_are_called_by_their_names_where_those_are_given():
     assert kinds["slack"].runs == (11,)
 
 
-def test_names_that_do_not_fit_the_runs_are_refused():
-    with pytest.raises(SettingsError, match="the names do not fit the runs; found 1; needed 15"):
-        find_cautions(sheet(), run_names=["A"])
-
-
 def test_a_measured_minimum_near_zero_is_slack_and_a_planned_one_is_not():
     # 12 less 11.9 % of 10 kN is 10 N under a peak of 2390 N
     near = sheet(FactorLevels("tension_amplitude", 0.05, 0.119, "rated_break_strength"))

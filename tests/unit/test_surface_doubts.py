@@ -10,7 +10,6 @@ from reduction.experiments.surface_warnings import (
     drifting_responses,
     negative_surfaces,
 )
-from reduction.record.errors import DataError
 
 CODED = box_behnken(3).coded
 
@@ -88,14 +87,3 @@ def test_one_experiment_of_twenty_is_named_though_nothing_drifts():
         named += bool(drifting_responses(surfaces, drift))
     # one in twenty +- 0.011
     assert 0.02 < named / n_experiments < 0.085
-
-
-def test_a_drift_of_other_surfaces_is_refused():
-    one = fitted(CODED[:, 0] + 3)
-    other = drift_over_order(one, np.arange(15))
-    two = fit_surfaces(
-        CODED, [CODED[:, 0], CODED[:, 1]], units="coded", factor_names=["f", "T", "a"],
-        response_names=["x", "y"], low=[0] * 3, high=[1] * 3,
-    )  # fmt: skip
-    with pytest.raises(DataError, match="the drift is not that of the surfaces; found 1 resp"):
-        drifting_responses(two, other)

@@ -5,7 +5,6 @@ import pytest
 
 from reduction.experiments.designs import box_behnken
 from reduction.experiments.surface_points import plan_points
-from reduction.record.errors import DataError
 
 
 def test_three_factors_have_a_centre_twelve_edges_and_eight_corners():
@@ -41,9 +40,3 @@ def test_the_middle_of_a_face_is_named():
 
 def test_one_factor_has_a_centre_and_two_ends():
     assert plan_points([[-1], [0], [1]]).kind == ("centre", "corner", "corner")
-
-
-@pytest.mark.parametrize("plan", [[0.0, 1.0], np.empty((3, 0))])
-def test_a_plan_that_is_no_table_is_refused(plan):
-    with pytest.raises(DataError, match="the plan is not a table of runs and factors"):
-        plan_points(plan)

@@ -95,8 +95,3 @@ def test_runs_that_cannot_carry_a_surface_are_refused():
 def test_a_scatter_that_cannot_be_is_refused(sigma):
     with pytest.raises(DataError, match="sigma are not"):
         expected_precision(FIFTEEN, sigma=sigma)
-
-
-def test_a_table_that_cannot_be_is_refused():
-    with pytest.raises(DataError, match=r"not a table of runs; found shape \(15,\)"):
-        expected_precision(FIFTEEN[:, 0], sigma=1.0)

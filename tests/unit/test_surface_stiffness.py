@@ -218,8 +218,6 @@ def test_levels_that_cannot_be_are_refused():
         DataError, match="values of mean_tension are not above zero, first at index 0"
     ):
         fit_mean_load_stiffness(stiffness(), mean_tension=-MEAN, rated_break_strength=STRENGTH)
-    with pytest.raises(DataError, match=r"not a series of runs; found shape \(1, 15\)"):
-        fit_mean_load_stiffness(stiffness(), mean_tension=MEAN[None], rated_break_strength=STRENGTH)
     with pytest.raises(DataError, match="series do not pair up"):
         fit_del_vecchio_stiffness(
             stiffness(),
@@ -228,17 +226,6 @@ def test_levels_that_cannot_be_are_refused():
             frequency=FREQUENCY,
             rated_break_strength=STRENGTH,
             load_amplitude="half-range",
-        )
-
-
-def test_shapes_that_do_not_fit_are_refused():
-    with pytest.raises(
-        DataError, match=r"spring constants do not fit the runs; found shape \(14,\)"
-    ):
-        del_vecchio(stiffness()[:14])
-    with pytest.raises(DataError, match=r"coded levels do not fit the runs; found shape \(14, 3\)"):
-        compare_stiffness_forms(
-            stiffness(), **LEVELS, coded=CODED[:14], rated_break_strength=STRENGTH
         )
 
 

@@ -60,11 +60,6 @@ def test_names_that_do_not_pair_up_are_refused(names):
         term_names(quadratic_exponents(2), names)
 
 
-def test_points_with_other_factors_are_refused():
-    with pytest.raises(DataError, match="needed 2 levels a point"):
-        model_matrix([1.0, 2.0, 3.0], quadratic_exponents(2))
-
-
 def test_points_that_are_not_finite_are_refused():
     with pytest.raises(DataError, match="1 of 2 values of the levels are not finite"):
         model_matrix([1.0, np.nan], quadratic_exponents(2))
