@@ -336,11 +336,6 @@ def sigma_from_r2(coefficient: ArrayLike, r2: float, *, n_factors: int = 3) -> f
     """
     values = np.asarray(coefficient, dtype=np.float64)
     exponents = quadratic_exponents(n_factors)
-    if values.shape != (len(exponents),):
-        raise DataError(
-            "the coefficients are not those of a quadratic", found=str(values.shape),
-            needed=f"({len(exponents)},)",
-        )  # fmt: skip
     if not 0 < r2 < 1:
         return float("nan")
     coded = box_behnken(n_factors).coded

@@ -549,7 +549,7 @@ def predict_armour(
     Raises
     ------
     SettingsError
-        If the theory is unknown, or the strain is not a series of numbers above -1.
+        If the theory is unknown, or a strain is not a number above -1.
 
     Notes
     -----
@@ -572,10 +572,6 @@ def predict_armour(
             "the theory of the armour is not known", found=repr(theory), needed=", ".join(_PREDICT)
         )
     series = np.array(strain, dtype=np.float64, ndmin=1)
-    if series.ndim != 1 or series.size == 0:
-        raise SettingsError(
-            "strain is not a series", found=f"shape {series.shape}", needed="(n_strain,)"
-        )
     bad = ~(np.isfinite(series) & (series > -1))
     if bad.any():
         raise SettingsError(
@@ -699,12 +695,6 @@ def _angles_of_use(design: ArmourDesign, strain: float, *, tolerance: float) -> 
     if not tolerance > 0:
         raise SettingsError("tolerance is not above zero", found=f"{tolerance:g}", needed="above 0")
     angle = as_increasing("winding_angle", design.winding_angle)
-    if design.shape != angle.shape:
-        raise SettingsError(
-            "the design is not a series of winding angles",
-            found=f"shape {design.shape} for {angle.size} angles",
-            needed="the other numbers alike for all angles, or one for each",
-        )
     errors = theory_errors(design, strain)
     is_within = np.abs(errors.error[..., 0]) <= tolerance
     ends = np.full((*is_within.shape[:2], 2), np.nan)

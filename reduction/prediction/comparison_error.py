@@ -1111,12 +1111,6 @@ def validate_curve(
     """
     model, test = as_same_shape(predicted=predicted, measured=measured.tension_of(measured.judged))
     inputs = np.asarray(input_error, dtype=np.float64)
-    if inputs.ndim != 2 or inputs.shape[1:] != model.shape:
-        raise DataError(
-            "errors of the prediction are not on the strains",
-            found=str(inputs.shape),
-            needed=f"(n_draws, {model.size})",
-        )
     there = np.isfinite(model) & np.isfinite(test) & np.isfinite(inputs).all(axis=0)
     if not there.any():
         raise DataError(

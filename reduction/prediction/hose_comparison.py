@@ -162,12 +162,6 @@ def _identify_directions(
     level = np.asarray(tension, dtype=np.float64)
     unit = np.asarray(plausible, dtype=np.float64)
     shared = np.asarray(contribution, dtype=np.float64)
-    if slopes.shape != (level.size, len(names)) or shared.shape[1:] != level.shape:
-        raise DataError(
-            "sensitivities do not pair up with the curve",
-            found=f"{slopes.shape} and {shared.shape}",
-            needed=f"({level.size}, {len(names)}) and (n_source, {level.size})",
-        )
     size = float(np.sqrt(np.mean(level**2)))
     scale = np.sqrt(level.size) * size
     s, c = slopes * unit / scale, shared.T / scale
@@ -251,10 +245,6 @@ def _number_of(design: HoseDesign, name: str) -> float:
     if name not in HOSE_PARAMETERS:
         raise SettingsError(
             "no such number of a hose", found=name, needed="one of " + ", ".join(HOSE_PARAMETERS)
-        )
-    if design.shape:
-        raise SettingsError(
-            "a comparison is of one hose", found=f"designs of shape {design.shape}", needed="one"
         )
     return float(design.wrap_diameter if name == "layer_diameter" else getattr(design, name))
 
@@ -1202,10 +1192,6 @@ def _compare_hose(
     >>> print(round(found.differences["ascending"].relative_rms, 3), found.validation.agrees)
     0.111 False
     """
-    if design.shape:
-        raise SettingsError(
-            "a comparison is of one hose", found=f"designs of shape {design.shape}", needed="one"
-        )
     known = dict(standard_uncertainty or {})
     prediction = predict_hose(design, measured.strain)
     differences = {

@@ -434,19 +434,12 @@ def cord_strain_chart(
      [-0.015 0.083]
      [-0.057 -0.004]]
     """
-    angle, along = _series("wrap_angle", wrap_angle), _series("strain", strain)
+    angle, along = as_finite("wrap_angle", wrap_angle), as_finite("strain", strain)
     free = _free(dead_length_share)
     return _CordStrainChart(
         cord_strain=cord_stretch_ratio(1 + along / free, angle[:, None]) - 1,
         pick_up_strain=free * (pick_up_stretch_ratio(angle) - 1),
     )
-
-
-def _series(name: str, values: ArrayLike) -> Floats:
-    series = as_finite(name, values)
-    if series.ndim != 1:
-        raise DataError(f"{name} is not a series", found=f"shape {series.shape}", needed="1-D")
-    return series
 
 
 def _free(dead_length_share: float) -> float:

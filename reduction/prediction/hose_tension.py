@@ -232,7 +232,7 @@ def predict_hose(design: HoseDesign, strain: ArrayLike) -> HosePrediction:
     Raises
     ------
     DataError
-        If the strains are not a series, not finite, or negative: compression is not modelled.
+        If a strain is not finite, or negative: compression is not modelled.
 
     Notes
     -----
@@ -267,8 +267,6 @@ def predict_hose(design: HoseDesign, strain: ArrayLike) -> HosePrediction:
     [ 0.   -0.44  0.45 24.48]
     """
     asked = as_finite("strain", strain)
-    if asked.ndim != 1:
-        raise DataError("strain is not a series", found=f"shape {asked.shape}", needed="1-D")
     if np.any(asked < 0):
         raise DataError(
             f"{int(np.sum(asked < 0))} of {asked.size} strains are below zero",

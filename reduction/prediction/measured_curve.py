@@ -217,10 +217,6 @@ def _select_samples(
     [0. 5. 9.]
     """
     strains, tensions = as_same_shape(strain=strain, tension=tension)
-    if strains.ndim != 1:
-        raise DataError(
-            "strain and tension are not series", found=f"shape {strains.shape}", needed="1-D"
-        )
     if (cycle_number is None) != (branch is None):
         raise SettingsError(
             "cycle_number and branch go together",

@@ -372,7 +372,7 @@ def cosine_series(amplitude: Floats, constant: float = 0.0) -> Coefficients:
     >>> print(cosine_series(np.array([2.0]), 3.0).real)
     [1. 3. 1.]
     """
-    half = _amplitudes(amplitude) / 2
+    half = np.asarray(amplitude, dtype=np.float64) / 2
     return np.concatenate([half[::-1], [constant], half]).astype(np.complex128)
 
 
@@ -388,7 +388,7 @@ def sine_series(amplitude: Floats) -> Coefficients:
     >>> print(sine_series(np.array([2.0])).imag)
     [ 1. 0. -1.]
     """
-    half = _amplitudes(amplitude) / 2j
+    half = np.asarray(amplitude, dtype=np.float64) / 2j
     return np.concatenate([-half[::-1], [0.0], half]).astype(np.complex128)
 
 
@@ -473,15 +473,6 @@ def root_phases(coefficients: Coefficients) -> Floats:
         companion[:, np.arange(1, 2 * order), np.arange(2 * order - 1)] = 1.0
         phase[alike, : 2 * order] = np.angle(np.linalg.eigvals(companion))
     return phase.reshape(*np.shape(coefficients)[:-1], phase.shape[1])
-
-
-def _amplitudes(amplitude: Floats) -> Floats:
-    array = np.asarray(amplitude, dtype=np.float64)
-    if array.ndim != 1:
-        raise DataError(
-            "the amplitudes are not a series", found=f"shape {array.shape}", needed="(n_harmonics,)"
-        )
-    return array
 
 
 def _orders(coefficients: Coefficients) -> NDArray[np.int64]:

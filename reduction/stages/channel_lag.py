@@ -39,7 +39,6 @@ import scipy
 from numpy.typing import ArrayLike, NDArray
 
 from reduction.quantities.flags import LAG_REFUSALS
-from reduction.record.errors import DataError
 from reduction.record.measurement import Floats, Integers, read_only_arrays
 from reduction.record.samples import BLOCK, sample_blocks, take_samples
 from reduction.stages.standstills import estimate_noise, median_step
@@ -198,7 +197,7 @@ def lag_by_turns(
 
     Raises
     ------
-    DataError
+    ValueError
         If the series differ in length.
 
     Notes
@@ -222,12 +221,6 @@ def lag_by_turns(
     """
     clock, place = (np.asarray(one, dtype=np.float64) for one in (time, position))
     load = np.asarray(tension, dtype=np.float64)
-    if load.ndim != 2 or not (clock.shape == place.shape == load.shape[1:]):
-        raise DataError(
-            "time, position and tension do not pair up",
-            found=f"shapes {clock.shape}, {place.shape} and {load.shape}",
-            needed="(n_samples,), (n_samples,) and (n_specimens, n_samples)",
-        )
     turns = np.unique(np.asarray(turn, dtype=np.int64))
     n_specimens = load.shape[0]
     if turns.size < _FEWEST_TURNS:

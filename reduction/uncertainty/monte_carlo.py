@@ -33,7 +33,6 @@ from reduction.record.contributions import (
     coverage_factor,
     effective_degrees_of_freedom,
 )
-from reduction.record.errors import DataError
 from reduction.record.measurement import Bools, Floats, read_only_arrays
 from reduction.record.notes import Note, note
 from reduction.record.settings import CycleSettings
@@ -133,17 +132,6 @@ def _draw_line(
     random, shared = (np.asarray(one, dtype=np.float64) for one in (covariance, contribution))
     freedom = np.asarray(degrees_of_freedom, dtype=np.float64)
     n_specimens, n_inputs = centre.shape
-    if (
-        random.shape != (n_specimens, n_inputs, n_inputs)
-        or shared.shape[1:] != (n_specimens, n_inputs)
-        or freedom.shape != (n_specimens,)
-    ):
-        raise DataError(
-            "uncertainties do not fit the inputs of the line",
-            found=f"shapes {random.shape}, {shared.shape} and {freedom.shape}",
-            needed=f"({n_specimens}, {n_inputs}, {n_inputs}), (n_components, {n_specimens}, "
-            f"{n_inputs}) and ({n_specimens},)",
-        )
     known = np.isfinite(centre).all(axis=1) & np.isfinite(random).all(axis=(1, 2))
     known &= np.isfinite(shared).all(axis=(0, 2)) & (freedom > 0)
     generator = np.random.default_rng(_SEED)

@@ -47,7 +47,6 @@ from reduction.record.contributions import (
     coverage_factor,
     effective_degrees_of_freedom,
 )
-from reduction.record.errors import DataError
 from reduction.record.measurement import Bools, Floats, Integers, read_only_arrays
 
 
@@ -85,13 +84,6 @@ def _coefficient_contributions(
     at, own = np.asarray(coded, dtype=np.float64), np.asarray(coefficient, dtype=np.float64)
     of_response = np.asarray(response, dtype=np.float64)
     of_level = np.asarray(level, dtype=np.float64)
-    if of_response.shape[1:] != at.shape[:1] or of_level.shape != (of_response.shape[0], *at.shape):
-        raise DataError(
-            "the contributions do not pair up with the runs",
-            found=f"responses {of_response.shape}, levels {of_level.shape}",
-            needed=f"(n_components, {at.shape[0]}) and (n_components, {at.shape[0]}, "
-            f"{at.shape[1]})",
-        )
     used = np.isfinite(at).all(axis=1) & np.isfinite(of_response).all(axis=0)
     used &= np.isfinite(of_level).all(axis=(0, 2))
     terms = model_matrix(at[used], exponents)

@@ -7,7 +7,6 @@ from reduction.prediction.cord_curve import CordCurve
 from reduction.prediction.hose_comparison import _compare_hose
 from reduction.prediction.hose_tension import find_events
 from reduction.prediction.measured_curve import constant_errors, measured_curve
-from reduction.record.errors import SettingsError
 
 TRUTH = Truth()
 
@@ -105,12 +104,6 @@ def test_where_the_cords_of_a_test_pick_up_does_not_hang_on_the_prediction():
     assert any(
         text.startswith("cord pick-up is not visible in the test") for text in map(str, short.notes)
     )
-
-
-def test_many_designs_are_refused():
-    many = TRUTH.design(rubber_modulus=np.array([1e6, 2e6]))
-    with pytest.raises(SettingsError, match="a comparison is of one hose"):
-        _compare_hose(many, cyclic())
 
 
 _LAWS = {

@@ -312,8 +312,6 @@ def test_bad_input_is_refused():
         measured_curve([0.0, 0.1], [0.0, 1.0], loading="static", strain_step=-1)
     with pytest.raises(DataError, match="series do not pair up"):
         measured_curve([0.0, 0.1], [0.0], loading="static")
-    with pytest.raises(DataError, match="not series"):
-        measured_curve([[0.0]], [[1.0]], loading="static")
     with pytest.raises(SettingsError, match="cycle_number and branch go together"):
         measured_curve([0.0], [1.0], loading="static", branch=[1])
     with pytest.raises(DataError, match="do not pair up with the samples"):

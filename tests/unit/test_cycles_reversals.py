@@ -127,11 +127,6 @@ def test_a_band_that_is_not_positive_is_refused():
         find_reversals([0, 1], band=0.0)
 
 
-def test_a_table_is_no_series():
-    with pytest.raises(DataError, match=r"values are not a series; found shape \(2, 2\)"):
-        find_reversals([[0, 1], [1, 0]], band=0.5)
-
-
 def test_typical_range_is_that_of_the_cycles_and_not_of_the_way_to_them():
     assert _typical_range([0, 12, 7, 12, 7, 12, 7, 12, 0]) == 5
     with pytest.raises(DataError, match="no half cycle; found 1 reversals; needed 2 or more"):

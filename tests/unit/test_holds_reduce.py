@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from reduction.record.errors import DataError
 from reduction.record.settings import HoldSettings
 from reduction.stages.holds.prony_series import prony_tension
 from reduction.stages.holds.ramp_end import level_at_end
@@ -242,16 +241,6 @@ def test_creep_without_its_ramp_is_refused():
         specimens=("a",), settings=HoldSettings(), kind="creep",
     )  # fmt: skip
     assert "does not show the ramp" in str(hold.refusals[0])
-
-
-def test_names_that_do_not_fit_are_refused():
-    time, position, tension = record()
-    with pytest.raises(DataError, match="specimens do not fit the record; found 2 names, 1 rows"):
-        reduce_holds(
-            time, position, tension, tension,
-            standstills(time, ((0, 20),), tension[None]),
-            specimens=("a", "b"), settings=HoldSettings(),
-        )  # fmt: skip
 
 
 def test_a_long_hold_is_reduced_as_a_few_hundred_blocks():

@@ -119,13 +119,9 @@ class TestDynamicStiffness:
         found = dynamic_stiffness(loops, last_cycles=4, rated_break_strength=1.0)
         assert np.isnan(found.dynamic_stiffness) and np.isnan(found.mean_tension)
 
-    def test_what_does_not_fit_is_refused(self):
+    def test_no_cycle_is_refused(self):
         with pytest.raises(SettingsError, match="no cycle counts towards the stiffness; found 0"):
             dynamic_stiffness(loops_with((1, 2)), last_cycles=0, rated_break_strength=1.0)
-        with pytest.raises(DataError, match="levels do not fit the cycles"):
-            dynamic_stiffness(
-                loops_with((1, 2)), last_cycles=1, rated_break_strength=1.0, level=[1]
-            )
 
 
 class TestFailure:

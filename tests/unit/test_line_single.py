@@ -148,24 +148,9 @@ def test_a_line_without_any_time_decides_nothing():
     assert check.verdict.tolist() == [4, 4]
 
 
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (
-            ([0.1, 0.2], [1.0, 2.0, 3.0]),
-            r"runs do not pair up; found frequency \(2,\), values \(3,\)",
-        ),
-        (([0.1, -0.2], [1.0, 2.0]), "frequency are not positive"),
-    ],
-)
-def test_runs_that_do_not_fit_are_refused(arguments, message):
-    with pytest.raises(DataError, match=message):
-        _power_of_frequency(*arguments)
-
-
-def test_groups_are_checked():
-    with pytest.raises(DataError, match="groups of equal loads do not fit the runs"):
-        _power_of_frequency([0.1, 0.2], [1.0, 2.0], group=[1])
+def test_a_frequency_is_positive():
+    with pytest.raises(DataError, match="frequency are not positive"):
+        _power_of_frequency([0.1, -0.2], [1.0, 2.0])
 
 
 def test_the_tolerance_is_what_a_line_may_miss():

@@ -95,11 +95,6 @@ def test_only_as_much_is_alike_as_both_channels_miss():
     assert summary.uncertainty["apparent_spring_constant"] == pytest.approx([100.0])
 
 
-def test_areas_that_do_not_pair_up_are_refused():
-    with pytest.raises(DataError, match="areas do not pair up with the loops"):
-        summarise_amplitude(loops_of(np.ones((2, 3))), area=[5e-4])
-
-
 def test_break_in_of_every_cycle_is_refused():
     with pytest.raises(DataError, match="no cycle is left after break-in; found 3 cycles"):
         summarise_amplitude(loops_of(np.ones((2, 3))), area=AREA, break_in_cycles=3)

@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from reduction.record.errors import DataError
 from reduction.record.settings import ModulusSettings
 from reduction.stages.moduli.modulus_product import ModulusCurves
 from reduction.stages.moduli.segments import find_segments
@@ -169,10 +168,3 @@ def test_kept_cycles_of_a_long_test_speak_for_all_of_them():
     curves = replace(curves_of(200 * X, count=400), tangent_modulus_by_cycle=by_cycle)
     found = segments_of(curves).segment_modulus_standard_uncertainty[0, 0, 0]
     assert found == pytest.approx(np.std(stiff, ddof=1) / 20)
-
-
-def test_areas_that_do_not_pair_up_are_refused():
-    with pytest.raises(
-        DataError, match=r"areas do not pair up with the curves; found shape \(2,\)"
-    ):
-        find_segments(curves_of(200 * X), area=[AREA, AREA], settings=ModulusSettings())

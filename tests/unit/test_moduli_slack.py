@@ -145,13 +145,6 @@ def test_a_slack_tension_of_zero_is_refused():
         )
 
 
-def test_lengths_that_do_not_fit_are_refused():
-    with pytest.raises(DataError, match="relaxed free lengths do not fit the record"):
-        slack_strain_at_unloading(
-            POSITION, [pull(0.2, 0.2)], slack_tension=1.0, relaxed_free_length=[1, 2]
-        )
-
-
 def test_series_that_do_not_pair_up_are_refused():
     with pytest.raises(DataError, match="series do not pair up"):
         slack_strain_at_unloading(

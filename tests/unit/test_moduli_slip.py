@@ -80,13 +80,6 @@ def test_cycles_without_stroke_are_refused():
         )
 
 
-def test_series_that_do_not_pair_up_are_refused():
-    with pytest.raises(DataError, match="series do not pair up"):
-        cycle_tension_level(
-            np.ones(4), np.ones((1, 5)), cycle_number=np.ones(4), branch=np.ones(4), n_cycles=1
-        )
-
-
 def peaks(steps, n_cycles=600, noise=1.0, seed=0):
     rng = np.random.default_rng(seed)
     count = np.arange(1.0, n_cycles + 1)
@@ -171,8 +164,3 @@ def test_missing_cycles_are_bridged_until_they_are_too_many():
     assert tuple(map(str, slips.notes)) == (
         "used: no search for slip: 400 of 600 cycles are missing",
     )
-
-
-def test_names_that_do_not_fit_are_refused():
-    with pytest.raises(DataError, match="series do not fit the peaks.*2 names"):
-        find_slips([peaks([])], specimens=("a", "b"), settings=SlipSettings())

@@ -338,12 +338,6 @@ def test_break_in_of_every_cycle_is_refused(triangle):
         curves_of(strain, law(strain), cycles, break_in_cycles=3)
 
 
-def test_areas_that_do_not_pair_up_are_refused(triangle):
-    strain, cycles = triangle()
-    with pytest.raises(DataError, match="strain, tension and area do not pair up"):
-        curves_of(strain, law(strain), cycles, area=(AREA, AREA))
-
-
 def test_the_tension_of_a_log_in_step_with_its_cycles_is_no_surer_than_its_windows():
     # ten readings a branch, the same in all cycles, of a hose whose cords pick up: no scatter
     strain, cycles = slow_sine(20)

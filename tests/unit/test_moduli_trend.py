@@ -100,11 +100,6 @@ def test_a_negative_area_is_refused():
         fit_peak_trend(loops_of(np.ones((1, 20))), area=[-1.0])
 
 
-def test_areas_that_do_not_fit_are_refused():
-    with pytest.raises(DataError, match="areas do not fit the loops; found 2 areas; needed 1"):
-        fit_peak_trend(loops_of(np.ones((1, 20))), area=[1.0, 1.0])
-
-
 def test_cycles_count_from_one():
     with pytest.raises(DataError, match="cycles count from 1; found 0"):
         slope_per_decade([[1.0, 2.0, 3.0]], number=[0, 1, 2])

@@ -14,12 +14,6 @@ def test_an_unknown_theory_is_refused():
         predict_armour(DESIGN, 1e-3, theory="knapp")
 
 
-@pytest.mark.parametrize("strain", [[], np.ones((2, 2))])
-def test_strain_has_to_be_a_series(strain):
-    with pytest.raises(SettingsError, match="strain is not a series"):
-        predict_armour(DESIGN, strain)
-
-
 @pytest.mark.parametrize("strain", [-1.0, np.nan, np.inf])
 def test_strain_below_minus_one_or_not_finite_is_refused(strain):
     with pytest.raises(SettingsError, match="1 of 2 strains are none of a cable, first at index 1"):

@@ -82,6 +82,3 @@ def test_bad_settings_are_refused():
     falling = ArmourDesign(np.radians([50.0, 20.0]), 2.5e-3, 25e-3, 210e9)
     with pytest.raises(DataError, match="winding_angle are not above the one before"):
         _angles_of_use(falling, 1e-3, tolerance=0.02)
-    wires = ArmourDesign(np.radians([20.0, 50.0]), np.array([[1e-3], [2e-3]]), 25e-3, 210e9)
-    with pytest.raises(SettingsError, match="the design is not a series of winding angles"):
-        _angles_of_use(wires, 1e-3, tolerance=0.02)

@@ -322,11 +322,6 @@ def test_a_strain_that_is_no_number_is_refused():
         predict_hose(GUMBY, [0.1, np.nan])
 
 
-def test_strains_that_are_no_series_are_refused():
-    with pytest.raises(DataError, match=r"strain is not a series; found shape \(1, 2\)"):
-        predict_hose(GUMBY, [[0.1, 0.2]])
-
-
 def test_energy_at_no_stretch_ratio_is_refused():
     with pytest.raises(DataError, match="stretch_ratio are not positive"):
         hose_energy(GUMBY, [0.0])

@@ -5,7 +5,6 @@ import pytest
 from scipy.signal import lfilter
 
 from reduction.quantities.flags import LAG_REFUSALS
-from reduction.record.errors import DataError
 from reduction.stages import channel_lag as lag_module
 from reduction.stages.channel_lag import (
     delay_by_noise,
@@ -137,11 +136,6 @@ def test_few_turns_and_few_samples_are_refused():
     force[::90] = np.nan
     gone = lag_by_turns(time, place, [force, force], np.searchsorted(time, TURNS))
     assert gone.refusal.tolist() == [LAG_REFUSALS["few_turns"]] * 2
-
-
-def test_series_that_differ_in_length_are_refused():
-    with pytest.raises(DataError, match="time, position and tension do not pair up"):
-        lag_by_turns(np.arange(9.0), np.arange(9.0), [np.arange(8.0)], [3])
 
 
 def test_a_turn_beside_a_gap_of_days_is_left_out():

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from reduction.record.errors import DataError
 from reduction.stages.three_parameter_line.line_model import AMPLITUDE_INPUTS, FUNDAMENTAL_INPUTS
 from reduction.uncertainty.monte_carlo import N_DRAWS, _draw_line
 
@@ -132,11 +131,3 @@ def test_a_line_that_has_no_solution_itself_is_not_drawn():
     found = drawn(FUNDAMENTAL | {"quasi_static_spring_constant": [2 * STORED]}, shared=[0.1] * 4)
     assert np.isnan(found.standard_uncertainty).all()
     assert np.isnan(found.without_solution_share).all()
-
-
-def test_uncertainties_of_another_shape_are_refused():
-    with pytest.raises(DataError, match="uncertainties do not fit the inputs of the line"):
-        _draw_line(
-            FUNDAMENTAL, reading="fundamental", covariance=np.zeros((1, 3, 3)),
-            degrees_of_freedom=[9.0], contribution=np.zeros((1, 1, 4)),
-        )  # fmt: skip

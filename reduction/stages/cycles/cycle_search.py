@@ -154,8 +154,6 @@ def find_reversals(values: ArrayLike, *, band: float) -> NDArray[np.intp]:
     """
     as_positive("band", band)
     values = np.asarray(values, dtype=np.float64)
-    if values.ndim != 1:
-        raise DataError("values are not a series", found=f"shape {values.shape}", needed="1-D")
     points = _turns_of_record(values, band)
     level = take_samples(values, points)
     while level.size > 1:

@@ -16,7 +16,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reduction.record.errors import DataError
 from reduction.record.measurement import Floats
 from reduction.record.samples import take_samples
 from reduction.record.settings import Waveform
@@ -81,7 +80,7 @@ def find_levels(
 
     Raises
     ------
-    DataError
+    ValueError
         If time and channel differ in length.
 
     Notes
@@ -120,10 +119,6 @@ def find_levels(
     9.0 17.0 20.0
     """
     times, values = np.asarray(time, dtype=np.float64), np.asarray(control, dtype=np.float64)
-    if times.shape != values.shape or times.ndim != 1:
-        raise DataError(
-            "time and channel do not pair up", found=f"{times.shape} and {values.shape}"
-        )
     n_cycles = cycles.n_cycles
     if n_cycles < 2 * _FEWEST:
         return ()

@@ -1783,7 +1783,7 @@ def reduce_holds(
     Raises
     ------
     DataError
-        If the names do not fit the rows of tension and strain.
+        If time and position differ in length.
 
     Notes
     -----
@@ -1811,13 +1811,6 @@ def reduce_holds(
     """
     seconds, place = np.asarray(time, dtype=np.float64), np.asarray(position, dtype=np.float64)
     loads, stretches = np.atleast_2d(tension), np.atleast_2d(strain)
-    if not len(specimens) == loads.shape[0] == stretches.shape[0]:
-        raise DataError(
-            "specimens do not fit the record",
-            found=f"{len(specimens)} names, {loads.shape[0]} rows of tension, "
-            f"{stretches.shape[0]} of strain",
-            needed="one row a specimen",
-        )
     results = []
     for index in np.flatnonzero(~standstills.is_rest):
         earlier = bool(index) and not standstills.is_rest[index - 1]

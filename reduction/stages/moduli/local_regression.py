@@ -706,7 +706,7 @@ def curve_at(
 
     Raises
     ------
-    DataError
+    ValueError
         If the curve does not have one value per bin.
 
     Examples
@@ -717,10 +717,6 @@ def curve_at(
     """
     wanted = np.asarray(strain, dtype=np.float64)
     bins, curve = (np.asarray(series, dtype=np.float64) for series in (strain_bin, values))
-    if bins.shape != curve.shape or bins.ndim != 1:
-        raise DataError(
-            "a curve needs a value a bin", found=f"{curve.shape}", needed=f"{bins.shape}"
-        )
     known = np.isfinite(curve)
     bins, curve = bins[known], curve[known]
     if bins.size == 0:

@@ -527,7 +527,7 @@ def cycle_tension_level(
     Raises
     ------
     DataError
-        If the series do not pair up, or the cycles have no samples or no stroke.
+        If the cycles have no samples or no stroke.
 
     Notes
     -----
@@ -551,13 +551,6 @@ def cycle_tension_level(
     """
     loads = np.atleast_2d(np.asarray(tension, dtype=np.float64))
     position = np.asarray(crosshead_position, dtype=np.float64)
-    if not position.shape == np.shape(cycle_number) == np.shape(branch) == loads.shape[1:]:
-        raise DataError(
-            "series do not pair up",
-            found=f"position {position.shape}, cycle number {np.shape(cycle_number)}, branch "
-            f"{np.shape(branch)}, tension {loads.shape}",
-            needed="one length",
-        )
     number, side = np.asarray(cycle_number), np.asarray(branch)
     # Thinned before anything is computed: a log may have thousands of samples a cycle.
     step = max(1, count_samples(number) // (SAMPLES_PER_CYCLE * max(1, n_cycles)))

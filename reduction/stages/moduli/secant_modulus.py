@@ -256,15 +256,13 @@ def late_change(values: Floats) -> float:
     Raises
     ------
     ValueError
-        If the values are of more than one specimen.
+        Never by itself.
 
     Examples
     --------
     >>> late_change(np.array([106.0, 102.0, np.nan, 100.0, 100.0]))
     -2.0
     """
-    if values.ndim != 1:
-        raise ValueError(f"cycles of one specimen are needed, not values of shape {values.shape}")
     known = values[np.isfinite(values)]
     if known.size < _FEWEST_TO_SETTLE:
         return np.nan
@@ -384,8 +382,7 @@ def summarise_amplitude(
     Raises
     ------
     DataError
-        If an area is not positive, the areas do not pair up with the loops, or no cycle
-        is left.
+        If an area is not positive, or no cycle is left.
 
     Notes
     -----
@@ -423,13 +420,7 @@ def summarise_amplitude(
     """
     areas = np.atleast_1d(np.asarray(area, dtype=np.float64))
     as_positive("area", areas[~np.isnan(areas)])
-    n_specimens, n_cycles = loops.frequency.shape
-    if areas.shape != (n_specimens,):
-        raise DataError(
-            "the areas do not pair up with the loops",
-            found=f"shape {areas.shape}",
-            needed=f"({n_specimens},)",
-        )
+    n_cycles = loops.frequency.shape[1]
     if not 0 <= break_in_cycles < n_cycles:
         raise DataError(
             "no cycle is left after break-in",
@@ -815,7 +806,7 @@ def fit_peak_trend(
     Raises
     ------
     DataError
-        If an area is not positive, or their number does not fit the loops.
+        If an area is not positive.
 
     Notes
     -----
@@ -838,10 +829,6 @@ def fit_peak_trend(
     """
     peaks = np.atleast_2d(loops.peak_tension)
     areas = np.atleast_1d(np.asarray(area, dtype=np.float64))
-    if areas.shape != peaks.shape[:1]:
-        raise DataError(
-            "areas do not fit the loops", found=f"{areas.size} areas", needed=f"{peaks.shape[0]}"
-        )
     as_positive("area", areas[np.isfinite(areas)])
     start = first_of_trend(peaks.shape[1], break_in_cycles)
     settled = first_of_trend(peaks.shape[1], break_in_cycles, is_creep=True)

@@ -231,7 +231,7 @@ def find_segments(curves: ModulusCurves, *, area: ArrayLike, settings: ModulusSe
     Raises
     ------
     DataError
-        If an area is not positive, or the areas do not pair up with the curves.
+        If an area is not positive.
 
     Notes
     -----
@@ -280,12 +280,6 @@ def find_segments(curves: ModulusCurves, *, area: ArrayLike, settings: ModulusSe
     """
     areas = np.atleast_1d(as_positive("area", area))
     n_specimens = curves.branch_tension.shape[0]
-    if areas.shape != (n_specimens,):
-        raise DataError(
-            "the areas do not pair up with the curves",
-            found=f"shape {areas.shape}",
-            needed=f"({n_specimens},)",
-        )
     table = np.full((9, n_specimens, 2, settings.maximum_segments), np.nan)
     for at in np.ndindex(n_specimens, 2):
         if np.count_nonzero(_reached(curves, at)) < _FEWEST_BINS:

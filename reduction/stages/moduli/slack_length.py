@@ -15,7 +15,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from reduction.record.arrays import as_positive, as_same_shape
-from reduction.record.errors import DataError
 from reduction.record.measurement import Bools, Floats, read_only_arrays
 from reduction.record.notes import Note, note
 from reduction.record.samples import first_sample, last_sample
@@ -201,8 +200,7 @@ def slack_strain_at_unloading(
     Raises
     ------
     DataError
-        If the series do not match, the slack tension is not positive, or the lengths do
-        not match the rows.
+        If the series do not match, or the slack tension is not positive.
 
     Notes
     -----
@@ -225,12 +223,6 @@ def slack_strain_at_unloading(
     """
     loads = np.atleast_2d(np.asarray(tension, dtype=np.float64))
     lengths = np.atleast_1d(np.asarray(relaxed_free_length, dtype=np.float64))
-    if lengths.shape != loads.shape[:1]:
-        raise DataError(
-            "relaxed free lengths do not fit the record",
-            found=f"{lengths.size} lengths",
-            needed=f"{loads.shape[0]}",
-        )
     found, uncertainty, by_tension, by_lag = np.full((4, loads.shape[0]), np.nan)
     remarks = []
     for row, (load, length) in enumerate(zip(loads, lengths, strict=True)):

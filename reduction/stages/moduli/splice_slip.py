@@ -648,7 +648,7 @@ def find_slips(
     Raises
     ------
     DataError
-        If the names or the level do not fit the peaks.
+        If the false-alarm rate is not a chance.
 
     Notes
     -----
@@ -673,12 +673,6 @@ def find_slips(
     peaks = np.atleast_2d(np.asarray(peak_tension, dtype=float))
     level = peaks if tension_level is None else np.atleast_2d(np.asarray(tension_level, float))
     slopes = np.asarray([np.nan] * len(peaks) if tension_slope is None else tension_slope, float)
-    if level.shape != peaks.shape or not len(specimens) == slopes.size == len(peaks):
-        raise DataError(
-            "the series do not fit the peaks",
-            found=f"level {level.shape}, {len(specimens)} names, {slopes.size} slopes",
-            needed=f"level {peaks.shape}, {peaks.shape[0]} names and slopes",
-        )
     n_cycles = peaks.shape[1]
     times = np.arange(float(n_cycles)) if time is None else np.asarray(time, float)
     notes: list[Note] = []

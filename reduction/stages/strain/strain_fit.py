@@ -124,12 +124,6 @@ def _row_scatter(
     1.0 5.0
     """
     left, columns = np.asarray(residual, dtype=np.float64), np.atleast_2d(design)
-    if left.ndim != 1 or columns.shape[1:] != left.shape:
-        raise DataError(
-            "residuals and the design of their fit do not pair up",
-            found=f"{left.shape} and {columns.shape}",
-            needed="one column of the design for each residual",
-        )
     spare = left.size - columns.shape[0]
     if not stated > 0:
         return _unstated(left, spare)

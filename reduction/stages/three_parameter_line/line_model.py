@@ -805,12 +805,6 @@ class SingleTimeCheck:
 def _membership(group: ArrayLike | None, n_runs: int) -> Floats:
     """One row for each group of runs at equal loads, 1 where a run belongs to it."""
     labels = np.zeros(n_runs, dtype=np.int64) if group is None else np.asarray(group)
-    if labels.shape != (n_runs,):
-        raise DataError(
-            "groups of equal loads do not fit the runs",
-            found=f"shape {labels.shape}",
-            needed=f"({n_runs},)",
-        )
     member: Floats = (np.unique(labels)[:, None] == labels).astype(np.float64)
     return member
 
@@ -839,12 +833,6 @@ def _power_of_frequency(
     """
     x = np.log(as_positive("frequency", frequency))
     series = np.asarray(values, dtype=np.float64)
-    if x.ndim != 1 or series.shape[-1:] != x.shape:
-        raise DataError(
-            "runs do not pair up",
-            found=f"frequency {x.shape}, values {series.shape}",
-            needed="one frequency a run, on the last axis of the values",
-        )
     member = _membership(group, x.size)
     used = np.isfinite(series) & (series > 0)
     y = np.log(np.where(used, series, 1.0))

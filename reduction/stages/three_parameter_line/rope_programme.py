@@ -238,7 +238,7 @@ def dynamic_stiffness(
     SettingsError
         If no cycle is asked for.
     DataError
-        If the levels do not fit the cycles, or a strength is not positive.
+        If a strength is not positive.
 
     Notes
     -----
@@ -260,10 +260,6 @@ def dynamic_stiffness(
             "no cycle counts towards the stiffness", found=str(last_cycles), needed="1 or more"
         )
     labels = np.zeros(n_cycles, dtype=np.int64) if level is None else np.asarray(level)
-    if labels.shape != (n_cycles,):
-        raise DataError(
-            "levels do not fit the cycles", found=str(labels.shape), needed=f"({n_cycles},)"
-        )
     strength = one_a_specimen(rated_break_strength, n_specimens)[:, None]
     names, begins = np.unique(labels, return_index=True)
     names = names[np.argsort(begins)]
@@ -583,8 +579,7 @@ def tensile_pull(
     Raises
     ------
     DataError
-        If the series do not pair up, a specimen has fewer than three readings of tension, or
-        a strength is not positive.
+        If a specimen has fewer than three readings of tension, or a strength is not positive.
 
     Notes
     -----
@@ -605,12 +600,6 @@ def tensile_pull(
     """
     loads = np.atleast_2d(np.asarray(tension, dtype=np.float64))
     stretches = np.atleast_2d(np.asarray(strain, dtype=np.float64))
-    if loads.shape != stretches.shape:
-        raise DataError(
-            "strain does not fit the tension",
-            found=f"{stretches.shape} and {loads.shape}",
-            needed="one shape",
-        )
     strength = one_a_specimen(rated_break_strength, len(loads))
     numbers = np.full((4, len(loads)), np.nan)
     fell = np.zeros(len(loads), dtype=bool)

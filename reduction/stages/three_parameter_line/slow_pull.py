@@ -539,8 +539,8 @@ def slope_of_cubic(tension: ArrayLike, coefficient: ArrayLike) -> Floats:
 
     Raises
     ------
-    DataError
-        If there are not four coefficients.
+    IndexError
+        If there are fewer than four coefficients.
 
     Notes
     -----
@@ -555,8 +555,6 @@ def slope_of_cubic(tension: ArrayLike, coefficient: ArrayLike) -> Floats:
     [1.168 1.836 3.238]
     """
     load, terms = np.asarray(tension, dtype=np.float64), np.asarray(coefficient, dtype=np.float64)
-    if terms.shape != (4,):
-        raise DataError("a cubic has four coefficients", found=str(terms.shape), needed="(4,)")
     return _inverse_of_positive(terms[1] + load * (2 * terms[2] + load * 3 * terms[3]))
 
 
