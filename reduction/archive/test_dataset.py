@@ -14,17 +14,13 @@ from reduction.archive.dataset_builder import build_dataset, global_attributes
 from reduction.archive.shared_errors import with_shared
 from reduction.archive.test_variables import (
     COEFFICIENTS,
-    amplitude_values,
     curve_values,
     cycle_values,
     elastomer_values,
-    end_modulus_values,
     first_loading_values,
     hold_values,
-    identity_values,
     lag_values,
     line_values,
-    loop_values,
     pull_values,
     random_of_line,
     ratio_values,
@@ -35,7 +31,8 @@ from reduction.archive.test_variables import (
     standstill_values,
     stepwise_values,
     stress_at_strain_values,
-    trend_values,
+    values_of,
+    with_uncertainty,
 )
 from reduction.archive.variables import Values, note_values, numbers, pad, texts
 from reduction.quantities.flags import QUALITY_MASKS
@@ -423,13 +420,13 @@ def _all_values(test: ReducedTest, kept: _KeptSamples | None) -> Values:
     if test.cycles is not None:
         values |= cycle_values(test.cycles, control=test.description.control)
     if test.loops is not None:
-        values |= loop_values(test.loops)
+        values |= with_uncertainty(test.loops)
     if test.end_moduli is not None:
-        values |= end_modulus_values(test.end_moduli)
+        values |= values_of(test.end_moduli)
     if test.identity is not None:
-        values |= identity_values(test.identity)
+        values |= values_of(test.identity, without=("notes",))
     if test.amplitude is not None:
-        values |= amplitude_values(test.amplitude)
+        values |= with_uncertainty(test.amplitude, "test_")
     if test.line is not None and test.line_of_test is not None:
         values |= line_values(test.line, test.line_of_test, test.quasi_static_standard_uncertainty)
     if any(test.pulls):
@@ -437,7 +434,7 @@ def _all_values(test: ReducedTest, kept: _KeptSamples | None) -> Values:
     if test.rope_step is not None:
         values |= rope_values(test.rope_step, test.specimens)
     if test.trend is not None:
-        values |= trend_values(test.trend)
+        values |= values_of(test.trend)
     if test.slips is not None:
         values |= slip_values(test.slips, specimens=names)
     if test.curves is not None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import fields
 from typing import Any
 
@@ -96,7 +96,21 @@ def cycle_values(cycles: Cycles, *, control: str) -> Values:
     } | ({} if cycles.count is None else {"cycle_number_in_test": cycles.count})
 
 
-def _with_uncertainty(product: Loops | AmplitudeSummary, prefix: str = "") -> Values:
+def values_of(
+    product: EndModuli | CycleIdentity | PeakTrend | ModulusCurves | Segments,
+    *,
+    without: Collection[str] = (),
+) -> Values:
+    """Return the fields of a product of a stage, by their names."""
+    return {
+        item.name: getattr(product, item.name)
+        for item in fields(product)
+        if item.name not in without
+    }
+
+
+def with_uncertainty(product: Loops | AmplitudeSummary, prefix: str = "") -> Values:
+    """Return the fields of a product with an ``uncertainty``, and these uncertainties."""
     values: Values = {
         f"{prefix}{item.name}": getattr(product, item.name)
         for item in fields(product)
@@ -105,33 +119,6 @@ def _with_uncertainty(product: Loops | AmplitudeSummary, prefix: str = "") -> Va
     for name, uncertainty in product.uncertainty.items():
         values[f"{prefix}{name}_standard_uncertainty"] = uncertainty
     return values
-
-
-def loop_values(loops: Loops) -> Values:
-    """Return the numbers of each loop."""
-    return _with_uncertainty(loops)
-
-
-def amplitude_values(amplitude: AmplitudeSummary) -> Values:
-    """Return the means over the cycles of a test, with the prefix ``test_``."""
-    return _with_uncertainty(amplitude, "test_")
-
-
-def end_modulus_values(moduli: EndModuli) -> Values:
-    """Return secant and chord modulus of each cycle."""
-    return {item.name: getattr(moduli, item.name) for item in fields(moduli)}
-
-
-def identity_values(identity: CycleIdentity) -> Values:
-    """Return both sides of the closed-cycle identity and the residual."""
-    return {
-        item.name: getattr(identity, item.name) for item in fields(identity) if item.name != "notes"
-    }
-
-
-def trend_values(trend: PeakTrend) -> Values:
-    """Return the slopes against the logarithm of the cycle number."""
-    return {item.name: getattr(trend, item.name) for item in fields(trend)}
 
 
 def slip_values(slips: Slips, *, specimens: tuple[str, ...]) -> Values:
@@ -159,12 +146,10 @@ def curve_values(curves: ModulusCurves) -> Values:
         "made",
         "tangent_modulus_window_uncertainty",
     )
-    values: Values = {
-        item.name: getattr(curves, item.name)
-        for item in fields(curves)
-        if item.name not in apart and getattr(curves, item.name) is not None
+    given = {
+        name: value for name, value in values_of(curves, without=apart).items() if value is not None
     }
-    return values | {
+    return given | {
         "branch_name": texts(BRANCH_NAMES),
         "strain_window": np.array(curves.window),
     }
@@ -189,12 +174,7 @@ def first_loading_values(curves: ModulusCurves) -> Values:
 
 def segment_values(segments: Segments) -> Values:
     """Return the piecewise-linear moduli."""
-    values: Values = {
-        item.name: getattr(segments, item.name)
-        for item in fields(segments)
-        if item.name != "criterion"
-    }
-    return values | {
+    return values_of(segments, without=("criterion",)) | {
         "branch_name": texts(BRANCH_NAMES),
         "segment": np.arange(1, segments.segment_modulus.shape[-1] + 1),
         "segment_criterion": np.array(segments.criterion),
