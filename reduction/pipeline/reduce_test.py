@@ -65,6 +65,7 @@ from reduction.stages.cycles.cycle_product import Cycles, Loops
 from reduction.stages.cycles.cycle_search import control_channel, label_phases
 from reduction.stages.cycles.loop_sense import (
     OPEN,
+    finite_median,
     notes_of_loops,
     unlike_neighbours,
     waveform_of_log,
@@ -182,9 +183,9 @@ def _sign(name: str, loops: Loops, index: int, slopes: Floats | None) -> list[No
 
     Where loops run backward, the loops show which channel is reversed.
     """
-    level = _median(loops.mean_tension[index])
-    slope = np.nan if slopes is None else _median(slopes)
-    is_backward = _median(loops.storage_over_time[index]) < 0
+    level = finite_median(loops.mean_tension[index])
+    slope = np.nan if slopes is None else finite_median(slopes)
+    is_backward = finite_median(loops.storage_over_time[index]) < 0
     if level < 0 or not slope <= 0 or is_backward:
         return []
     return [note("sign-of-tension", name, slope=slope)]
@@ -214,7 +215,7 @@ def _slack(name: str, valley_tension: Floats, slack_tension: float) -> list[Note
     slack = int(np.count_nonzero(valley_tension <= slack_tension))
     if not slack:
         return []
-    least = _median(valley_tension)
+    least = finite_median(valley_tension)
     if least < -_PUSHED * slack_tension:
         return [note("pushed-in-cycles", name, least=least)]
     return [
@@ -251,11 +252,6 @@ def _waveform(cycles: Cycles, waveform: str) -> list[Note]:
         return []
     share = count_samples(cycles.is_in_trimmed_branch) / int(n_samples.sum())
     return [note("not-triangular", share=share)] if share < _TRIANGULAR_SHARE else []
-
-
-def _median(values: Floats) -> float:
-    known = values[np.isfinite(values)]
-    return float(np.median(known)) if known.size else float("nan")
 
 
 _TIMES = 10.0  # the greatest reading of a log

@@ -345,6 +345,12 @@ def coverage_factor(degrees_of_freedom: ArrayLike) -> Floats:
     return np.asarray(scipy.special.stdtrit(bounded, (1 + CONFIDENCE) / 2))
 
 
+def covariance_root(covariance: Floats) -> Floats:
+    """Matrix whose product with its own transpose is a covariance, which may be singular."""
+    variance, direction = np.linalg.eigh(covariance)
+    return np.asarray(direction * np.sqrt(np.maximum(variance, 0)))
+
+
 def merged(parts: Sequence[Contributions]) -> Contributions:
     """Merge contributions to different quantities over all their components.
 

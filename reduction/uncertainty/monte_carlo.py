@@ -30,6 +30,7 @@ from reduction.record.arrays import as_same_shape
 from reduction.record.contributions import (
     LineSpread,
     combined_standard_uncertainty,
+    covariance_root,
     coverage_factor,
     effective_degrees_of_freedom,
 )
@@ -150,7 +151,7 @@ def _draw_line(
             continue
         result["linear_standard_uncertainty"][:, place] = linear
         # einsum, not a matrix product, whose last digits depend on the number of threads
-        scattered = np.einsum("dj,ij->di", own, _root(random[place]))
+        scattered = np.einsum("dj,ij->di", own, covariance_root(random[place]))
         moved = np.einsum("dc,ci->di", common, shared[:, place])
         normal = _identified(at * (1 + scattered + moved), reading)
         wide = np.sqrt(freedom[place] / (2 * gammaincinv(freedom[place] / 2, uniform)))[:, None]
@@ -167,12 +168,6 @@ def _draw_line(
         ends = np.quantile(heavy[:, np.isfinite(heavy).all(axis=0)], _INTERVAL, axis=1)
         result["low"][:, place], result["high"][:, place] = ends
     return _LineDraws(**result, without_solution_share=without)
-
-
-def _root(covariance: Floats) -> Floats:
-    """A matrix whose product with its own transpose is the covariance."""
-    variance, direction = np.linalg.eigh(covariance)
-    return np.asarray(direction * np.sqrt(np.maximum(variance, 0)))
 
 
 def _linear(

@@ -83,7 +83,7 @@ def without_backward_loops(loops: Loops) -> Loops:
     [[nan nan]]
     """
     backward = _runs_backward(loops)
-    falls = np.array([_median(row) < 0 for row in loops.storage_over_time], dtype=bool)
+    falls = np.array([finite_median(row) < 0 for row in loops.storage_over_time], dtype=bool)
     if not falls.any():
         return loops
     kept = {
@@ -126,9 +126,9 @@ def contradicts_sine(loops: Loops) -> Bools:
         by_energy = lost[known] / of_energy[known]
         apart = lost[known] - by_energy
         scatter = float(apart.std()) / np.sqrt(known.sum() - 1)
-        greater = max(abs(_median(lost[known])), abs(_median(by_energy)))
-        least = _SINE_LEAST * abs(_median(loops.storage_over_time[row]))
-        told[row] = abs(_median(apart)) > max(
+        greater = max(abs(finite_median(lost[known])), abs(finite_median(by_energy)))
+        least = _SINE_LEAST * abs(finite_median(loops.storage_over_time[row]))
+        told[row] = abs(finite_median(apart)) > max(
             _SINE_TOLD * greater, _BEYOND_SCATTER * scatter, least
         )
     return told
@@ -220,7 +220,7 @@ def unlike_neighbours(
         noise.append(reading_noise(driven[part]) / half)
     if not left:
         return 0.0
-    scatter = 1.4826 * _median(np.abs(np.array(gone) - np.median(gone)))
+    scatter = 1.4826 * finite_median(np.abs(np.array(gone) - np.median(gone)))
     share = max(float(np.median(left)), scatter)
     n_readings = float(np.median(cycles.last - cycles.first))
     # a turn is uncertain by up to half a reading
@@ -407,7 +407,7 @@ def _least_delay(loops: Loops, row: int) -> float:
     :math:`2 \pi^2 f` times both amplitudes; for ramps without a rest 16 f times.
     """
     frequency, tension, strain, energy, loss, storage = (
-        _median(getattr(loops, one)[row])
+        finite_median(getattr(loops, one)[row])
         for one in ("frequency", "tension_amplitude", "strain_amplitude", "hysteresis_energy",
                     "loss_over_time", "storage_over_time")
     )  # fmt: skip
@@ -512,7 +512,7 @@ def notes_of_loops(
     told: list[Note] = []
     for row, (name, stated) in enumerate(zip(names, lag, strict=True)):
         tension, strain, storage = (
-            _median(getattr(loops, one)[row])
+            finite_median(getattr(loops, one)[row])
             for one in ("mean_tension", "mean_strain", "storage_over_time")
         )
         if backward[row]:
@@ -523,7 +523,7 @@ def notes_of_loops(
             )  # fmt: skip
             continue
         if not_of_sine[row]:
-            share = _median(loops.fundamental_energy_share[row])
+            share = finite_median(loops.fundamental_energy_share[row])
             told.append(note("loops-not-of-a-sine", name, share=share, effect=share - 1))
         energy = loops.hysteresis_energy[row]
         known = energy[np.isfinite(energy)]
@@ -545,7 +545,7 @@ def notes_of_loops(
             told.append(replace(found, severity="note") if cause == "lag" else found)
         change, duration = _drift_of_lag(loops, row, stated=stated)
         if np.isfinite(change):
-            half = np.pi**2 * change * _median(
+            half = np.pi**2 * change * finite_median(
                 loops.frequency[row] * loops.tension_amplitude[row] * loops.strain_amplitude[row]
             )  # fmt: skip
             told.append(
@@ -559,7 +559,7 @@ def notes_of_loops(
         mean = float(energy[later].mean())
         closed = float(np.nanmean(loops.closed_loop_energy[row, later]))
         # in an elastic specimen any drift is many times the loss
-        elastic = np.pi * abs(storage) * _median(loops.strain_amplitude[row]) ** 2
+        elastic = np.pi * abs(storage) * finite_median(loops.strain_amplitude[row]) ** 2
         least = max(_DRIFT_TOLD * abs(mean), _BEYOND_SCATTER * scatter, _LEAST_LOSS * elastic)
         if abs(closed - mean) > least:
             effect = (closed - mean) / abs(mean)
@@ -577,7 +577,9 @@ def _runs_backward(loops: Loops) -> Bools:
     than its slope stores, is due to friction.
     """
     pairs = zip(loops.storage_over_time, loops.loss_over_time, strict=True)
-    middle = np.array([[_median(store), _median(loss)] for store, loss in pairs]).reshape(-1, 2)
+    middle = np.array(
+        [[finite_median(store), finite_median(loss)] for store, loss in pairs]
+    ).reshape(-1, 2)
     return np.asarray(middle[:, 0] < -np.fmax(middle[:, 1], 0) / _FRICTION)
 
 
@@ -590,6 +592,7 @@ def _channel_that_runs_backward(tension: float, strain: float) -> str:
     return ""
 
 
-def _median(values: Floats) -> float:
+def finite_median(values: Floats) -> float:
+    """Median of the finite values; NaN without any."""
     known = values[np.isfinite(values)]
     return float(np.median(known)) if known.size else float("nan")

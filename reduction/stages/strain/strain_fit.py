@@ -29,6 +29,7 @@ import scipy
 from numpy.typing import ArrayLike
 
 from reduction.record.arrays import as_finite, as_positive, as_same_shape
+from reduction.record.contributions import covariance_root
 from reduction.record.errors import DataError, FitError
 from reduction.record.measurement import (
     Bools,
@@ -537,7 +538,7 @@ def _fit_splice_ratio(
         reading_uncertainty**2 * (2 * of_toe**2 + relaxed_splice_length**-2),
         residual,
         x[None],
-        _root(np.asarray(relaxed_covariance, dtype=np.float64)).T @ slope,
+        covariance_root(np.asarray(relaxed_covariance, dtype=np.float64)).T @ slope,
     )
     variance = variance * scatter.widening**2 if variance > 0 else scatter.variance / total
     sensitivity = np.array(
@@ -551,12 +552,6 @@ def _fit_splice_ratio(
     return _SpliceCalibration(
         np.array([ratio]), np.array([[variance]]), sensitivity, residual, scatter.note
     )
-
-
-def _root(covariance: Floats) -> Floats:
-    """Matrix whose product with its own transpose is a covariance, which may be singular."""
-    variance, direction = np.linalg.eigh(covariance)
-    return np.asarray(direction * np.sqrt(np.maximum(variance, 0)))
 
 
 EXPONENT_BOUNDS = (0.3, 1.9)
