@@ -27,7 +27,6 @@ from reduction.report.experiment_report import (
     confounding_words,
     draw_checks,
     draw_contours,
-    draw_derived,
     draw_effects,
     draw_forms,
     draw_pareto,
@@ -121,7 +120,7 @@ def _make_experiment_section(view: ExperimentView, tests: Mapping[str, TestView]
         *_effect_parts(view),
         make_part(
             "The three-parameter line",
-            [*draw_single_time(view, tests), *draw_derived(view)],
+            draw_single_time(view, tests),
             [line_of_runs_table(view, tests)],
             single_time_words(view),
         ),

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import ndtri, stdtrit
+from scipy.special import stdtrit
 
 from reduction.archive.shared_errors import FREEDOM
 from reduction.archive.uncertainty_budget import all_budgets
@@ -549,7 +549,7 @@ _WIDE = 50.0
 def draw_checks(
     view: ExperimentView, surfaces: ResponseSurfaces, index: int, order: Mapping[str, int]
 ) -> list[Figure]:
-    """Draw predicted against actual, residuals in the order of the runs, and on normal scores."""
+    """Draw predicted against actual, and residuals in the order of the runs."""
     name = surfaces.response_names[index]
     unit = response_unit(name, view.units)
     residual = surfaces.residual[index] * unit.factor
@@ -559,7 +559,6 @@ def draw_checks(
     figures = (
         _predicted(view, surfaces, index, unit, known),
         _in_order(view, name, residual, unit, order),
-        _normal(view, surfaces, index),
     )
     return [figure for figure in figures if figure.has_data]
 
@@ -613,29 +612,6 @@ def _in_order(
         " or bedding-in that no factor accounts for.",
         data, synthetic=view.is_synthetic,
         xaxis=axis("order of the run [1]"), yaxis=axis(unit.label("residual"), zeroline=True),
-    )  # fmt: skip
-
-
-def _normal(view: ExperimentView, surfaces: ResponseSurfaces, index: int) -> Figure:
-    name = surfaces.response_names[index]
-    inner = surfaces.diagnostics.studentized_residual[index]
-    known = np.flatnonzero(np.isfinite(inner))
-    own = known[np.argsort(inner[known], kind="stable")]
-    # Blom's plotting positions, as for the straightness that is given with them
-    score = ndtri((np.arange(1, own.size + 1) - 0.375) / (own.size + 0.25))
-    straight = surfaces.diagnostics.probability_plot_correlation[index]
-    ends = np.array([-2.0, 2.0])
-    data = [
-        line(ends, ends, name="normal", colour=_CHECK_GREY, dash="dot", showlegend=False),
-        _points(score, inner[own], [view.runs[k] for k in own]),
-    ]
-    return make_figure(
-        f"{view.key}-{name}-normal", f"{view.name}: {in_words(name)}, normal plot",
-        "Standardised residuals against normal scores; dotted: a normal sample. Squared"
-        f" correlation {straight:.3f}. With few degrees of freedom the plot shows an outlier, but"
-        " little of the distribution.",
-        data, synthetic=view.is_synthetic,
-        xaxis=axis("normal score [1]"), yaxis=axis("studentized residual [1]"),
     )  # fmt: skip
 
 
@@ -1570,40 +1546,6 @@ def draw_forms(view: ExperimentView) -> list[Figure]:
             yaxis=axis(unit.label("measured less form")),
         ),
     ]  # fmt: skip
-
-
-def draw_derived(view: ExperimentView) -> list[Figure]:
-    """Draw K_1 and tau from surfaces of E' and E'' against those from the loops of the runs."""
-    found = []
-    for name, symbol in (("dissipation_spring_constant", "K_1"), ("relaxation_time", "tau")):
-        unit = response_unit(name, view.units)
-        own = view.per_run(f"{name}_measured") * unit.factor
-        smooth = view.per_run(f"derived_{name}") * unit.factor
-        known = np.isfinite(own) & np.isfinite(smooth)
-        if not known.any():
-            continue
-        both = np.concatenate([own[known], smooth[known]])
-        ends = np.array([both.min(), both.max()])
-        data = [
-            line(ends, ends, name="equal", colour=_FORM_GREY, dash="dot", showlegend=False),
-            {
-                "type": "scatter", "mode": "markers", "name": "runs", "showlegend": False,
-                "x": plain_numbers(own[known]), "y": plain_numbers(smooth[known]),
-                "text": [plot_text(view.runs[k]) for k in np.flatnonzero(known)],
-                "marker": {"size": 8, "color": COLOURS[0]},
-            },
-        ]  # fmt: skip
-        found.append(
-            make_figure(
-                f"{view.key}-derived-{name}", f"{view.name}: {symbol} from surfaces of E' and E''",
-                f"{symbol} from smooth surfaces of E' and E'' against {symbol} of the loops of each"
-                " run; dotted: equal. A run off the line disagrees with its neighbours.",
-                data, synthetic=view.is_synthetic, height=400,
-                xaxis=axis(unit.label(f"{symbol} of the loops")),
-                yaxis=axis(unit.label(f"{symbol} from surfaces")),
-            )
-        )  # fmt: skip
-    return found
 
 
 def _by_form(view: ExperimentView, place: int, name: str, x: Floats, y: Floats) -> Trace:

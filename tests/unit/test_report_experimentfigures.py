@@ -15,7 +15,6 @@ from reduction.report.experiment_report import (
     _term_words,
     draw_checks,
     draw_contours,
-    draw_derived,
     draw_effects,
     draw_forms,
     draw_pareto,
@@ -160,18 +159,15 @@ def test_lines_of_one_time_and_of_inverse_frequency_cross_in_the_middle_of_the_r
     assert figure.layout["xaxis"]["type"] == figure.layout["yaxis"]["type"] == "log"
 
 
-def test_forms_stand_beside_the_quadratic_surface_and_derived_beside_measured():
+def test_forms_stand_beside_the_quadratic_surface():
     view = view_of(surface_experiment())
     against, missed = draw_forms(view)
     names = [trace["name"] for trace in against.data[1:]]
     assert names == ["Del Vecchio", "mean load", "quadratic surface"]
     quadratic = view.array("apparent_spring_constant_residual")
     assert missed.data[-1]["y"] == pytest.approx(quadratic, rel=1e-4, abs=1e-6 * quadratic.max())
-    assert [figure.key.rsplit("-", 1)[1] for figure in draw_derived(view)] == [
-        "dissipation_spring_constant", "relaxation_time",
-    ]  # fmt: skip
     nothing = view_of(screening_experiment())
-    assert draw_forms(nothing) == draw_derived(nothing) == draw_single_time(nothing) == []
+    assert draw_forms(nothing) == draw_single_time(nothing) == []
 
 
 def test_effects_have_the_least_that_counts_and_a_half_normal_plot():
