@@ -549,7 +549,6 @@ class _LoadSharing:
     """Worst loads of one tether over a tolerance of lengths; arrays have the shape (...)."""
 
     tension: Floats
-    equal_load: Floats
     greatest_load: Floats
     least_load: Floats
     tension_at_slack: float
@@ -613,7 +612,7 @@ def _worst_sharing(
                 needed=f"at most {assembly.tension[-1]:.4g} N",
             )
         rows.append(assembly.loads_at(load)[0])
-    return _LoadSharing(load, load / n_tethers, rows[0], rows[1], _tension_at_slack(assembly))
+    return _LoadSharing(load, rows[0], rows[1], _tension_at_slack(assembly))
 
 
 _SPAN, _LEAST_SPANS = 0.05, 10

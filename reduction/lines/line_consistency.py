@@ -124,8 +124,6 @@ class _RefittedSurface:
         B1 .. B10 as printed, and fitted to the solutions. [SI unit of the quantity]
     z : ndarray, shape (10,)
         Their difference over the standard error from the printed r2; NaN where r2 is open. [1]
-    n_solved : int
-        Runs of the design that have a solution.
     """
 
     quantity: str
@@ -133,7 +131,6 @@ class _RefittedSurface:
     printed: Floats
     consistent: Floats
     z: Floats
-    n_solved: int
 
     @property
     def worst(self) -> int:
@@ -373,7 +370,6 @@ def refitted_surfaces(line: LineSource) -> tuple[_RefittedSurface, ...]:
                     printed=surface.coefficient,
                     consistent=refit,
                     z=(surface.coefficient - refit) / error,
-                    n_solved=int(good.sum()),
                 )
             )
     return tuple(found)
