@@ -229,9 +229,10 @@ def _inertia_of(
         length = length_by_stroke(record.crosshead_position, cycles, loops.strain_amplitude[index])
     return Inertia(
         train.end_mass[index], tuple(error),
-        *(np.asarray(getattr(loops, name)[index])
-          for name in ("frequency", "mean_strain", "mean_tension")),
-        length,
+        frequency=np.asarray(loops.frequency[index]),
+        mean_strain=np.asarray(loops.mean_strain[index]),
+        mean_tension=np.asarray(loops.mean_tension[index]),
+        length_by_stroke=length,
     )  # fmt: skip
 
 
