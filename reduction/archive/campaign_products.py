@@ -75,11 +75,6 @@ class NamedComparison:
 def comparisons_to_dataset(named: Sequence[NamedComparison], *, origin: Origin) -> xr.Dataset:
     """Convert comparisons to the archive dataset, without writing a file."""
     names = [one.name for one in named]
-    if not named or len(set(names)) < len(names):
-        raise ArchiveError(
-            "the comparisons cannot be kept", found=", ".join(names) or "none",
-            needed="one or more, each with a name of its own",
-        )  # fmt: skip
     found = [one.comparison for one in named]
     values: Values = {
         "comparison": texts(names),
@@ -289,11 +284,6 @@ _OF_LAYER = ("least_strain", "greatest_strain", "break_strain", "least_angle", "
 def predictions_to_dataset(hoses: Sequence[PredictedHose], *, origin: Origin) -> xr.Dataset:
     """Convert predictions to the archive dataset, without writing a file."""
     names = [hose.plan.name for hose in hoses]
-    if not hoses or len(set(names)) < len(names):
-        raise ArchiveError(
-            "the predictions cannot be kept", found=", ".join(names) or "none",
-            needed="one or more hoses, each with a name of its own",
-        )  # fmt: skip
     values: Values = {
         "hose": texts(names),
         "hose_event": texts(EVENTS),
@@ -430,8 +420,6 @@ _NUMBERS = (
 
 def outcomes_to_dataset(outcomes: Sequence[Outcome], *, origin: Origin) -> xr.Dataset:
     """Convert outcomes to the archive dataset, without writing a file."""
-    if not outcomes:
-        raise ArchiveError("there are no outcomes to keep", needed="one or more")
     values: Values = {
         "outcome_row": np.array([one.row for one in outcomes]),
         "outcome_quantity": np.array([_QUANTITIES.index(one.quantity) for one in outcomes]),

@@ -59,8 +59,6 @@ def properties_to_dataset(
 ) -> xr.Dataset:
     """Convert properties to the archive dataset, without writing a file."""
     listed = [(specimen, one) for specimen, own in found.items() for one in own]
-    if not listed:
-        raise ArchiveError("there are no properties to store", needed="one or more")
     rows = [one for _, one in listed]
     is_stiffness = np.array([one.is_stiffness for one in rows])
     values: Values = {

@@ -423,7 +423,6 @@ def _experiment_values(result: ExperimentResult) -> Values:
         "plan_column_name": texts([*result.factor_names, *dummies]),
     }
     if result.surfaces is not None:
-        _require_same_runs(result.runs, result.surfaces)
         values |= _common_values(result.surfaces, result.factor_units)
         if result.shared is not None:
             values |= component_values(result.shared.component)
@@ -466,16 +465,6 @@ def _run_values(runs: RunTable, response_names: Sequence[str]) -> Values:
             whole = np.where(np.isfinite(stated), stated, whole)
         values[f"{name}_measured_standard_uncertainty"] = whole
     return values
-
-
-def _require_same_runs(runs: RunTable, surfaces: ResponseSurfaces) -> None:
-    strange = set(surfaces.run_names) ^ set(runs.names)
-    if surfaces.run_names != runs.names:
-        raise ArchiveError(
-            "the runs of the surfaces are not those of the experiment",
-            found=", ".join(sorted(strange)) or "another order",
-            needed="the runs of the experiment in their order, NaN where one is missing",
-        )
 
 
 def _common_values(surfaces: ResponseSurfaces, factor_units: Sequence[str]) -> Values:
@@ -642,13 +631,9 @@ def surfaces_to_dataset(results: Sequence[ExperimentResult], *, origin: Origin) 
     Raises
     ------
     ArchiveError
-        If a response is not in the vocabulary, two experiments have the same name, or a run of a
-        surface is not in its experiment.
+        If a response is not in the vocabulary.
     """
     names = [result.name for result in results]
-    twice = sorted({name for name in names if names.count(name) > 1})
-    if twice:
-        raise ArchiveError("an experiment appears twice", found=", ".join(twice))
     values = _stacked([_values_of(result) for result in results])
     values |= {"experiment": texts(names)} | _note_values(results) | _caution_values(results)
     return build_dataset(

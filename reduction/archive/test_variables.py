@@ -146,10 +146,8 @@ def curve_values(curves: ModulusCurves) -> Values:
         "made",
         "tangent_modulus_window_uncertainty",
     )
-    given = {
-        name: value for name, value in values_of(curves, without=apart).items() if value is not None
-    }
-    return given | {
+    absent = [item.name for item in fields(curves) if getattr(curves, item.name) is None]
+    return values_of(curves, without=(*apart, *absent)) | {
         "branch_name": texts(BRANCH_NAMES),
         "strain_window": np.array(curves.window),
     }

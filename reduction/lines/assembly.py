@@ -110,8 +110,6 @@ def _equal_tethers(tether: _Tether, n_tethers: int) -> tuple[_Tether, ...]:
     --------
     See `reduction.lines.assembly._assemble`.
     """
-    if n_tethers < 1:
-        raise SettingsError("an assembly has tethers", found=str(n_tethers), needed="1 or more")
     return (tether,) * n_tethers
 
 
@@ -334,8 +332,6 @@ def _assemble(tethers: Sequence[_Tether], parts: Sequence[SeriesPart] = ()) -> _
     >>> print(two.slack_length, two.tension_at([1.5, 2.5]).round(6))
     [1.5 1.5] [  0. 200.]
     """
-    if not tethers:
-        raise SettingsError("an assembly has tethers", found="none", needed="1 or more")
     own = [_lengths(one) for one in tethers]
     begin = min(one.length[0] for one in own)
     end = min(one.length[-1] for one in own)
@@ -585,14 +581,6 @@ def _worst_sharing(
     >>> print(found.greatest_load.round(2), found.least_load.round(2))
     102.0 98.0
     """
-    if n_tethers < 2:
-        raise SettingsError(
-            "a single tether shares no load", found=str(n_tethers), needed="2 or more"
-        )
-    if not 0 <= tolerance < 1:
-        raise SettingsError(
-            "the tolerance is a fraction of the length", found=f"{tolerance:g}", needed="0 to 1"
-        )
     load = np.asarray(tension, dtype=np.float64)
     if not np.all(load > 0):
         raise DataError(

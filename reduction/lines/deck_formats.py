@@ -371,12 +371,6 @@ _SMALL = 1e-4  # bending and torsion were not measured, and zero would be singul
 
 def _whoicable_text(line: ExportLine, *, form: WhoiCableForm = "expression") -> str:
     """A materials section for WHOI Cable."""
-    if form not in ("expression", "table"):
-        raise SettingsError(
-            "the form of a Cable material is not known",
-            found=repr(form),
-            needed="expression or table",
-        )
     smooth = _fit_smooth_curve(line.strain, line.tension)
     curve = thin_curve(line.strain, line.tension, most=CABLE_POINTS)
     at, load, _ = curve_from_zero(line.strain, line.tension)

@@ -61,7 +61,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from hashlib import sha256
-from typing import Literal, get_args
+from typing import Literal
 
 import numpy as np
 
@@ -276,12 +276,6 @@ def moordyn_files(line: ExportLine, stem: str, *, form: MoorDynForm = "table") -
         return _table_files(line, stem, is_damped=form == "damped-table")
     if form == "syrope":
         return _syrope_files(line, stem)
-    if form not in ("static-dynamic", "load-dependent"):
-        raise SettingsError(
-            "the form of a MoorDyn line is not known",
-            found=repr(form),
-            needed="table, damped-table, static-dynamic, load-dependent or syrope",
-        )
     part = line.viscoelasticity
     if part is None:
         raise SettingsError(
@@ -529,10 +523,6 @@ def moorpy_files(line: ExportLine, stem: str, *, form: MoorPyForm = "table") -> 
     """Files of a line type for MoorPy, the deck or the library first."""
     if form == "library":
         return {"": _library(line)}
-    if form != "table":
-        raise SettingsError(
-            "the form of a MoorPy line is not known", found=repr(form), needed="table or library"
-        )
     curve, table = thin_curve(line.strain, line.tension, most=TABLE_POINTS), f"{stem}_moorpy.txt"
     row = _line_type(line, f"|{table}|", number(NUMERICAL_DAMPING))
     head = header_lines(
@@ -621,11 +611,6 @@ def _shortened(name: str, most: int) -> str:
 
 def openfast_files(line: ExportLine, stem: str, *, form: OpenFastForm = "table") -> dict[str, str]:
     """Files of a line type for OpenFAST, the input file of its MoorDyn module first."""
-    if form not in get_args(OpenFastForm):
-        raise SettingsError(
-            "the form of an OpenFAST line is not known", found=repr(form),
-            needed=", ".join(get_args(OpenFastForm)),
-        )  # fmt: skip
     stem = _shortened(stem, _FILE - len("_table.txt"))
     files = (
         _table_files(line, stem, is_damped=False, takes_share=False)

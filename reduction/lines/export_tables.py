@@ -153,10 +153,6 @@ def _said(table: ValueTable) -> list[str]:
 def table_text_of(table: ValueTable, form: str, *, units: UnitSystem = "si") -> str:
     """A table as text."""
     writers = {"csv": _csv, "json": _json, "latex": _latex, "markdown": _markdown}
-    if form not in writers:
-        raise SettingsError(
-            "the form of a table is not known", found=repr(form), needed=", ".join(writers)
-        )
     return writers[form](table, units)
 
 

@@ -46,7 +46,6 @@ from reduction.record.contributions import (
     effective_degrees_of_freedom,
     merged,
 )
-from reduction.record.errors import DataError
 from reduction.record.measurement import Bools, Floats, read_only_arrays
 from reduction.stages.moduli.local_regression import curve_at
 from reduction.stages.three_parameter_line.slow_pull import slope_of_cubic
@@ -178,8 +177,6 @@ def interval_between_lines(
     >>> print(np.log(found).round(3))
     [-0.219  0.219]
     """
-    if line_scatter < 0:
-        raise DataError("a scatter is negative", found=f"{line_scatter:g}", needed="zero or above")
     if not (np.isfinite(line_scatter) and n_lines > 0):
         nothing = np.full(np.shape(value), np.nan)
         return nothing, nothing

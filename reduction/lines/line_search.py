@@ -338,15 +338,6 @@ def compare_values(first: DesignValues, second: DesignValues) -> LineDifference:
     >>> print(compare_values(*values).ratio.round(3))
     1.306
     """
-    if first.quantity != second.quantity:
-        raise SettingsError(
-            "two quantities cannot be compared", found=f"{first.quantity}, {second.quantity}"
-        )
-    if first.value.shape != second.value.shape:
-        raise SettingsError(
-            "two lines were not looked up at the same points",
-            found=f"{first.value.shape}, {second.value.shape}", needed="one shape",
-        )  # fmt: skip
     difference = second.value - first.value
     shared = shared_of({"first": first, "second": second})
     rows, of = shared.values["second"] - shared.values["first"], shared.degrees_of_freedom

@@ -16,7 +16,6 @@ from typing import Any, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from reduction.record.errors import DataError
 from reduction.record.measurement import Floats, Integers
 from reduction.report.text_style import faded, plot_text, shorten
 
@@ -260,12 +259,6 @@ def keep_extremes(coordinate: Floats, *channels: Floats, limit: int = POINTS) ->
     # least, greatest, and, where a channel has gaps, one sample of a gap for each interval
     share = sum(2 + bool(gap.any()) for gap in gaps)
     n_intervals = (limit - 2) // share if share else 0
-    if n_intervals < 1:
-        raise DataError(
-            "a trace cannot be thinned out",
-            found=f"{len(channels)} channels and at most {limit} points",
-            needed="at least one channel, and four points for each",
-        )
     if n_samples <= limit:
         return np.arange(n_samples)
     interval = _intervals(coordinate, n_intervals)

@@ -16,7 +16,6 @@ from reduction.archive.uncertainty_budget import budget_from_archive
 from reduction.archive.write import write_archive
 from reduction.prediction.comparison_error import EventDifference
 from reduction.quantities.names import COMPARISON_SCHEMA
-from reduction.record.errors import ArchiveError
 from reduction.record.measurement import Origin
 
 CURVES = ("ascending", "descending", "midline")
@@ -289,12 +288,6 @@ def test_equal_comparisons_give_equal_bytes(path, tmp_path):
         hashlib.sha256(one.read_bytes()).hexdigest() for one in (path, tmp_path / "again.nc")
     )
     assert first == second
-
-
-@pytest.mark.parametrize("named", [[], [differing, differing]])
-def test_comparisons_have_names_of_their_own(named):
-    with pytest.raises(ArchiveError, match="needed one or more, each with a name of its own"):
-        empty_or_twice([make() for make in named])
 
 
 def empty_or_twice(named):

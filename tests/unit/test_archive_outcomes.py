@@ -86,11 +86,6 @@ def test_one_bare_row_is_an_archive(tmp_path):
         assert repr(outcomes_of_dataset(archive)) == repr(one)
 
 
-def test_no_outcomes_are_no_archive():
-    with pytest.raises(ArchiveError, match="there are no outcomes to keep"):
-        dataset(())
-
-
 def test_an_archive_of_something_else_is_refused(path):
     with (
         open_archive(path) as archive,

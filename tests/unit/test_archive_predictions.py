@@ -28,7 +28,6 @@ from reduction.prediction.hose_prediction import _LayerResponse
 from reduction.prediction.hose_product import HosePrediction
 from reduction.quantities.flags import HOSE_STATES
 from reduction.quantities.names import PREDICTION_SCHEMA
-from reduction.record.errors import ArchiveError
 from reduction.record.measurement import Source
 
 SHORT_CORD = CordCurve(np.array([0.0, 0.2]), np.array([0.0, 130.0]))
@@ -218,9 +217,3 @@ def test_equal_hoses_give_equal_bytes(path, hoses, tmp_path):
     write_archive(dataset(*hoses), tmp_path / "again.nc")
     first, second = (hashlib.sha256(one.read_bytes()) for one in (path, tmp_path / "again.nc"))
     assert first.digest() == second.digest()
-
-
-@pytest.mark.parametrize(("twice", "found"), [(0, "none"), (2, "gumby, gumby")])
-def test_no_hose_and_two_of_one_name_are_no_archive(twice, found):
-    with pytest.raises(ArchiveError, match=f"cannot be kept; found {found}; needed one or more"):
-        dataset(*[predicted()] * twice)

@@ -47,11 +47,6 @@ def test_a_stiffness_and_a_strain_have_names_of_their_own(tmp_path):
         assert "synthetic" in archive.attrs["title"]
 
 
-def test_nothing_is_no_archive():
-    with pytest.raises(ArchiveError, match="there are no properties to store"):
-        properties_to_dataset({}, {}, origin=ORIGIN)
-
-
 def step(**variables):
     settings = json.dumps({"reduction": {"rope": {"reference_time": 600.0}}})
     return xr.Dataset(

@@ -218,24 +218,10 @@ def test_an_experiment_that_gave_no_surface_keeps_its_runs():
     assert dataset["note"].values.tolist() == ["refused"]
 
 
-def test_two_experiments_of_one_name_are_refused():
-    with pytest.raises(ArchiveError, match="an experiment appears twice; found short"):
-        build(SHORT, SHORT)
-
-
 def test_a_response_without_a_name_is_refused():
     strange = replace(SHORT, response_names=("colour",))
     with pytest.raises(ArchiveError, match="has no name in the archive; found colour"):
         build(strange)
-
-
-def test_surfaces_of_other_runs_are_refused():
-    runs = replace(SHORT.runs, run=("X01", *SHORT.runs.run[1:]))
-    with pytest.raises(ArchiveError, match="not those of the experiment; found R01, X01"):
-        build(replace(SHORT, runs=runs))
-    runs = replace(SHORT.runs, run=SHORT.runs.run[::-1])
-    with pytest.raises(ArchiveError, match="not those of the experiment; found another order"):
-        build(replace(SHORT, runs=runs))
 
 
 def test_the_own_check_knows_the_names_of_experiments(path):

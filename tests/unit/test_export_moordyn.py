@@ -75,7 +75,6 @@ def test_a_syrope_has_its_three_files_and_its_initial_conditions():
         ({}, "static-dynamic", "static and dynamic stiffness of new tether are not known"),
         ({"viscoelasticity": constant()}, "load-dependent", "no growth of the dynamic stiffness"),
         ({}, "syrope", "has no Syrope working curves"),
-        ({}, "spring", "form of a MoorDyn line is not known"),
         ({"linear_density": math.nan}, "table", "linear density of new tether is not known"),
         ({"diameter": math.nan}, "table", "diameter of new tether is not known"),
     ],

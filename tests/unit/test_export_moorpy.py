@@ -35,7 +35,6 @@ def test_the_library_is_over_break_strength_and_diameter():
     [
         ({}, "library", "library of MoorPy is linear"),
         ({"viscoelasticity": growing()}, "library", "rated break strength"),
-        ({}, "cubic", "form of a MoorPy line is not known"),
         ({"linear_density": math.nan}, "table", "linear density"),
     ],
 )

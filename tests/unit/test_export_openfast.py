@@ -1,11 +1,10 @@
 import re
 
 import pytest
-from export_lines import constant, line, syrope
+from export_lines import constant, line
 from export_readers import moordyn_sections
 
 from reduction.lines.deck_moordyn import moordyn_files, openfast_files
-from reduction.record.errors import SettingsError
 
 
 def test_options_of_the_other_code_are_left_out():
@@ -44,9 +43,3 @@ def test_names_are_no_longer_than_what_is_read(form):
         assert all(len(beside) <= 40 and beside in files[""] for beside in files if beside)
         assert re.search(rf"\b{name}\b", files[""]), "the header has the whole name"
     assert len(names) == 2
-
-
-@pytest.mark.parametrize("form", ["syrope", "load-dependent"])
-def test_what_it_takes_otherwise_or_does_not_know_is_refused(form):
-    with pytest.raises(SettingsError, match="form of an OpenFAST line"):
-        openfast_files(line(syrope=syrope()), "x", form=form)

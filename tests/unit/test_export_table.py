@@ -91,8 +91,6 @@ def test_a_curve_says_which_points_were_tested():
 
 
 def test_faults_are_named(tmp_path):
-    with pytest.raises(SettingsError, match="form of a table is not known"):
-        table_text_of(TABLE, "html")
     short = TableColumn("strain", "1", "strain", np.array([0.0]))
     with pytest.raises(SettingsError, match="differ in length"):
         ValueTable("t", (*TABLE.columns, short), ("s",))

@@ -116,8 +116,6 @@ def test_weight_in_water_is_newton_a_metre():
     assert material["yield"] == "3000.0"
 
 
-def test_another_form_and_a_line_without_mass_are_refused():
-    with pytest.raises(SettingsError, match="form of a Cable material"):
-        _whoicable_text(line(), form="spline")
+def test_a_line_without_mass_is_refused():
     with pytest.raises(SettingsError, match="linear density"):
         _whoicable_text(line(linear_density=math.nan))

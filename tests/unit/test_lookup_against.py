@@ -201,18 +201,6 @@ def test_lines_that_are_one_are_told_apart_in_at_most_one_of_twenty(like):
             assert share < 0.05 + 3 * np.sqrt(0.05 * 0.95 / size)
 
 
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        ({"quantity": "relaxation_time"}, "two quantities cannot be compared; found apparent_"),
-        ({"value": np.zeros(3)}, "not looked up at the same points; found "),
-    ],
-)
-def test_what_does_not_belong_together_is_refused(like, change, message):
-    with pytest.raises(SettingsError, match=message):
-        compare_values(like, replace(like, **change))
-
-
 def test_old_and_new_are_apart_as_these_lines_and_not_as_kinds(lines):
     # sec. 4.4.1: lines in a kind differ by a tenth, and by half after years in the sea
     found = pair(lines, f"polyester-{BRAID}", 4, "apparent_spring_constant")

@@ -6,7 +6,6 @@ import pytest
 from reduction.lines.line_curve import interval_between_lines
 from reduction.lines.line_lookup import look_up
 from reduction.lines.published_source import published_sources
-from reduction.record.errors import DataError
 
 LBF = 4.4482216152605
 K_AP = "apparent_spring_constant"
@@ -85,14 +84,6 @@ def test_what_is_not_above_zero_has_no_share():
     )  # fmt: skip
     assert np.isnan(low[:2]).all()
     assert np.isfinite(high).tolist() == [False, False, True]
-
-
-def test_a_negative_scatter_is_refused():
-    one = np.array([1.0])
-    with pytest.raises(DataError, match="a scatter is negative; found -0.1"):
-        interval_between_lines(
-            one, one, one, line_scatter=-0.1, n_lines=2, degrees_of_freedom=5, is_another=True
-        )
 
 
 def test_it_is_never_narrower_than_what_it_is_made_from():

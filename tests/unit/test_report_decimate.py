@@ -1,12 +1,10 @@
 """Fewer points, but every extreme and every gap."""
 
 import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from reduction.record.errors import DataError
 from reduction.report.figure_data import keep_extremes, least_and_greatest
 
 VALUES = st.floats(-1e6, 1e6) | st.just(float("nan"))
@@ -73,13 +71,6 @@ def test_intervals_of_a_logarithmic_axis_favour_its_start():
     kept = keep_extremes(np.log10(time), np.sin(time), limit=200)
     # one sample in a thousand lies there, and two decades of five
     assert (time[kept] < 10).sum() > 200 / 5
-
-
-def test_no_room_and_no_channel_are_refused():
-    with pytest.raises(DataError, match="a trace cannot be thinned out; found 0 channels"):
-        keep_extremes(np.arange(10.0), limit=5)
-    with pytest.raises(DataError, match="at most 3 points"):
-        keep_extremes(np.arange(10.0), np.ones(10), limit=3)
 
 
 def test_a_sample_on_an_edge_belongs_to_the_interval_above():
