@@ -989,6 +989,8 @@ def predict_wave_load(
     """Predict the load of a regular wave on a floating hose that lies along its crest.
 
     ``auto`` is the stream function.  The error of another theory is the difference of its loads.
+    Without ``elevation`` the motion is that at the centre of the hose, or at half the wave height,
+    which every crest reaches, where the centre of a light hose lies higher.
     """
     section = immerse_hose(
         outer_diameter=outer_diameter,
@@ -1007,7 +1009,7 @@ def predict_wave_load(
         asked=used,
     )
     centre = outer_diameter / 2 - float(section.immersion_depth)
-    at = centre if elevation is None else elevation
+    at = min(centre, wave_height / 2) if elevation is None else elevation
 
     def wave_by(theory: WaveTheoryName) -> WaveHarmonics:
         return regular_wave(

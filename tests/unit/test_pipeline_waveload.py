@@ -234,6 +234,19 @@ def test_a_hose_as_wide_as_a_fifth_of_the_wave_is_told_to_scatter_it(predict):
     assert not any("scatters" in note for note in predict(LEAST_WAVE).notes)
 
 
+def test_a_wave_below_the_centre_of_a_light_hose_moves_it_as_at_its_crest(predict):
+    """Deep water: of a load that is mostly inertia the maximum is C_M rho S a omega^2 exp(k a)."""
+    rate, height = 2 * np.pi / 5, 0.3
+    found = predict(
+        **STILL, outer_diameter=0.6, wall_thickness=0.05, wall_density=500.0, content_density=0.0,
+        water_depth=200.0, wave_height=height, wave_period=5.0, wave_theory="airy",
+    )  # fmt: skip
+    area = np.pi * (0.3**2 - 0.25**2) * 500 / 1025
+    inertia = 2 * 1025 * area * rate**2 * height / 2 * np.exp(rate**2 / 9.80665 * height / 2)
+    assert found.elevation == height / 2
+    assert float(found.extremes.horizontal.maximum) == pytest.approx(inertia, rel=1e-6)
+
+
 def test_far_below_the_surface_a_theory_has_no_error(predict):
     deep = {"water_depth": 2500.0, "wave_height": 0.0023, "wave_period": 2.6, "elevation": -1500.0}
     found = predict(LEAST_WAVE, **deep, wave_theory="stokes")
