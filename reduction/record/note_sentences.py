@@ -432,7 +432,9 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             f"strain falls to {100 * least:.3g} % at tensions up to {tension:.3g} N, above the"
             f" {reference:.3g} N at which it should be zero: "
             + (
-                "crosshead_position is not zero where the specimen has that tension. Check its zero"
+                "crosshead_position is not zero where the specimen has that tension. Check its"
+                " zero, and whether the slack rows of the marks, or the gauge length, are of this"
+                " specimen"
                 if rises
                 else "tension rises as crosshead_position falls. If position counts the other way,"
                 " set sign = -1 for it"
