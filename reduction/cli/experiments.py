@@ -23,7 +23,8 @@ from reduction.experiments.fit_results import (
     STATIONARY_REASONS,
     ResponseSurfaces,
 )
-from reduction.experiments.response_surfaces import fit_surfaces
+from reduction.experiments.response_surfaces import OBJECTS, fit_surfaces, scatter_by_scale
+from reduction.experiments.response_transform import Transform
 from reduction.experiments.run_sheet import (
     SIGNIFICANCE,
     Caution,
@@ -51,6 +52,8 @@ from reduction.experiments.surface_warnings import (
 from reduction.quantities.units import UnitSystem, combined_unit, display_unit
 from reduction.record.contributions import CONFIDENCE
 from reduction.record.errors import DataError, FitError, SettingsError
+from reduction.record.measurement import Floats
+from reduction.record.notes import Note, note
 from reduction.uncertainty.surface_errors import surfaces_between_runs
 
 _ROUNDING = 1e-9
@@ -704,6 +707,7 @@ def notes_of_fit(runs: RunSeries, surfaces: ResponseSurfaces) -> tuple[str, ...]
         *runs.notes,
         *map(str, surfaces.notes),
         *_unstated(runs),
+        *map(str, _rejected_scales(runs, surfaces)),
         *map(str, negative_surfaces(surfaces)),
         *map(str, stray_runs(surfaces)),
         *map(str, drifting_responses(surfaces, drift)),
@@ -712,6 +716,39 @@ def notes_of_fit(runs: RunSeries, surfaces: ResponseSurfaces) -> tuple[str, ...]
             for one in order_cautions(runs.coded, runs.run_order, runs.factor_names)
         ),
     )
+
+
+_OTHER_SCALE = {"none": ("log", "its logarithm"), "log": ("none", "the response as measured")}
+
+
+def _rejected_scales(runs: RunSeries, surfaces: ResponseSurfaces) -> list[Note]:
+    """Responses that would scatter significantly less about a surface on the other scale."""
+    rows = [
+        row
+        for row, scale in enumerate(surfaces.transform)
+        if scale in _OTHER_SCALE and not np.any(runs.responses[row] <= 0)
+    ]
+    if not rows:
+        return []
+
+    def fit(values: Floats, names: list[str], transforms: list[Transform]) -> ResponseSurfaces:
+        return fit_surfaces(
+            runs.coded, values, factor_names=runs.factor_names, response_names=names,
+            low=runs.low, high=runs.high, units="coded", run_names=runs.run_names,
+            blocks=runs.blocks, transforms=transforms, with_tests=False,
+        )  # fmt: skip
+
+    found = []
+    ratios, chances = scatter_by_scale(runs.responses[rows], fit)
+    for row, ratio, p in zip(rows, ratios.tolist(), chances.tolist(), strict=True):
+        key, scale = _OTHER_SCALE[surfaces.transform[row]]
+        own = ratio if key == "none" else 1 / ratio
+        if p < OBJECTS and own > 1:
+            name = surfaces.response_names[row]
+            found.append(
+                note("scale-rejected", response=name, scale=scale, key=key, ratio=own, p=p)
+            )
+    return found
 
 
 def fit_series(runs: RunSeries, spec: ExperimentSpec | None, path: Path) -> ResponseSurfaces:

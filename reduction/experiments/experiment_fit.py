@@ -9,13 +9,12 @@ from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import fdtrc
 
 from reduction.experiments.designs import Design, FactorLevels, coded_from_engineering
 from reduction.experiments.experiment import ExperimentResult, RunTable
 from reduction.experiments.fit_results import FIT_REASONS, NO_SURFACE, ResponseSurfaces
 from reduction.experiments.least_squares_fit import replicate_cells
-from reduction.experiments.response_surfaces import fit_surfaces
+from reduction.experiments.response_surfaces import OBJECTS, fit_surfaces, scatter_by_scale
 from reduction.experiments.response_transform import Transform
 from reduction.experiments.run_sheet import (
     NOT_OF_PLAN,
@@ -431,9 +430,6 @@ def _screening(
 _LOGARITHMIC = ("hysteresis_energy", "relaxation_time")
 """Positive by nature and spread over decades: fitted as logarithms, unless the runs object."""
 
-_OBJECTS = 0.05
-"""Probability of a ratio of variances at which the runs reject a scale."""
-
 
 def _scales(
     runs: RunTable,
@@ -459,32 +455,28 @@ def _scales(
     free = [index for index, one in zip(free, has.tolist(), strict=True) if one]
     if not free:
         return scales, notes
-    as_measured: Transform = "none"
-    bent: Transform = "log"
-    both = [*(as_measured for _ in free), *(bent for _ in free)]
-    chosen = [f"{scale} {index}" for scale, index in zip(both, 2 * free, strict=True)]
-    trial = fit_surfaces(
-        runs.level, runs.response[2 * free], factor_names=names, response_names=chosen,
-        low=low, high=high, run_names=runs.names, blocks=_specimen_blocks(runs),
-        transforms=both, with_tests=False,
-    )  # fmt: skip
-    mean = np.exp(np.nanmean(np.log(runs.response[free]), axis=1))
-    measured, logarithm = trial.sigma[: len(free)] / mean, trial.sigma[len(free) :]
-    for row, index in enumerate(free):
-        name, freedom = response_names[index], float(trial.degrees_of_freedom[row])
+
+    def fit(values: Floats, chosen: list[str], transforms: list[Transform]) -> ResponseSurfaces:
+        return fit_surfaces(
+            runs.level, values, factor_names=names, response_names=chosen, low=low, high=high,
+            run_names=runs.names, blocks=_specimen_blocks(runs), transforms=transforms,
+            with_tests=False,
+        )  # fmt: skip
+
+    ratios, chances = scatter_by_scale(runs.response[free], fit)
+    for index, ratio, p in zip(free, ratios.tolist(), chances.tolist(), strict=True):
+        name = response_names[index]
         usual: Transform = "log" if name in _LOGARITHMIC else "none"
-        own, other = (
-            (logarithm[row], measured[row]) if usual == "log" else (measured[row], logarithm[row])
-        )
-        p = 1.0
-        if trial.reason[row] == 0 and trial.reason[row + len(free)] == 0:
-            p = float(fdtrc(freedom, freedom, (own / other) ** 2))
-        objects = p < _OBJECTS
+        of_usual = ratio if usual == "log" else 1 / ratio
+        objects = p < OBJECTS and of_usual > 1
         scales[name] = {"none": "log", "log": "none"}[usual] if objects else usual
         if objects:
-            to = "its logarithm" if usual == "none" else "the response as measured"
-            ratio = float(own / other)
-            notes.append(note("scale-by-runs", response=name, scale=to, ratio=ratio, p=p))
+            to, about = "its logarithm", "the untransformed surface"
+            if usual == "log":
+                to, about = "the response as measured", "the surface of its logarithm"
+            notes.append(
+                note("scale-by-runs", response=name, scale=to, about=about, ratio=of_usual, p=p)
+            )
     times = [one for one in _TIMES if scales.get(one) == "log" and one not in stated]
     if times and "frequency" in names and low[names.index("frequency")] > 0:
         scales |= _with_frequency(runs, names, low, high, response_names, times)

@@ -11,13 +11,14 @@ References
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from math import comb
 from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.special import fdtrc
 
 from reduction.experiments.block_effects import (
     block_columns,
@@ -517,3 +518,48 @@ def _shares(fit: LeastSquares, n_baseline: int) -> tuple[Floats, Floats, Floats]
     left = fit.residual_sum_of_squares / total
     ratio = np.divide(total_df, df, out=np.full(df.shape, np.nan), where=df > 0)
     return 1 - left, 1 - left * ratio, 1 - fit.prediction_sum_of_squares / total
+
+
+OBJECTS = 0.05
+"""Probability of a ratio of variances at which the runs reject a scale."""
+
+
+def scatter_by_scale(
+    response: Floats, fit: Callable[[Floats, list[str], list[Transform]], ResponseSurfaces]
+) -> tuple[Floats, Floats]:
+    """Scatter of the logarithm of each response over that of the response as measured.
+
+    Parameters
+    ----------
+    response : ndarray, shape (n_responses, n_runs)
+        Above zero; NaN where not known. [any]
+    fit : callable
+        Fits responses of these runs, given with names and transforms.
+
+    Returns
+    -------
+    ratio : ndarray, shape (n_responses,)
+        Standard deviation about the surface of the logarithm, times the geometric mean of the runs,
+        over that about the surface as measured (Box and Cox). [1]
+    p : ndarray, shape (n_responses,)
+        Probability that a ratio of two variances of equal degrees of freedom is as far from 1, to
+        this side; 1 without a surface. [1]
+
+    Raises
+    ------
+    FitError
+        If the runs do not determine a surface.
+    """
+    count = response.shape[0]
+    as_measured: Transform = "none"
+    bent: Transform = "log"
+    both = [*(as_measured for _ in range(count)), *(bent for _ in range(count))]
+    names = [f"{scale} {row}" for scale in (as_measured, bent) for row in range(count)]
+    trial = fit(np.concatenate([response, response]), names, both)
+    mean = np.exp(np.nanmean(np.log(response), axis=1))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratio = mean * trial.sigma[count:] / trial.sigma[:count]
+    freedom = np.maximum(trial.degrees_of_freedom[:count], 1)
+    p = fdtrc(freedom, freedom, np.maximum(ratio, 1 / ratio) ** 2)
+    usable = (trial.reason[:count] == 0) & (trial.reason[count:] == 0)
+    return ratio, np.where(usable, p, 1.0)

@@ -1370,7 +1370,13 @@ _OF_EXPERIMENTS: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "scale-by-runs": (
         "note",
         "{response} uses the surface fitted to {scale}: the runs scatter {ratio:.3g} times as much"
-        " about the untransformed surface (p = {p:.2g})",
+        " about {about} (p = {p:.2g})",
+    ),
+    "scale-rejected": (
+        "note",
+        "{response}: the runs scatter {ratio:.3g} times as much about this surface as about that of"
+        " {scale} (p = {p:.2g}): its intervals are wider than they need be. State"
+        ' transform = "{key}" for it in SPEC.toml',
     ),
     "slow-pull-error-shared": (
         "note",

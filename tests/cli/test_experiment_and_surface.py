@@ -199,12 +199,13 @@ def test_a_log_surface_and_one_that_goes_below_zero(fit):
 
     straight = answered(fit(table(UNITS, steep), SPEC, "--json"))
     assert any("falls below zero within the levels" in note for note in straight["notes"])
+    assert any('State transform = "log" for it' in note for note in straight["notes"])
     bent = SPEC.replace('unit = "lbf"', 'unit = "lbf", transform = "log"')
     answer = answered(fit(table(UNITS, steep), bent, "--json"))
     found = answer["responses"]["apparent_spring_constant"]
     assert found["coefficient_unit"] == "ln(N)" and found["r2"] > 0.999
     np.testing.assert_allclose(found["coefficient"][4:7], 2.5, atol=0.02)
-    assert not any("below zero" in note for note in answer["notes"])
+    assert not any("below zero" in note or "State" in note for note in answer["notes"])
     assert "apparent_spring_constant [ln(N)]" in fit(table(UNITS, steep), bent).stdout
 
 
