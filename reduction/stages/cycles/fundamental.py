@@ -405,13 +405,19 @@ def part_means(values: Floats, basis: CycleBasis, middles: Integers) -> Floats:
 def turn_over_cycle(phase: Floats, follows: Bools) -> Floats:
     """Change of phase over each cycle, from the adjoining ones; 0 where a row is broken. [rad].
 
+    The phase of a first cycle has the transient behind its ramp: the step from it to the next one
+    counts where it is less than thrice the step after it, as of a loss angle that settles.
+
     Examples
     --------
-    >>> turn_over_cycle(np.array([0.5, 0.3, 0.2, 0.2, 0.1]), np.array([0, 1, 1, 0, 1]) > 0)
-    array([-0.2 , -0.15, -0.1 , -0.1 , -0.1 ])
+    >>> turn_over_cycle(np.array([0.5, 0.3, 0.2, 0.9, 0.2, 0.1]), np.array([0, 1, 1, 0, 1, 1]) > 0)
+    array([-0.2 , -0.15, -0.1 ,  0.  , -0.1 , -0.1 ])
     """
     turns = np.angle(np.exp(1j * np.diff(phase)))
     steps = np.where(follows[1:], turns, np.nan)
+    next_ones = np.abs(np.append(steps[1:], np.nan))
+    is_transient = ~follows[:-1] & ~(np.abs(steps) < _OF_SETTLING_PHASE * next_ones)
+    steps[is_transient] = np.nan
     before, after = np.append(np.nan, steps), np.append(steps, np.nan)
     known = np.isfinite(before).astype(int) + np.isfinite(after)
     return np.asarray((np.nan_to_num(before) + np.nan_to_num(after)) / np.maximum(known, 1))
@@ -440,6 +446,9 @@ def without_turning(
     share = turned / (4 * np.pi)
     cosine, sine = cosine / (1 + share), sine / (1 - share)
     return cosine, sine, mean - 2 * share * cosine
+
+
+_OF_SETTLING_PHASE = 3.0  # greatest step of the phase over the next one
 
 
 _PASSES = 4  # each divides the error by the number of cycles

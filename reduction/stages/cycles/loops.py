@@ -168,14 +168,18 @@ def _own_drift(
     of_driven: Floats,
     *,
     noises: tuple[float, float],
-) -> tuple[Floats, Bools]:
-    """Drift of the answering channel over each cycle, and whether it is the cycle's own.
+) -> tuple[Floats, Bools, Floats]:
+    """Drift of the answering channel over each cycle, whether it is its own, and what it may miss.
 
     After a ramp or a hold the first cycles creep or relax more than later ones.  Their drift is
     measured from the first eighth of a cycle to that of the next one, at the same level of the
     driven channel, so that a turn found one sample off, or a valley that the machine misses, does
-    not count as drift.  A run of up to three cycles has no later ones: the drift of its last cycle
-    is measured from its first valley to its last.
+    not count as drift.  Of later ones it is the lesser of the changes at their valleys and at the
+    peaks beside theirs: where the amplitude or the loss angle settles, these move towards each
+    other.  A run of up to three cycles has no later ones: the drift of its last cycle is that of
+    its fall from the one before, which friction left in the ramp does not change, and of a single
+    cycle that from its first valley to its last.  Where a later cycle shows a drift that is not
+    clear, the neighbours' is kept, and the difference is what it may miss.
 
     Examples
     --------
@@ -188,46 +192,31 @@ def _own_drift(
     >>> ends = np.column_stack([first, first + 20])
     >>> cycles = Cycles(first, first + 40, ends, ends + 20, np.ones((4, 2)),
     ...     np.zeros(161, np.int32), np.zeros(161, np.int8), np.zeros(161, bool), 0.1)
-    >>> drift, own = _own_drift(tension, strain, cycles, np.full(4, 0.2), np.zeros(4),
+    >>> drift, own, _ = _own_drift(tension, strain, cycles, np.full(4, 0.2), np.zeros(4),
     ...     noises=(2e-2, 2e-2))
     >>> print(drift[[0, 3]].round(2), own[[0, 3]])
     [0.95 0.2 ] [ True False]
     """
     drifts, is_own = of_neighbours.copy(), np.zeros(cycles.n_cycles, dtype=bool)
-    length = cycles.last - cycles.first
+    missed = np.zeros(cycles.n_cycles)
     begins = np.flatnonzero(~touching(cycles))
     for start, stop in zip(begins.tolist(), [*begins[1:].tolist(), cycles.n_cycles], strict=True):
         is_short = cycles.n_cycles <= _SHORT_RUN
         if is_short:
             drifts[start:stop] = 0.0
         for place in range(start, min(start + _SHORT_RUN, stop if is_short else stop - 1)):
-            if place == stop - 1:
+            is_last, is_later = place == stop - 1, place > start
+            if is_last and not is_later:
                 drift, slope, spread = _from_valley_to_valley(driven, answer, cycles, place)
             else:
-                valleys = cycles.first[place : place + 2].astype(np.float64)
-                ahead = int(length[place : place + 2].min()) // _OF_GAP + 1
-                # over both sides of a valley the effect of a settling loss angle cancels
-                behind = ahead - 1 if place > start else 0
-                if place == start:  # the first valley may be anywhere in the rest before the cycles
-                    valleys[0] -= _lead(
-                        driven,
-                        cycles.first[place : place + 2],
-                        cycles.branch_last[place : place + 2, 0],
-                    )
-                count = ahead + behind
-                level, other = (
-                    _readings_at(series, valleys[:, None] + np.arange(-behind, ahead))
-                    for series in (driven, answer)
-                )
-                slope = _slope(level - level.mean(axis=1, keepdims=True), other)
-                missed, drift = (float(np.diff(one.mean(axis=1))[0]) for one in (level, other))
-                drift = _at_one_level(drift, slope * (missed - of_driven[place]))
-                spread = np.sqrt(2 / count)
+                drift, slope, spread = _from_turn_to_turn(
+                    driven, answer, cycles, place, of_driven[place],
+                    is_first=not is_later, is_last=is_last,
+                )  # fmt: skip
             error = np.hypot(noises[1], slope * noises[0]) * spread
-            # curvature with readings elsewhere in the cycle; in later cycles, a settling loss
-            # angle raises the valley as it lowers the peak
-            is_later = place > start and not is_short
-            share = _OF_SETTLING if is_later else length[place] ** -2.0
+            # curvature with readings elsewhere in the cycle, and what settles in the fall alone
+            share = float(cycles.last[place] - cycles.first[place]) ** -2.0
+            share = _OF_SETTLING if is_last and is_later else share
             error = np.hypot(
                 error, share * np.ptp(answer[cycles.first[place] : cycles.last[place] + 1])
             )
@@ -237,34 +226,91 @@ def _own_drift(
             )
             if is_own[place]:
                 drifts[place] = drift
-            elif not is_short:
+            elif is_later:
+                missed[place] = np.nan_to_num(np.abs(drift - drifts[place]))
+            if not is_own[place] and not is_short:
                 break
-    return drifts, is_own
+    return drifts, is_own, missed
 
 
-def _lead(driven: Floats, valleys: Integers, peaks: Integers) -> float:
-    """Samples by which the first of two valleys is nearer to the middle of its rise. [1].
+def _from_turn_to_turn(
+    driven: Floats,
+    answer: Floats,
+    cycles: Cycles,
+    place: int,
+    of_driven: float,
+    *,
+    is_first: bool,
+    is_last: bool,
+) -> tuple[float, float, float]:
+    """Drift over one cycle by eighths of cycles beside its turns; else as `_from_valley_to_valley`.
 
-    The middle is passed between two readings: one sample more or less, where noise decides which
-    reading is the first beyond it, would shift the driven channel by most of what it moves beside
-    its valley.
+    Beside its valleys, of the first cycle of a run on their rises alone, of the last one on their
+    falls alone; of others also at the peaks of the cycles before and after it.
     """
-    begin = driven[valleys[1]]
-    middle = np.abs(driven[peaks[1]] - begin) / 2
-    to_middle = []
-    for valley, peak in zip(valleys.tolist(), peaks.tolist(), strict=True):
-        risen = np.abs(driven[valley : peak + 1] - begin)
-        beyond = np.flatnonzero(risen >= middle)
-        if not beyond.size or beyond[0] == 0:
-            return 0.0
-        after = int(beyond[0])
-        to_middle.append(after - (risen[after] - middle) / (risen[after] - risen[after - 1]))
-    return float(min(to_middle[1] - to_middle[0], valleys[0]))
+    near = slice(place - is_last, place + 2 - is_last)
+    length = int((cycles.last - cycles.first)[near].min())
+    ahead = 1 if is_last else length // _OF_GAP + 1
+    behind = 0 if is_first else length // _OF_GAP
+    rises = np.stack([cycles.first, cycles.branch_last[:, 0]])
+    falls = np.stack([cycles.branch_first[:, 1], cycles.last])
+    if is_first or is_last:
+        # the first valley may be anywhere in the rest before the cycles, the last one in that
+        # behind them; else the other one is moved, into the record
+        beside = rises if is_first else falls
+        places = beside[0 if is_first else 1, near].astype(np.float64)
+        apart = np.diff(_middles(driven, beside[:, near])) - np.diff(places)
+        late, early = np.append(-apart, apart).clip(0)
+        places += [late, early] if is_first else [-early, -late]
+        turns = [(places, 1)]
+    else:
+        before = slice(place - 1, place + 1)
+        middles = _middles(driven, falls[:, before]) + _middles(driven, rises[:, near])
+        valleys = cycles.first[place] + np.array([0.0, np.diff(middles)[0] / 2])
+        ends = slice(place - 1, place + 2, 2)
+        middles = _middles(driven, rises[:, ends]) + _middles(driven, falls[:, ends])
+        peaks = rises[1, place - 1] + np.array([0.0, np.diff(middles)[0] / 2])
+        turns = [(valleys, 1), (peaks, 2)]
+    found, slopes = [], []
+    for at, n_cycles in turns:
+        level, other = (
+            _readings_at(series, at[:, None] + np.arange(-behind, ahead))
+            for series in (driven, answer)
+        )
+        slopes.append(_slope(level - level.mean(axis=1, keepdims=True), other))
+        missed, drift = (float(np.diff(one.mean(axis=1))[0]) for one in (level, other))
+        by_driven = slopes[-1] * (missed - n_cycles * of_driven)
+        found.append(_at_one_level(drift, by_driven) / n_cycles)
+    # of what dies away, the peaks before have more; what settles moves the two apart
+    lesser = min(found, key=abs) if min(found) * max(found) > 0 or len(found) == 1 else 0.0
+    lesser = lesser if np.isfinite(found).all() else np.nan
+    return lesser, slopes[0], float(np.sqrt(2 / (ahead + behind)))
+
+
+def _middles(series: Floats, branches: Integers) -> Floats:
+    """Where each of two branches, from turn to turn, passes the middle of both. [samples].
+
+    Between two readings: one sample more or less, where noise decides which reading is the first
+    beyond it, would shift the series by most of what it moves beside its turns.  NaN where a
+    branch does not pass it.
+    """
+    level = series[branches].mean()
+    places = []
+    for begin, end in branches.T.tolist():
+        apart = series[begin : end + 1] - level
+        passed = np.flatnonzero(apart[1:] * apart[0] <= 0)
+        if not passed.size:
+            return np.full(2, np.nan)
+        after = int(passed[0]) + 1
+        places.append(begin + after - apart[after] / (apart[after] - apart[after - 1]))
+    return np.array(places)
 
 
 def _readings_at(series: Floats, places: Floats) -> Floats:
-    """A series at places between its readings, of which the first lies within it."""
-    low, high = int(places.min()), int(np.ceil(places.max())) + 1
+    """A series at places between its readings, of which the first lies within it; NaN for NaN."""
+    if not np.isfinite(places).all():
+        return np.full(places.shape, np.nan)
+    low, high = max(int(places.min()), 0), int(np.ceil(places.max())) + 1
     return np.interp(places, np.arange(low, low + series[low:high].size), series[low:high])
 
 
@@ -411,8 +457,8 @@ def _shape_of_wave(
     sine = sine + drift / np.pi
     amplitude = np.hypot(cosine, sine)
     known = np.flatnonzero(np.isfinite(amplitude + mean) & (amplitude > 0))
-    # cycles of another amplitude belong to another wave
-    middle = np.median(amplitude[known]) if known.size else np.nan
+    # cycles of another amplitude belong to another wave, as the first one behind a ramp may
+    middle = np.median(amplitude[known[known.size > 1 :]]) if known.size else np.nan
     known = known[np.abs(amplitude[known] - middle) < _OF_ONE_WAVE * middle]
     if known.size > _FEWEST_INSIDE:
         known = known[1:-1]  # neighbours of cycles of another amplitude may hold part of them
@@ -499,16 +545,19 @@ class _Drifts(NamedTuple):
     """Drift of both channels over each cycle, NaN where it exceeds the range of the cycle.
 
     Cycles that follow a ramp may have an own drift in the channel that answers, which is the part
-    beyond that ``of_neighbours``: ``on_fall`` is what it has on the way down, NaN elsewhere, and
-    ``of_ramp`` what it may add to the range.
+    beyond that ``of_neighbours``: ``on_fall`` is what it has on the way down, NaN elsewhere,
+    ``in_phase`` what its transient has in phase with the wave, and ``of_ramp`` what it may add to
+    the range.  A drift ``may_miss`` what is not clearly its own.
     """
 
     tension: Floats
     strain: Floats
     of_neighbours: Floats
     is_own: Bools
+    may_miss: Floats
     on_fall: Floats
     of_ramp: Floats
+    in_phase: Floats
 
 
 def _drifts_of_cycles(
@@ -519,7 +568,7 @@ def _drifts_of_cycles(
     waveform: Waveform,
     is_load: bool,
     rise_shares: tuple[Floats | float, Floats | float],
-    own_drift: Callable[[Floats, Floats], tuple[Floats, Bools]] | None,
+    own_drift: Callable[[Floats, Floats], tuple[Floats, Bools, Floats]] | None,
 ) -> _Drifts:
     """Drift of tension and of strain over each cycle; ``row`` has the quantities of `MEASURED`."""
     is_parted = waveform != "sinusoidal" and _are_parted(cycles)
@@ -532,15 +581,19 @@ def _drifts_of_cycles(
         for name in ("force", "strain")
     )
     of_neighbours = strain if is_load else tension
-    own, is_own = of_neighbours, np.zeros(cycles.n_cycles, bool)
+    own, may_miss = of_neighbours, np.zeros(cycles.n_cycles)
+    is_own = np.zeros(cycles.n_cycles, bool)
     if own_drift is not None and not is_parted:
-        own, is_own = own_drift(of_neighbours, tension if is_load else strain)
+        own, is_own, may_miss = own_drift(of_neighbours, tension if is_load else strain)
     # of the drift after a ramp, the fall has at most its part of the drift of this cycle, and at
     # least that part of the drift of the next one
     falls = 1 - rise_shares[int(is_load)]
     on_fall = np.where(is_own, falls * (own + of_neighbours) / 2, np.nan)
     share = 1 / np.pi if waveform == "sinusoidal" else falls / 2
-    of_ramp = np.where(is_own, share * np.abs(own - of_neighbours), 0.0)
+    beyond = np.where(is_own, own - of_neighbours, 0.0)
+    of_ramp = share * np.where(is_own, np.abs(beyond), may_miss)
+    # a transient that dies away within the first cycle has up to 1/pi of it in phase with the wave
+    in_phase = np.where(touching(cycles), 0.0, beyond) / (2 * np.pi)
     if is_load:
         strain = own
     else:
@@ -553,7 +606,20 @@ def _drifts_of_cycles(
             (tension, ranges[0]), (strain, ranges[1]), (of_neighbours, ranges[int(is_load)])
         )
     )  # fmt: skip
-    return _Drifts(tension, strain, of_neighbours, is_own, on_fall, of_ramp)
+    return _Drifts(tension, strain, of_neighbours, is_own, may_miss, on_fall, of_ramp, in_phase)
+
+
+def _fundamentals(
+    row: Mapping[str, Floats], drifts: _Drifts, is_load: bool
+) -> tuple[tuple[Floats, Floats], tuple[Floats, Floats]]:
+    """Cosine and sine of tension and of strain, without their drift."""
+    force, strain = (
+        [row[f"{name}_cosine"], row[f"{name}_sine"] + drift / np.pi]
+        for name, drift in (("force", drifts.tension), ("strain", drifts.strain))
+    )
+    answer = strain if is_load else force
+    answer[0] = answer[0] + drifts.in_phase
+    return (force[0], force[1]), (strain[0], strain[1])
 
 
 class _Levels(NamedTuple):
@@ -567,14 +633,15 @@ class _Levels(NamedTuple):
 
 
 def _levels_of_sine(
-    row: Mapping[str, Floats], drifts: _Drifts, shapes: tuple[_Shape, _Shape], is_load: bool
+    row: Mapping[str, Floats],
+    fundamentals: tuple[tuple[Floats, Floats], tuple[Floats, Floats]],
+    shapes: tuple[_Shape, _Shape],
+    is_load: bool,
 ) -> tuple[_Levels, _Levels]:
     """Levels of tension and of strain of a sinusoidal wave, by its fundamental and its shape."""
     levels = []
-    for name, shape, drift in (
-        ("force", shapes[0], drifts.tension), ("strain", shapes[1], drifts.strain)
-    ):  # fmt: skip
-        half = np.hypot(row[f"{name}_cosine"], row[f"{name}_sine"] + drift / np.pi)
+    for name, (cosine, sine), shape in zip(("force", "strain"), fundamentals, shapes, strict=True):
+        half = np.hypot(cosine, sine)
         mean, amplitude = row[f"{name}_mean"] + shape.middle * half, half * shape.half
         levels.append(
             _Levels(mean, amplitude, mean + amplitude, mean - amplitude, shape.missed * half)
@@ -626,7 +693,7 @@ def _levels_of_ramps(
 
 
 def _energy_of_cycles(
-    row: Mapping[str, Floats], drifts: _Drifts, size: Floats, is_load: bool
+    row: Mapping[str, Floats], drifts: _Drifts, follows: Bools, size: Floats, is_load: bool
 ) -> tuple[Floats, Floats, Floats]:
     """Energy of loops without their drift, its part at the peaks, and its standard uncertainty.
 
@@ -648,7 +715,8 @@ def _energy_of_cycles(
     # the middle is wrong by at most half of it
     beyond = np.zeros(energy.size)
     if not is_load and is_own.any():
-        beyond[is_own] = np.clip(1 - drifts.of_neighbours[is_own] / drifts.tension[is_own], 0, 1)
+        first = is_own & ~follows
+        beyond[first] = np.clip(1 - drifts.of_neighbours[first] / drifts.tension[first], 0, 1)
         at_peaks = np.where(is_own, -beyond * of_drift / 2, at_peaks)
     energy = energy - at_peaks
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -657,11 +725,10 @@ def _energy_of_cycles(
     # later cycles give no information on the creep after a ramp
     placed = np.where(is_own & is_load, 1 / PLACE_OF_DRIFT, not_placed)
     placed *= np.abs(row["energy"] - energy)
-    return (
-        energy,
-        at_peaks,
-        np.hypot((1 - beyond) * placed, beyond * np.abs(of_drift) / np.sqrt(12)),
-    )
+    placed = np.hypot((1 - beyond) * placed, beyond * np.abs(of_drift) / np.sqrt(12))
+    of_driven = "force" if is_load else "strain"
+    arm = row[f"{of_driven}_end"] - row[f"{of_driven}_mean"]
+    return energy, at_peaks, np.hypot(placed, arm * drifts.may_miss)
 
 
 def _quantities_of_cycles(
@@ -675,7 +742,7 @@ def _quantities_of_cycles(
     rise_shares: tuple[Floats | float, Floats | float] = (0.5, 0.5),
     control: Control = "position",
     shapes: tuple[_Shape, _Shape] | None = None,
-    own_drift: Callable[[Floats, Floats], tuple[Floats, Bools]] | None = None,
+    own_drift: Callable[[Floats, Floats], tuple[Floats, Bools, Floats]] | None = None,
 ) -> tuple[dict[str, Floats], dict[str, Floats]]:
     """Quantities of each cycle of one specimen, and their standard uncertainties.
 
@@ -711,15 +778,17 @@ def _quantities_of_cycles(
         row, cycles, ends, waveform=waveform, is_load=is_load, rise_shares=rise_shares,
         own_drift=own_drift,
     )  # fmt: skip
-    force_cos, force_sin = row["force_cosine"], row["force_sine"] + drifts.tension / np.pi
-    strain_cos, strain_sin = row["strain_cosine"], row["strain_sine"] + drifts.strain / np.pi
+    fundamentals = _fundamentals(row, drifts, is_load)
+    (force_cos, force_sin), (strain_cos, strain_sin) = fundamentals
     if waveform == "sinusoidal":
-        tension, strain = _levels_of_sine(row, drifts, shapes or (_Shape(), _Shape()), is_load)
+        tension, strain = _levels_of_sine(
+            row, fundamentals, shapes or (_Shape(), _Shape()), is_load
+        )
     else:
         tension, strain = _levels_of_ramps(row, drifts, cycles, is_load, rise_shares)
     amplitude, strain_amplitude = tension.amplitude, strain.amplitude
     energy, at_peaks, u_placed = _energy_of_cycles(
-        row, drifts, amplitude * strain_amplitude, is_load
+        row, drifts, touching(cycles), amplitude * strain_amplitude, is_load
     )
     with np.errstate(divide="ignore", invalid="ignore"):
         # a series a cos + b sin is the real part of (a - ib) exp(i omega t)
