@@ -549,6 +549,22 @@ def scatter_by_scale(
     ------
     FitError
         If the runs do not determine a surface.
+
+    Examples
+    --------
+    An exponential over one factor, with a little scatter:
+
+    >>> level = np.linspace(-1, 1, 9)[:, None]
+    >>> scatter = np.array([[1.01, 0.99, 1.0, 1.01, 0.99, 1.0, 0.99, 1.01, 1.0]])
+    >>> ratio, p = scatter_by_scale(
+    ...     np.exp(3 * level.T) * scatter,
+    ...     lambda values, names, scales: fit_surfaces(
+    ...         level, values, factor_names=["load"], response_names=names, units="coded",
+    ...         low=[-1.0], high=[1.0], transforms=scales,
+    ...     ),
+    ... )
+    >>> print(bool(ratio[0] < 0.1), bool(p[0] < 0.001))
+    True True
     """
     count = response.shape[0]
     as_measured: Transform = "none"
