@@ -35,7 +35,7 @@ from reduction.lines.line_search import (
     find_lines,
     in_conditions,
 )
-from reduction.lines.lookup_product import TENSIONS, DesignValues, LineLevels, LineSource
+from reduction.lines.lookup_product import OF_MEAN, TENSIONS, DesignValues, LineLevels, LineSource
 from reduction.lines.published_source import published_sources
 from reduction.lines.tether_comparison import compared_tethers
 from reduction.quantities.names import SINGLE_QUANTITIES
@@ -324,6 +324,7 @@ def _ends(wanted: LookupRequest, line: LineSource) -> dict[str, tuple[float, flo
         return {
             name: (float(surface.low[place]), float(surface.high[place]))
             for place, name in enumerate(line.factor_names)
+            if name != OF_MEAN  # an amplitude is asked for as a load
         }
     of_name = [curve for curve in line.curves if curve.quantity == name]
     for curve in of_name:
@@ -444,7 +445,7 @@ def _described(line: LineSource) -> dict[str, Any]:
             for curve in line.curves
         ],
         "range_units": {
-            name: quantity_of(name).unit
+            name: "1" if name == OF_MEAN else quantity_of(name).unit
             for name in (
                 *line.factor_names,
                 *(curve.variable for curve in line.curves),

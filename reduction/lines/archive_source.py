@@ -35,7 +35,7 @@ from reduction.lines.bent_loops import (
 )
 from reduction.lines.line_lookup import Branch
 from reduction.lines.line_search import joined_conditions
-from reduction.lines.lookup_product import LineCurve, LineLevels, LineSource, LineSurface
+from reduction.lines.lookup_product import OF_MEAN, LineCurve, LineLevels, LineSource, LineSurface
 from reduction.quantities.digits import plain_number
 from reduction.quantities.names import RESPONSES, SCALES, quantity
 from reduction.record.contributions import Component, Contributions, stacked
@@ -198,7 +198,10 @@ def _line_source_of_experiment(
         raise DataError(f"experiment '{experiment}' has no surface", needed="a Box-Behnken one")
     row = dataset.variables["experiment"].values.astype(str).tolist().index(experiment)
     fitted = surfaces_of(dataset, experiment)
-    factors = fitted.factor_names
+    factors = tuple(
+        OF_MEAN if _is_of_mean(dataset, row, place, name) else name
+        for place, name in enumerate(fitted.factor_names)
+    )
     units = dataset.variables["factor_unit"].values[row].astype(str)[: len(factors)]
     strength = _one_strength(dataset, row)
     scale = np.array(
@@ -351,6 +354,17 @@ def _one_strength(dataset: xr.Dataset, row: int) -> float:
     found = dataset.variables["run_rated_break_strength"].values[row]
     known = np.unique(found[np.isfinite(found)])
     return float(known[0]) if known.size == 1 else float("nan")
+
+
+def _is_of_mean(dataset: xr.Dataset, row: int, place: int, name: str) -> bool:
+    """Whether the levels of a factor are shares of the mean tension, by those of the runs."""
+    needed = ("run_level", "run_mean_tension", "run_tension_amplitude")
+    if name != "tension_amplitude" or any(one not in dataset for one in needed):
+        return False
+    level = dataset["run_level"].values[row, :, place]
+    mean, amplitude = (dataset[one].values[row] for one in needed[1:])
+    known = np.isfinite(level) & np.isfinite(mean) & np.isfinite(amplitude)
+    return bool(known.any()) and np.allclose(level[known] * mean[known], amplitude[known])
 
 
 def _scale(name: str, unit: str, strength: float, experiment: str) -> float:

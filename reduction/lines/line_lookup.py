@@ -38,6 +38,7 @@ from reduction.lines.line_curve import (
 from reduction.lines.line_levels import completed_levels, evaluate_levels, refuse_mixed_conditions
 from reduction.lines.line_surface import evaluate_surface
 from reduction.lines.lookup_product import (
+    OF_MEAN,
     DesignValues,
     LineCurve,
     LineLevels,
@@ -516,13 +517,14 @@ def _values_of_surface(
     >>> print(found.value, found.high.round(2), found.line_high.round(2))
     [1.5] [1.72] [2.1]
     """
-    unknown = sorted(set(given) - set(line.factor_names))
+    asked = _with_shares(line, given)
+    unknown = sorted(set(asked) - set(line.factor_names))
     if unknown:
         raise SettingsError(
             f"{surface.quantity} of {line.name} does not vary with {', '.join(unknown)}",
             needed="levels of " + ", ".join(line.factor_names),
         )
-    columns = np.broadcast_arrays(*(given[name] for name in line.factor_names))
+    columns = np.broadcast_arrays(*(asked[name] for name in line.factor_names))
     shape = columns[0].shape
     at = np.stack([one.ravel() for one in columns], axis=1)
     points = evaluate_surface(surface, at)
@@ -591,6 +593,18 @@ def _values_of_surface(
     )
 
 
+def _with_shares(line: LineSource, given: Mapping[str, Floats]) -> Mapping[str, Floats]:
+    """Levels with the amplitude as a share of the mean, if the surfaces are over that."""
+    loads = ("mean_tension", "tension_amplitude")
+    if OF_MEAN not in line.factor_names or not set(loads) <= set(given):
+        return given
+    mean, amplitude = (given[name] for name in loads)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = np.asarray(amplitude / mean)
+    rest = {name: value for name, value in given.items() if name != "tension_amplitude"}
+    return {**rest, OF_MEAN: share}
+
+
 def _refuse_outside(
     line: LineSource, surface: LineSurface, columns: tuple[Floats, ...], inside: Bools
 ) -> None:
@@ -600,7 +614,7 @@ def _refuse_outside(
         value, low, high = column.ravel()[first], surface.low[place], surface.high[place]
         rounded = surface.rounding[place] if surface.rounding.size else 0.0
         if not low - rounded <= value <= high + rounded:
-            unit = quantity_of(name).unit
+            unit = "1" if name == OF_MEAN else quantity_of(name).unit
             unit, factor = ("%", 100.0) if unit == "1" else (unit, 1.0)
             asked, least, most = (plain_number(factor * float(one)) for one in (value, low, high))
             told.append(f"{name} {asked} {unit}, tested {least} to {most} {unit}")
@@ -680,7 +694,7 @@ def look_up(
         return _warned(line, found, _numbers(levels))
     surface = line.surfaces.get(quantity)
     given = _numbers(levels)
-    if surface is not None and set(given) >= set(line.factor_names):
+    if surface is not None and set(_with_shares(line, given)) >= set(line.factor_names):
         if branch is not None:
             raise _no_branch(quantity, line, branch)
         return _warned(line, _values_of_surface(line, surface, given, extrapolate), given)
@@ -699,7 +713,8 @@ def look_up(
         )
     curves = [one for one in curves if one.variable in given]
     if not curves:
-        needed = [", ".join(line.factor_names)] if surface is not None else []
+        names = ["tension_amplitude" if one == OF_MEAN else one for one in line.factor_names]
+        needed = [", ".join(names)] if surface is not None else []
         needed += [one.variable for one in line.curves if one.quantity == quantity]
         raise SettingsError(
             f"{quantity} of {line.name} needs another variable",

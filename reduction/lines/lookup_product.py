@@ -24,6 +24,9 @@ from reduction.record.measurement import Bools, Floats, Integers, read_only_arra
 TENSIONS = ("mean_tension", "tension_amplitude", "tension")
 """Levels that can also be shares of a break strength."""
 
+OF_MEAN = "tension_amplitude_over_mean"
+"""Factor of an experiment whose amplitudes are shares of the mean tension of each run."""
+
 
 @dataclass(frozen=True)
 @read_only_arrays

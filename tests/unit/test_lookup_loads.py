@@ -4,9 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import xarray as xr
 
+from reduction.lines.archive_source import _is_of_mean
 from reduction.lines.line_lookup import _loads_of_line, look_up
-from reduction.lines.lookup_product import LineCurve, LineSource, LineSurface
+from reduction.lines.lookup_product import OF_MEAN, LineCurve, LineSource, LineSurface
 from reduction.lines.published_source import published_sources
 from reduction.record.errors import DataError
 
@@ -180,3 +182,33 @@ def test_the_rule_of_nylon_is_taken_over_and_says_so():
     assert "taken over for polyester" in lines["polyester-double-braid-0.5in-new"].rule
     hose = replace(lines["polyester-double-braid-0.5in-new"], kind="stretch hose")
     assert "taken over for a specimen of the kind stretch hose" in hose.rule
+
+
+def test_a_surface_over_the_share_of_the_mean_is_asked_with_a_load():
+    # K = 2000 + 500 x over amplitudes of 20 to 40 % of the mean: 35 % of 1 kN is x = 0.5
+    surface = LineSurface(
+        "apparent_spring_constant", np.array([2000.0, 500.0]), np.array([[0, 0], [0, 1]]),
+        np.array([500.0, 0.2]), np.array([1500.0, 0.4]), np.eye(2) / 15, 1.0, 13.0, 1.0,
+    )  # fmt: skip
+    line = replace(
+        ROPE, factor_names=("mean_tension", OF_MEAN), curves=(),
+        surfaces={"apparent_spring_constant": surface},
+    )  # fmt: skip
+    found = look_up(line, "apparent_spring_constant", mean_tension=1000.0, tension_amplitude=350.0)
+    assert float(found.value) == pytest.approx(2250)
+    assert float(found.peak_share) == pytest.approx(1.35)
+    with pytest.raises(DataError, match="tension_amplitude_over_mean 80 %, tested 20 to 40 %"):
+        look_up(line, "apparent_spring_constant", mean_tension=1000.0, tension_amplitude=800.0)
+
+
+def test_amplitudes_of_runs_that_are_shares_of_their_mean_are_known_as_such():
+    mean, share = np.array([[1000.0, 2000.0, np.nan]]), np.array([[0.2, 0.4, 0.3]])
+    runs = {"run_mean_tension": ("e", "r"), "run_tension_amplitude": ("e", "r")}
+    for of, is_share in ((mean, True), (np.full((1, 3), 5000.0), False)):
+        stored = xr.Dataset(
+            {"run_level": (("e", "r", "f"), share[..., None])}
+            | {name: (dims, value) for (name, dims), value in zip(
+                runs.items(), (mean, share * of), strict=True)}
+        )  # fmt: skip
+        assert _is_of_mean(stored, 0, 0, "tension_amplitude") is is_share
+        assert not _is_of_mean(stored, 0, 0, "mean_tension")
