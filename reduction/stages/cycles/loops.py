@@ -667,7 +667,7 @@ def _levels_of_ramps(
     follows, is_parted = touching(cycles), _are_parted(cycles)
     # a cycle stored without the next one may end before its valley
     ends_alone = np.append(cycles.first[1:] == cycles.last[:-1] + 1, False)
-    levels = []
+    is_by_fall, levels = np.isfinite(drifts.on_fall), []
     for place, (name, drift) in enumerate((("force", drifts.tension), ("strain", drifts.strain))):
         answers = place == int(is_load)
         top, begin, end = (row[f"{name}_{turn}"] for turn in ("top", "begin", "end_turn"))
@@ -682,7 +682,10 @@ def _levels_of_ramps(
             drifts.of_neighbours if answers else drift,
             rise_shares[place],
             follows & ~ends_alone,
-            drifts.on_fall if answers else np.full(drift.size, np.nan),
+            # both on the same way: a log that ends before its last valley is short of it in both
+            np.where(
+                is_by_fall, drifts.on_fall if answers else (1 - rise_shares[place]) * drift, np.nan
+            ),
         )
         turns = top, begin, end
         levels.append(
