@@ -774,11 +774,16 @@ def _load_difference(extremes: _LoadExtremes) -> _LoadDifference:
     along, upwards = extremes.horizontal, extremes.vertical
     classic_along, classic_upwards = extremes.horizontal_classic, extremes.vertical_classic
     return _LoadDifference(
-        horizontal_of_maximum=np.asarray(1 - along.maximum / classic_along.maximum),
-        horizontal_of_minimum=np.asarray(1 - along.minimum / classic_along.minimum),
-        vertical_of_maximum=np.asarray(1 - upwards.maximum / classic_upwards.maximum),
-        vertical_of_minimum=np.asarray(1 - upwards.minimum / classic_upwards.minimum),
+        horizontal_of_maximum=_cut(along.maximum, classic_along.maximum),
+        horizontal_of_minimum=_cut(along.minimum, classic_along.minimum),
+        vertical_of_maximum=_cut(upwards.maximum, classic_upwards.maximum),
+        vertical_of_minimum=_cut(upwards.minimum, classic_upwards.minimum),
     )
+
+
+def _cut(improved: Floats, classic: Floats) -> Floats:
+    """Share by which the improved load is less; NaN where there is no load."""
+    return np.asarray(1 - improved / np.where(classic == 0, np.nan, classic))
 
 
 AIR_DENSITY = 1.225

@@ -32,7 +32,7 @@ def reduced(*, spread, method=None):
     )  # fmt: skip
     return SimpleNamespace(
         amplitude=summary, slips=slips, specimens=(SimpleNamespace(name="new"),),
-        strain_models=(model,), contributions=None, history=None,
+        strain_models=(model,), contributions=None, history=None, record=None, cycles=None,
     )  # fmt: skip
 
 

@@ -706,7 +706,7 @@ def curve_at(
 
     Raises
     ------
-    ValueError
+    IndexError
         If the curve does not have one value per bin.
 
     Examples

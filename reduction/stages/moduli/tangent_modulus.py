@@ -312,6 +312,12 @@ def pair_specimens(
     """Return the three as arrays with a specimen axis, or raise where they do not pair up."""
     strains, tensions = as_same_shape(strain=strain, tension=tension)
     areas = np.atleast_1d(as_positive("area", area))
+    if strains.ndim != 2 or areas.shape != strains.shape[:1]:
+        raise DataError(
+            "strain, tension and area do not pair up",
+            found=f"strain {strains.shape}, area {areas.shape}",
+            needed="(n_specimens, n_samples) and (n_specimens,)",
+        )
     return strains, tensions, areas
 
 
