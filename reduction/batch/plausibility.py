@@ -127,13 +127,14 @@ def implausible(
     """
     read = [one for one in surveys if one.error is None]
     found: dict[str, list[Note]] = {one.plan.id: [] for one in read}
+    copied = _copied_marks(campaign)
     for survey in read:
         notes = found[survey.plan.id]
         for name in survey.plan.specimens:
             model = models.get((survey.plan.id, name))
             notes += _of_specimen(campaign, survey, campaign.specimens[name], model)
-            if model is not None and model.mark_test:
-                notes += _of_marks(campaign, name)
+            if model is not None and model.mark_test and name in copied:
+                notes.append(copied[name])
         notes += _of_statements(campaign, survey, models)
         notes += _of_columns(campaign, survey)
     for test, one in _of_pairs(campaign, read, models):
@@ -182,19 +183,23 @@ def _of_specimen(
         )  # fmt: skip
 
 
-def _of_marks(campaign: Campaign, name: str) -> Iterator[Note]:
+def _copied_marks(campaign: Campaign) -> dict[str, Note]:
     """Find marks that were read on another specimen, and copied."""
+    found: dict[str, Note] = {}
     if campaign.uncertainty.strain_gain:  # what the specimens differ by is in the intervals
-        return
-    own = _readings(campaign.marks[name])
-    for other, marks in campaign.marks.items():
-        if other == name:
-            return
+        return found
+    earlier: dict[str, set[tuple[str, float, float, float]]] = {}
+    for name, marks in campaign.marks.items():
+        own = _readings(marks)
         # slack rows may have been read on each specimen
-        shared = own & _readings(marks)
-        if len(shared) >= _FEWEST_COPIED and shared >= {one for one in own if one[0] != "slack"}:
-            yield note("marks-of-another", name, other=other, n_marks=len(shared))
-            return
+        stretched = {one for one in own if one[0] != "slack"}
+        for other, readings in earlier.items():
+            shared = own & readings
+            if len(shared) >= _FEWEST_COPIED and shared >= stretched:
+                found[name] = note("marks-of-another", name, other=other, n_marks=len(shared))
+                break
+        earlier[name] = own
+    return found
 
 
 def _readings(marks: SpliceMarks) -> set[tuple[str, float, float, float]]:

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from reduction.batch.plausibility import _of_columns, _of_marks, _of_pairs, _off_other_specimens
+from reduction.batch.plausibility import _copied_marks, _of_columns, _of_pairs, _off_other_specimens
 from reduction.pipeline.reduce_test import Extremes
 from reduction.readers.layout import Layout
 from reduction.record.measurement import Specimen, SpliceMarks
@@ -125,11 +125,10 @@ _READ = [(0.63, 3.18, 3.74), (0.63, 3.19, 3.74), (0.75, 5.24, 5.90), (0.81, 6.63
 def test_marks_that_were_read_on_another_specimen_are_told(readings, strain, n_notes):
     marks = {"A": tape("A", *_READ), "B": tape("B", *readings)}
     campaign = SimpleNamespace(marks=marks, uncertainty=SimpleNamespace(strain_gain=strain))
-    assert list(_of_marks(campaign, "A")) == []
-    found = list(_of_marks(campaign, "B"))
-    assert len(found) == n_notes
-    assert all(one.code == "marks-of-another" for one in found)
-    assert all("those of A" in str(one) for one in found)
+    found = _copied_marks(campaign)
+    assert list(found) == ["B"] * n_notes
+    assert all(one.code == "marks-of-another" for one in found.values())
+    assert all("those of A" in str(one) for one in found.values())
 
 
 def five_specimens(stiffness, *, material="rubber"):
