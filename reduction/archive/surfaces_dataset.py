@@ -728,6 +728,12 @@ _LABEL_OF_DIM = {
 """Text variable that shows how much of a dimension an experiment uses."""
 
 
+def is_share_of_mean(level: Floats, mean: Floats, amplitude: Floats) -> bool:
+    """Whether levels of a load amplitude are shares of the mean load, by those of the runs."""
+    known = np.isfinite(level) & np.isfinite(mean) & np.isfinite(amplitude)
+    return bool(known.any()) and np.allclose(level[known] * mean[known], amplitude[known])
+
+
 def surface_names(dataset: xr.Dataset, experiment: str) -> tuple[str, ...]:
     """Return the responses of an experiment with a surface, transformed ones last.
 

@@ -20,7 +20,7 @@ import xarray as xr
 from reduction.archive.open import Opener, ReadOnce, reading
 from reduction.archive.product_files import archives_of_tests, failure_words
 from reduction.archive.shared_errors import components_of, shared_contributions
-from reduction.archive.surfaces_dataset import surface_names, surfaces_of
+from reduction.archive.surfaces_dataset import is_share_of_mean, surface_names, surfaces_of
 from reduction.archive.uncertainty_budget import break_in_cycles, random_freedom
 from reduction.archive.variables import stored
 from reduction.experiments.fit_results import FIT_REASONS, ResponseSurfaces
@@ -361,10 +361,8 @@ def _is_of_mean(dataset: xr.Dataset, row: int, place: int, name: str) -> bool:
     needed = ("run_level", "run_mean_tension", "run_tension_amplitude")
     if name != "tension_amplitude" or any(one not in dataset for one in needed):
         return False
-    level = dataset["run_level"].values[row, :, place]
     mean, amplitude = (dataset[one].values[row] for one in needed[1:])
-    known = np.isfinite(level) & np.isfinite(mean) & np.isfinite(amplitude)
-    return bool(known.any()) and np.allclose(level[known] * mean[known], amplitude[known])
+    return is_share_of_mean(dataset["run_level"].values[row, :, place], mean, amplitude)
 
 
 def _scale(name: str, unit: str, strength: float, experiment: str) -> float:

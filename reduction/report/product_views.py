@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from reduction.archive.campaign_products import outcomes_of_dataset
 from reduction.archive.open import in_memory
-from reduction.archive.surfaces_dataset import surface_names, surfaces_of
+from reduction.archive.surfaces_dataset import is_share_of_mean, surface_names, surfaces_of
 from reduction.archive.variables import at_places, read_notes, stored
 from reduction.experiments.fit_results import ResponseSurfaces
 from reduction.experiments.outcome_groups import Group
@@ -382,6 +382,10 @@ FORM_WORDS = {
 
 _STRAINS = ("mean_strain", "strain_amplitude")
 
+_LOADS = ("mean_tension", "tension_amplitude")
+
+_OF_MEAN = "% of mean"
+
 
 @dataclass(frozen=True)
 class ExperimentView(RowView):
@@ -443,7 +447,20 @@ class ExperimentView(RowView):
     def factor_units(self) -> tuple[Shown, ...]:
         """Display unit of the level of each factor."""
         pairs = zip(self.factors, self.texts("factor_unit"), strict=True)
-        return tuple(_factor_unit(name, unit, self.units) for name, unit in pairs)
+        return tuple(
+            self._share(place) if name in _LOADS and unit == "1"
+            else _factor_unit(name, unit, self.units)
+            for place, (name, unit) in enumerate(pairs)
+        )  # fmt: skip
+
+    def _share(self, place: int) -> Shown:
+        """Display unit of a load that is a share of the break strength, or of the mean load."""
+        is_of_mean = self.factors[place] == "tension_amplitude" and is_share_of_mean(
+            self.array("run_level")[:, place],
+            self.per_run("run_mean_tension"),
+            self.per_run("run_tension_amplitude"),
+        )
+        return Shown(_OF_MEAN if is_of_mean else "%RBS", 100.0)
 
     def factor_label(self, place: int) -> str:
         """Name of a factor with its unit, for an axis or a column."""
@@ -494,8 +511,8 @@ class ExperimentView(RowView):
         scale = of_response.factor
         for one, power in zip(self.factor_units, exponents, strict=True):
             scale /= one.factor**power
-        unit = combined_unit(of_response.unit, [one.unit for one in self.factor_units], exponents)
-        return Shown(unit, scale)
+        units = ["%" if one.unit == _OF_MEAN else one.unit for one in self.factor_units]
+        return Shown(combined_unit(of_response.unit, units, exponents), scale)
 
 
 def in_words(name: str) -> str:

@@ -66,6 +66,24 @@ def test_cautions_name_their_runs():
     assert caution_table(view_of(screening_experiment())) is None
 
 
+@pytest.mark.parametrize("of_mean", [True, False])
+def test_a_load_that_is_a_share_is_shown_in_per_cent_of_what_it_is_a_share_of(of_mean):
+    view = view_of(law_experiment({"apparent_spring_constant": law}))
+    data = view.data.copy(deep=True)
+    data["factor_unit"].values[0, 2] = "1"
+    whole = data["run_mean_tension"].values if of_mean else STRENGTH
+    data["run_level"].values[..., 2] = data["run_tension_amplitude"].values / whole
+    table = run_table(replace(view, data=data))
+    unit = "% of mean" if of_mean else "%RBS"
+    cells = column(table, f"tension amplitude [{unit}]")
+    wanted = 100 * data["run_level"].values[0, :, 2]
+    assert [float(cell.text) for cell in cells] == pytest.approx(wanted, abs=0.06)
+    shown = [cell.text for cell in column(
+        surface_coefficient_table(replace(view, data=data), view.surfaces, 0), "its unit"
+    )]  # fmt: skip
+    assert f"N {unit.split()[0]}⁻²" in shown
+
+
 @pytest.mark.parametrize("units", ["si", "us"])
 def test_coefficients_in_units_give_the_surface_back(units):
     view = view_of(law_experiment({"apparent_spring_constant": law}, noise=1e-7), units=units)
