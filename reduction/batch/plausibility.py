@@ -526,7 +526,8 @@ def _off_other_specimens(
     groups: dict[tuple[str, ...], list[tuple[Survey, str, float, float]]] = {}
     for name, several in by_specimen.items():
         made = campaign.specimens[name]
-        if not made.has_area or made.kind == "other":
+        # a hose is as stiff as its cords and their angle make it
+        if not made.has_area or made.kind in ("other", "stretch hose"):
             continue
         make = made.kind, made.material, made.construction, made.condition
         rows = groups.setdefault(make, [])

@@ -131,7 +131,7 @@ def test_marks_that_were_read_on_another_specimen_are_told(readings, strain, n_n
     assert all("those of A" in str(one) for one in found.values())
 
 
-def five_specimens(stiffness, *, material="rubber"):
+def five_specimens(stiffness, *, material="rubber", kind="elastomer"):
     """Five specimens, pulled once each to a strain of 1; of the first the stiffness is given."""
     tests, specimens = {}, {}
     for place, one in enumerate((stiffness, 400.0, 450.0, 500.0, 550.0)):
@@ -143,7 +143,7 @@ def five_specimens(stiffness, *, material="rubber"):
         levels = SimpleNamespace(frequency=0.1)
         tests[name] = [SimpleNamespace(plan=plan, extremes=extremes, levels=levels)]
         made = material if place == 0 else "rubber"
-        specimens[name] = Specimen(name=name, kind="elastomer", diameter=(0.025,), material=made)
+        specimens[name] = Specimen(name=name, kind=kind, diameter=(0.025,), material=made)
     return SimpleNamespace(specimens=specimens), tests
 
 
@@ -163,3 +163,8 @@ def test_a_specimen_unlike_most_others_of_its_make_is_told(stiffness, material, 
     for one in found.values():
         unit = "lbf for N" if stiffness > 1000 else "N for lbf"
         assert "4 of 4 other specimens" in str(one) and unit in str(one)
+
+
+def test_hoses_of_another_angle_are_not_told():
+    campaign, tests = five_specimens(460.0 * 4.448, kind="stretch hose")
+    assert not list(_off_other_specimens(campaign, tests, {}))
