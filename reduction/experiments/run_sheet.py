@@ -505,7 +505,6 @@ def levels_off_plan(
 
 
 SIGNIFICANCE = 0.10
-
 """Two-sided level at which an effect of a screening counts: the 90 % of CG-D-39-80."""
 
 

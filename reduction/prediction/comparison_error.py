@@ -520,13 +520,8 @@ _LEAST_SHARE = 0.1  # change of slope over the mean slope: cords cause more
 
 _ORDER = 3  # of the polynomial on either side
 
-_TOES = (
-    1.0,
-    1.1,
-    1.2,
-    1.35,
-    1.5,
-)  # powers with which the load of a cord begins
+_TOES = (1.0, 1.1, 1.2, 1.35, 1.5)
+"""Powers with which the load of a cord may begin. [1]"""
 
 _TINY = 1e-9  # N: points without scatter
 

@@ -195,22 +195,30 @@ def test_a_ramp_that_dies_away_in_the_first_cycles_is_not_their_loss(control, de
     assert abs(loops.closed_loop_energy[0, 0] - energy) > 0.15 * energy
 
 
+LIMITS, SLIDER = np.linspace(2, 16, 8), 100.0
+
+
+def sliders_behind_a_ramp(wave, n_cycles):
+    """Turns, driven channel, and force of springs with sliders that a ramp left at their limits."""
+    turn = np.arange(n_cycles * 80 + 1) / 80
+    driven = -np.cos(2 * np.pi * turn) if wave == "sinusoidal" else 1 - 4 * np.abs(turn % 1 - 0.5)
+    held, force = LIMITS.copy(), []
+    for step in np.diff(driven, prepend=driven[0]):
+        held = np.clip(held + SLIDER * step, -LIMITS, LIMITS)
+        force.append(held.sum())
+    return turn, driven, np.array(force)
+
+
 @pytest.mark.parametrize("wave", ["sinusoidal", "triangular"])
 @pytest.mark.parametrize("n_cycles", [1, 5])
 def test_friction_behind_a_ramp_is_within_the_interval_of_the_first_cycle(wave, n_cycles):
     """Springs k with sliders f lose 4 f (a - f / k) in a cycle; a ramp leaves each at +f."""
-    turn = np.arange(n_cycles * 80 + 1) / 80
-    driven = -np.cos(2 * np.pi * turn) if wave == "sinusoidal" else 1 - 4 * np.abs(turn % 1 - 0.5)
-    limits, stiffness = np.linspace(2, 16, 8), 100.0
-    held, held_at = limits.copy(), []
-    for step in np.diff(driven, prepend=driven[0]):
-        held = np.clip(held + stiffness * step, -limits, limits)
-        held_at.append(held.sum())
+    turn, driven, held = sliders_behind_a_ramp(wave, n_cycles)
     loops = close_loops(
-        10 * turn, 2000 + 500 * driven[None] + np.array(held_at)[None], 1 + 0.1 * driven[None],
+        10 * turn, 2000 + 500 * driven[None] + held[None], 1 + 0.1 * driven[None],
         cycles_of(80, n_cycles, turn.size), waveform=wave,
     )  # fmt: skip
-    energy = 0.1 * np.sum(4 * limits * (1 - limits / stiffness))
+    energy = 0.1 * np.sum(4 * LIMITS * (1 - LIMITS / SLIDER))
     found, stated = loops.hysteresis_energy[0], loops.uncertainty["hysteresis_energy"][0]
     assert abs(found[0] - energy) < 1.75 * stated[0]  # anywhere between two limits: sqrt(3)
     assert found[1:] == pytest.approx(energy, rel=0.02)
@@ -222,22 +230,16 @@ def test_friction_and_relaxation_behind_a_ramp_are_within_the_intervals_of_all_c
     wave, n_cycles
 ):
     """The sliders of the test above, and a tension that falls with the logarithm of time."""
-    turn = np.arange(n_cycles * 80 + 1) / 80
-    driven = -np.cos(2 * np.pi * turn) if wave == "sinusoidal" else 1 - 4 * np.abs(turn % 1 - 0.5)
-    limits, stiffness = np.linspace(2, 16, 8), 100.0
-    held, held_at = limits.copy(), []
-    for step in np.diff(driven, prepend=driven[0]):
-        held = np.clip(held + stiffness * step, -limits, limits)
-        held_at.append(held.sum())
-    tension = 2000 + 500 * driven + np.array(held_at) - 40 * np.log1p(2 * turn)
+    turn, driven, held = sliders_behind_a_ramp(wave, n_cycles)
+    tension = 2000 + 500 * driven + held - 40 * np.log1p(2 * turn)
     loops = close_loops(
         10 * turn, tension[None], 1 + 0.1 * driven[None], cycles_of(80, n_cycles, turn.size),
         waveform=wave,
     )  # fmt: skip
-    energy = 0.1 * np.sum(4 * limits * (1 - limits / stiffness))
+    energy = 0.1 * np.sum(4 * LIMITS * (1 - LIMITS / SLIDER))
     stated = loops.uncertainty["hysteresis_energy"][0]
     assert (np.abs(loops.hysteresis_energy[0] - energy) < 2 * stated).all()
-    k_ap = (500 + limits.sum()) / 0.1
+    k_ap = (500 + LIMITS.sum()) / 0.1
     off = loops.apparent_spring_constant[0] / k_ap - 1
     assert abs(off[0]) * k_ap < 2 * loops.uncertainty["apparent_spring_constant"][0, 0]
     assert np.abs(off[1:]).max() < 0.01
