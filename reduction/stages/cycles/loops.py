@@ -544,10 +544,10 @@ def _change_of(amplitude: Floats) -> float:
 class _Drifts(NamedTuple):
     """Drift of both channels over each cycle, NaN where it exceeds the range of the cycle.
 
-    Cycles that follow a ramp may have an own drift in the channel that answers, which is the part
-    beyond that ``of_neighbours``: ``on_fall`` is what it has on the way down, NaN elsewhere,
-    ``in_phase`` what its transient has in phase with the wave, and ``of_ramp`` what it may add to
-    the range.  A drift ``may_miss`` what is not clearly its own.
+    After a ramp, the channel that answers may drift more in a cycle than in those beside it
+    (``of_neighbours``).  Where this drift is found (``is_own``), ``on_fall`` is its part on the way
+    down, NaN elsewhere, ``in_phase`` the part of its transient in phase with the wave, and
+    ``of_ramp`` what it may add to the range.  ``may_miss`` is a drift that is not clear of noise.
     """
 
     tension: Floats
@@ -663,7 +663,7 @@ def _levels_of_ramps(
     is_load: bool,
     rise_shares: tuple[Floats | float, Floats | float],
 ) -> tuple[_Levels, _Levels]:
-    """Levels of tension and of strain of waves that are no sines, by their turns."""
+    """Levels of tension and of strain of waves that are not sines, by their turns."""
     follows, is_parted = touching(cycles), _are_parted(cycles)
     # a cycle stored without the next one may end before its valley
     ends_alone = np.append(cycles.first[1:] == cycles.last[:-1] + 1, False)
