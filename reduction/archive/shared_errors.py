@@ -203,7 +203,8 @@ _CURVES = (
 )
 
 _OF_CURVE_ALONE = (
-    "position_offset", "lag", "stiffness", "attached_mass", "linear_density", "machine_compliance",
+    "tension_reversibility", "position_offset", "lag", "stiffness", "attached_mass",
+    "linear_density", "machine_compliance",
 )  # fmt: skip
 """Possible statements that affect only the curve: neither scales nor the zero of the load."""
 

@@ -196,6 +196,8 @@ class _TensionSection(_UncertaintySection):
     """Relative to the whole indication: ``"0.1 %"``."""
     offset: _OfForce | None = None
     """Of the zero."""
+    reversibility: _Relative | None = None
+    """Between indications of falling and rising load, relative: ``"0.1 %"``."""
     noise: _OfForce | None = None
     """Of one reading."""
     resolution: Annotated[float, _Standard("force", has_tables=False)] | None = None
@@ -277,6 +279,7 @@ def stated_errors(
     return StatedErrors(
         tension_gain=tension.gain or 0.0,
         tension_offset=tension.offset or 0.0,
+        tension_reversibility=tension.reversibility or 0.0,
         tension_reading=_of_reading(tension),
         position_gain=position.gain or 0.0,
         position_offset=position.offset or 0.0,

@@ -38,6 +38,9 @@ class InstrumentErrors:
         Relative, for the load cell and its amplifier. [1]
     tension_offset : float
         Zero of the load cell. [N]
+    tension_reversibility : float
+        Falling less rising indication of the load cell at the middle of a cycle, over half the
+        range of tension of the cycle. [1]
     position_gain : float
         Relative, for the scale of the crosshead. [1]
     position_offset : float
@@ -89,6 +92,7 @@ class InstrumentErrors:
     specimen: str
     tension_gain: float = 0.0
     tension_offset: float = 0.0
+    tension_reversibility: float = 0.0
     position_gain: float = 0.0
     position_offset: float = 0.0
     position_of_scale_zero: float = 0.0
@@ -637,7 +641,7 @@ class StatedErrors:
 
     Parameters
     ----------
-    tension_gain, position_gain : float
+    tension_gain, tension_reversibility, position_gain : float
         Relative. [1]
     tension_offset, tension_reading : float
         Zero, and a single reading (noise and resolution). [N]
@@ -665,6 +669,7 @@ class StatedErrors:
 
     tension_gain: float = 0.0
     tension_offset: float = 0.0
+    tension_reversibility: float = 0.0
     tension_reading: float = 0.0
     position_gain: float = 0.0
     position_offset: float = 0.0
@@ -707,6 +712,7 @@ class StatedErrors:
             test=test,
             tension_gain=self.tension_gain,
             tension_offset=self.tension_offset,
+            tension_reversibility=self.tension_reversibility,
             position_gain=self.position_gain,
             position_offset=self.position_offset,
             lag=self.lag,

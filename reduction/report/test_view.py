@@ -432,6 +432,7 @@ def _rows(units: UnitSystem) -> tuple[tuple[str, str, Shown], ...]:
     return (
         ("tension_gain", "gain of tension", _PERCENT),
         ("tension_offset", "zero of tension", force),
+        ("tension_reversibility", "reversibility of tension", _PERCENT),
         ("tension_reading", "one reading of tension", force),
         ("position_gain", "gain of position", _PERCENT),
         ("position_offset", "zero of position", length),

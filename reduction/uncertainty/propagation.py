@@ -814,7 +814,8 @@ def loop_contributions(
     is the force on the load cell, including the inertia that was subtracted.  Inertia is in phase
     with position and does no work over a cycle, so an error of its mass does not change the energy.
     Splices that are longer on the way down widen the loop by the difference of strain, over the
-    range of tension.
+    range of tension, and a load cell that reads less on the way down by the difference of tension,
+    over the range of strain.
 
     Examples
     --------
@@ -871,11 +872,16 @@ def loop_contributions(
             component, values, Component("temperature", errors.test),
             _moved_by_temperature(errors, loop, control),
         )  # fmt: skip
+    # splices that are taken to stretch by the logged tension follow an error of it
+    felt = 1 - field.strain_by_tension[2] * loop.apparent_spring_constant
+    if errors.tension_reversibility:
+        component, values = _with(
+            component, values, Component("tension_reversibility", errors.tension_instrument),
+            _moved_by_reversibility(errors, loop, felt),
+        )  # fmt: skip
     if errors.lag:
-        # splices that are taken to stretch by the late tension are late too
-        late = 1 - field.strain_by_tension[2] * loop.apparent_spring_constant
         moved = _moved_by_lag(
-            errors, model, loop, late, waveform=waveform, control=control,
+            errors, model, loop, felt, waveform=waveform, control=control,
             speed_ratio=speed_ratio, has_corners=has_corners, inertia=inertia,
         )  # fmt: skip
         lagging = Component("lag", errors.tension_instrument)
@@ -936,8 +942,7 @@ def _moved_by_lag(
 ) -> dict[str, Floats]:
     """Changes of the quantities of loops whose tension is logged late, or smoothed in a filter.
 
-    ``late``: share of a lag that is felt; strain of the splices that is taken from tension is late
-    too.
+    ``late``: share of a lag that is felt.
     """
     turn = 2 * np.pi * loop.frequency * errors.lag
     taken_off: Floats | float = 0.0
@@ -993,6 +998,53 @@ def _moved_by_lag(
         ):  # fmt: skip
             of_lag[name] = of_lag.get(name, 0.0) - way * lost
     return of_lag
+
+
+def reversibility_error(
+    errors: InstrumentErrors, tension: Floats, valley: Floats, peak: Floats
+) -> tuple[Floats, Floats]:
+    r"""Error of tension on the way down, by a load cell that reads less there, and its slope. [N].
+
+    .. math:: \delta T = -2 v\, \frac{(T - T_v)(T_p - T)}{T_p - T_v}
+
+    Notes
+    -----
+    v is the relative reversibility error (ISO 7500-1) of a calibration up to some load and back, at
+    half that load.  The cell is taken to have a loop of this shape in every cycle, as wide in
+    proportion to its range, and to be right while the load rises, where it was calibrated.
+
+    Examples
+    --------
+    .1 % between 0 and 1 kN: half a newton at mid-range.
+
+    >>> error, slope = reversibility_error(InstrumentErrors("rope", tension_reversibility=0.001),
+    ...     np.array([0.0, 500.0, 1000.0]), np.array(0.0), np.array(1000.0))
+    >>> print(error, slope)
+    [-0.  -0.5 -0. ] [-0.002 -0.     0.002]
+    """
+    per_range = 2 * errors.tension_reversibility / (peak - valley)
+    return (
+        -per_range * (tension - valley) * (peak - tension),
+        -per_range * (peak + valley - 2 * tension),
+    )
+
+
+def _moved_by_reversibility(
+    errors: InstrumentErrors, loop: LoopQuantities, felt: Floats
+) -> dict[str, Floats]:
+    """Changes of the quantities of loops by a load cell that reads less while the load falls.
+
+    Two thirds of the greatest difference over the range of strain; nothing at the ends, nor in the
+    part of the fundamental that is in phase with strain.
+    """
+    wide = (
+        4 / 3 * errors.tension_reversibility * loop.tension_amplitude * loop.strain_amplitude * felt
+    )
+    return {
+        "hysteresis_energy": wide,
+        "closed_loop_energy": wide,
+        "loss_spring_constant": wide / (np.pi * loop.strain_amplitude**2),
+    }
 
 
 def _moved_by_friction(

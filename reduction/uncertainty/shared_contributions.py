@@ -96,6 +96,7 @@ from reduction.uncertainty.propagation import (
     over_strength,
     pull_contributions,
     ratio_contributions,
+    reversibility_error,
     secant_contributions,
     section_contributions,
     segment_contributions,
@@ -509,6 +510,15 @@ def _of_curves(
             own = -(modulus * steeper + bend * away)
             values[name] = np.concatenate([values[name], own[None]])
         component = (*component, Component("splice_friction", errors.specimen))
+    if errors.tension_reversibility and not suffix:  # a first rise has no way down
+        off, steeper = _reversibility_on_branches(errors, tension)
+        felt = 1 - field.strain_by_tension * area * slope
+        values["branch_tension"] = np.concatenate([values["branch_tension"], (felt * off)[None]])
+        for name in names:
+            modulus = getattr(curves, name)[index]
+            own = felt * steeper * np.where(np.isfinite(modulus), modulus, slope)
+            values[name] = np.concatenate([values[name], own[None]])
+        component = (*component, Component("tension_reversibility", errors.tension_instrument))
     if curves.tangent_modulus_window_uncertainty is None:
         return Contributions(component, values)
     missed = np.nan_to_num(curves.tangent_modulus_window_uncertainty[index])
@@ -522,6 +532,18 @@ def _of_curves(
     }
     window = Component("window", f"{errors.test} {errors.specimen}")
     return Contributions((*component, window), values)
+
+
+def _reversibility_on_branches(errors: InstrumentErrors, tension: Floats) -> tuple[Floats, Floats]:
+    """Error of tension by the load cell on the way down, and its slope over tension."""
+    off, steeper = np.zeros(tension.shape), np.zeros(tension.shape)
+    down = tension[1]
+    known = np.isfinite(down)
+    if known.sum() > 1:
+        off[1, known], steeper[1, known] = reversibility_error(
+            errors, down[known], np.min(down[known]), np.max(down[known])
+        )
+    return off, steeper
 
 
 _TINY = 1e-12  # of the strain 1
