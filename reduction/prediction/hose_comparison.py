@@ -649,31 +649,30 @@ class _FitProblem:
         """Judged curve, shape (n_strain,). [N]."""
         return self.measured.tension_of(self.measured.judged)
 
-    @property
-    def n_followed(self) -> int:
-        """Number of parameters and traced errors in which the tension is not linear."""
-        return self.n_traced - len(self.between)
-
     def tension_at(self, traced: Floats) -> Floats:
         """Tension of trials (n_trial, n_traced) as read in the test, (n_trial, n_used). [N]."""
         moved, of_cord = self._errors_of(traced)
         numbers = self._numbers_of(traced)
-        size = self.open_cord.sizes(self.between, of_cord)
         node = self.measured.reading.node
         tension = np.empty((traced.shape[0], self.noise.size))
         axes, which = np.unique(moved, axis=0, return_inverse=True)
         for k, axis in enumerate(axes):
             trials = which.ravel() == k
             strain = node - axis @ self.moved
-            # a record with low readings has strains just below zero: the curve continues there
-            there = np.abs(strain)
-            names = (*self.names, *self.held)
-            curve = _trial_load(self.design, names, numbers[trials], there, self.load)
-            if self.between:
-                hoses = self._hoses_of(numbers[trials])
-                curve += _load_between_points(hoses, there, self.open_cord, size[trials], self.load)
-            tension[trials] = self._read(np.sign(strain) * curve)
+            tension[trials] = self._read(self._curve(numbers[trials], of_cord[trials], strain))
         return tension
+
+    def _curve(self, numbers: Floats, of_cord: Floats, strain: Floats) -> Floats:
+        """Tension of trials at strains between the bin centres, (n_trial, n_node). [N]."""
+        # a record with low readings has strains just below zero: the curve continues there
+        there = np.abs(strain)
+        names = (*self.names, *self.held)
+        curve = _trial_load(self.design, names, numbers, there, self.load)
+        if self.between:
+            size = self.open_cord.sizes(self.between, of_cord)
+            hoses = self._hoses_of(numbers)
+            curve += _load_between_points(hoses, there, self.open_cord, size, self.load)
+        return np.asarray(np.sign(strain) * curve)
 
     def _numbers_of(self, traced: Floats) -> Floats:
         """Fitted and held parameters of trials, (n_trial, n_numbers + n_held)."""
@@ -687,7 +686,8 @@ class _FitProblem:
     def _errors_of(self, traced: Floats) -> tuple[Floats, Floats]:
         """Errors of strain and of the cord between its points, of trials."""
         first = len(self.names) + len(self.held)
-        return traced[:, first : self.n_followed], traced[:, self.n_followed :]
+        of_strain, of_cord = np.split(traced[:, first:], [len(self.moved)], axis=1)
+        return of_strain, of_cord
 
     def _hoses_of(self, numbers: Floats) -> HoseDesign:
         names = (*self.names, *self.held)
@@ -702,29 +702,32 @@ class _FitProblem:
 
         Rough derivatives are one-sided differences.
         """
-        p, n = len(self.names), self.n_followed
+        p, n = len(self.names), len(self.names) + len(self.held)
         step = _DIFFERENCE * np.eye(n, traced.size)
         if is_rough:
             step[:, :p] *= np.where(traced[:p] + _DIFFERENCE > self.high, -1.0, 1.0)
             tension = self.tension_at(np.vstack([traced, traced + step]))
-            followed = (tension[1:] - tension[0]) / np.diagonal(step)[:, None]
+            rows = [(tension[1:] - tension[0]) / np.diagonal(step)[:, None]]
         else:
             ends = np.vstack([traced - step, traced + step])
             ends[:, :p] = np.clip(ends[:, :p], self.low, self.high)
             below, above = np.split(self.tension_at(ends), 2)
-            followed = (above - below) / np.diagonal(ends[n:] - ends[:n])[:, None]
-        if not self.between:
-            return np.asarray(followed).T
+            rows = [(above - below) / np.diagonal(ends[n:] - ends[:n])[:, None]]
         at = traced[None, :]
-        strain = self.measured.reading.node - self._errors_of(at)[0][0] @ self.moved
-        rows = _load_of_intervals(
-            self._hoses_of(self._numbers_of(at)),
-            np.abs(strain),
-            self.open_cord,
-            self.between,
-            self.load,
-        )
-        return np.vstack([followed, self._read(np.sign(strain) * rows)]).T
+        numbers, (moved, of_cord) = self._numbers_of(at), self._errors_of(at)
+        strain = self.measured.reading.node - moved[0] @ self.moved
+        if self.moved.any():
+            # all errors of strain at once: each moves the same curve
+            reach = _DIFFERENCE * float(np.abs(self.moved).max())
+            less, more = (self._curve(numbers, of_cord, strain + way * reach) for way in (-1, 1))
+            rows.append(self._read((less - more) / (2 * reach) * self.moved))
+        else:
+            rows.append(np.zeros((len(self.moved), self.noise.size)))
+        if self.between:
+            hose, where = self._hoses_of(numbers), np.abs(strain)
+            of_interval = _load_of_intervals(hose, where, self.open_cord, self.between, self.load)
+            rows.append(self._read(np.sign(strain) * of_interval))
+        return np.vstack(rows).T
 
     def error_slopes(self, x: Floats) -> Floats:
         """Effect of one standard uncertainty of each error, shape (n_error, n_used). [N]."""
