@@ -599,3 +599,27 @@ def test_a_fall_that_lasts_longer_than_a_ramp_sets_out_is_of_the_hold():
         time, place, [tension], [place], stand, specimens=("new",), settings=HoldSettings()
     )
     assert hold.hold_final_tension == pytest.approx(390 - 2 * 10.9, abs=0.1)
+
+
+@pytest.mark.parametrize("fast", [1.5, 3.0, 6.0])
+def test_a_long_ramp_does_not_hide_a_term_of_seconds_from_the_drop(fast):
+    """A ramp of 100 s leaves 60 N of a term of 3 s with 1.8 N, in closed form by superposition."""
+    time = np.arange(0.0, 720.0, STEP)
+    share, after = np.clip((time - 20) / 100, 0, 1), np.clip(time - 120, 0, None)
+    tension, lost = 200 * share, 0.0
+    for size, tau in ((60.0, fast), (30.0, 100.0)):
+        left = size * tau / 100 * -np.expm1(-100 * share / tau)
+        tension += left * np.exp(-after / tau)
+        lost += left[-1] * -np.expm1(-600 / tau)
+    drop = lost / tension[time <= 120][-1]
+    for seed in range(3):
+        rng = np.random.default_rng(seed)
+        (hold,) = reduce(
+            time,
+            4 + 2 * share + rng.normal(0, 1e-4, time.size),
+            tension + rng.normal(0, 0.05, time.size),
+            spans=((0, 20), (120, 1e9)),
+        )
+        error = hold.relaxation_drop - drop
+        assert abs(error) < 2.5 * hold.relaxation_drop_standard_uncertainty
+        assert abs(error) < 0.01 * drop

@@ -223,6 +223,8 @@ def level_at_end(
             largest = _LARGEST_SPREAD * found[-1].standard_uncertainty
             back = found[-1 - _STEPS_BACK :] if len(found) > _STEPS_BACK else found
             chosen = next(one for one in back if one.standard_uncertainty <= largest)
+            if len(found) == 1:  # bent already, with no shorter line to tell by how much
+                found.append(_LevelAtEnd(value, spread, slope, count))
             break
         spreads.append(spread)
         if step:

@@ -785,7 +785,7 @@ def _hold_ends(hold: Hold) -> _Ends:
         shifted(hold.time, hold.ramp_end_time),
         hold.tension,
         noise=reading_noise(hold.tension),
-        shortest=0.0 if hold.ramp is None else _BESIDE * hold.ramp.length,
+        shortest=0.0 if hold.ramp is None else min(_BESIDE * hold.ramp.length, _RINGING),
         step=hold.tension_step,
     )
     u_initial = first.standard_uncertainty
@@ -1450,6 +1450,8 @@ def _greatest(values: Floats) -> float:
 
 
 _BESIDE, _SAMPLES_BESIDE = 0.05, 5
+
+_RINGING = 2.0  # longest time over which a machine rings; rubber relaxes within seconds too. [s]
 
 
 def _rate(hold: Hold, ends: _Ends, *, known_to: float) -> _Rate | None:
