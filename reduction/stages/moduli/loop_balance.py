@@ -14,7 +14,8 @@ References
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -243,6 +244,79 @@ def _inside_turns(cycles: Cycles) -> Cycles:
     )  # fmt: skip
 
 
+@dataclass(frozen=True)
+class _StrokeBalance:
+    """Both sides of the identity for the cycles of one specimen."""
+
+    strain: Floats
+    tension: Floats
+    area: float
+    cycles: Cycles
+    n_pieces: int
+
+    @cached_property
+    def sides(self) -> Floats:
+        """Both sides and the mean slope by lines and parabolas, shape (3, 2, n_cycles). [Pa]."""
+        change, stroke = _tension_change(
+            self.strain, self.tension, cycles=self.cycles, n_pieces=self.n_pieces
+        )
+        per_stroke = 1 / (self.area * np.abs(stroke).mean(axis=1))
+        first, last = self.cycles.first, self.cycles.last
+        lost = take_samples(self.tension, first) - take_samples(self.tension, last)
+        # relaxation while the machine rests at its peak is on no branch
+        peak, leaves = self.cycles.branch_last[:, 0], self.cycles.branch_first[:, 1]
+        at_rest = take_samples(self.tension, peak) - take_samples(self.tension, leaves)
+        lost = lost - np.where(leaves > peak + 1, at_rest, 0.0)
+        rise = change * np.sign(stroke)
+        apart = rise[..., 0] - rise[..., 1]
+        sides = np.stack([apart, np.broadcast_to(lost, apart.shape), rise.mean(axis=-1)])
+        return np.asarray(per_stroke * sides)
+
+    @cached_property
+    def mean(self) -> Floats:
+        """Mean residual by lines and by parabolas. [1]."""
+        return _mean_over_cycles((self.sides[0] + self.sides[1]) / self.sides[2])[0]
+
+    @cached_property
+    def way(self) -> int:
+        """0 for lines, 1 for parabolas: a fault shows in both, uneven sampling in one of them."""
+        return int(abs(self.mean[1]) < abs(self.mean[0]))
+
+    def change_by(self, other: _StrokeBalance) -> float:
+        """Change of the mean residual with another series or another number of pieces. [1]."""
+        return float(np.nan_to_num(abs(other.mean[self.way] - self.mean[self.way])))
+
+    def change_by_lag(self, time: ArrayLike, lag: float) -> float:
+        """Change of the mean residual by twice the stated lag. [1]."""
+        since = np.asarray(time, dtype=np.float64)
+        late = np.interp(since - 2 * lag, since, self.tension)
+        return self.change_by(replace(self, tension=late))
+
+    @property
+    def change_by_bend(self) -> float:
+        """Change by half as many pieces, or half the difference between lines and parabolas. [1].
+
+        The error of lines and parabolas from curvature within the pieces is not larger.
+        """
+        by_way = float(np.nan_to_num(abs(self.mean[1] - self.mean[0]))) / 2
+        if self.n_pieces < _MOST_PIECES:
+            return by_way
+        return max(by_way, self.change_by(replace(self, n_pieces=self.n_pieces // 2)))
+
+    @property
+    def without_turns(self) -> float:
+        """Mean residual without the readings at the turns, if all cycles are in step. [1]."""
+        cycles = self.cycles
+        if not _is_in_step(cycles.first) or _opens(self.strain, self.tension, cycles) < 0:
+            return np.nan
+        return float(replace(self, cycles=_inside_turns(cycles)).mean[self.way])
+
+    @property
+    def of_strain(self) -> float:
+        """Mean residual of the strain gained in cycles, the lesser of lines and parabolas. [1]."""
+        return float(np.abs(replace(self, strain=self.tension, tension=self.strain).mean).min())
+
+
 def check_identity(
     strain: ArrayLike,
     tension: ArrayLike,
@@ -355,98 +429,39 @@ def check_identity(
     shape = (areas.size, cycles.n_cycles)
     if names is None:
         names = tuple(f"specimen {number}" for number in range(1, areas.size + 1))
-    difference, loss = np.full((2, *shape), np.nan)
-    n_pieces, worth_a_note = _MOST_PIECES, _WORTH_A_NOTE
+    difference, loss, modulus = np.full((3, *shape), np.nan)
+    balances: list[_StrokeBalance] = []
+    worth_a_note = _WORTH_A_NOTE
     if cycles.n_cycles:
         steps = cycles.branch_last - cycles.branch_first
         n_pieces = int(np.clip(float(np.median(steps)) // _PIECE_SAMPLES, 1, _MOST_PIECES))
         fast, slow = np.sort(np.median(steps, axis=0)).tolist()
         worth_a_note *= (_MOST_PIECES / n_pieces) ** 2 * slow / fast
-
-    def sides_of(
-        row: int, load: Floats, pieces: int = n_pieces, of: Cycles = cycles,
-        over: Floats = strains,
-    ) -> Floats:  # fmt: skip
-        """Both sides and the mean slope by lines and parabolas, shape (3, 2, n_cycles). [Pa]."""
-        change, stroke = _tension_change(over[row], load, cycles=of, n_pieces=pieces)
-        per_stroke = 1 / (areas[row] * np.abs(stroke).mean(axis=1))
-        lost = take_samples(load, of.first) - take_samples(load, of.last)
-        # relaxation while the machine rests at its peak is on no branch
-        peak, leaves = of.branch_last[:, 0], of.branch_first[:, 1]
-        at_rest = take_samples(load, peak) - take_samples(load, leaves)
-        lost = lost - np.where(leaves > peak + 1, at_rest, 0.0)
-        rise = change * np.sign(stroke)
-        apart = rise[..., 0] - rise[..., 1]
-        sides = np.stack([apart, np.broadcast_to(lost, apart.shape), rise.mean(axis=-1)])
-        return np.asarray(per_stroke * sides)
-
-    def mean_of(sides: Floats) -> tuple[Floats, Floats]:
-        """Mean residual by lines and by parabolas, and their standard errors. [1]."""
-        return _mean_over_cycles((sides[0] + sides[1]) / sides[2])
-
-    def change_by(row: int, sides: Floats) -> float:
-        """Change of the mean residual when other sides than those of the row are used. [1]."""
-        return float(np.nan_to_num(abs(mean_of(sides)[0][way[row]] - mean[row])))
-
-    def of_lag(row: int) -> float:
-        """Change of the mean residual by twice the stated lag. [1]."""
-        if time is None or not any(lag):
-            return 0.0
-        since = np.asarray(time, dtype=np.float64)
-        late = np.interp(since - 2 * lag[row], since, tensions[row])
-        return change_by(row, sides_of(row, late))
-
-    def of_bend(row: int) -> float:
-        """Change by half as many pieces, or half the difference between lines and parabolas. [1].
-
-        The error of lines and parabolas from curvature within the pieces is not larger.
-        """
-        if n_pieces < _MOST_PIECES:
-            return other_way[row] / 2
-        by_pieces = change_by(row, sides_of(row, tensions[row], n_pieces // 2))
-        return max(other_way[row] / 2, by_pieces)
-
-    def without_turns(row: int) -> float:
-        """Mean residual without the readings at the turns, if all cycles are in step. [1]."""
-        if not _is_in_step(cycles.first) or _opens(strains[row], tensions[row], cycles) < 0:
-            return np.nan
-        inside, _ = mean_of(sides_of(row, tensions[row], of=_inside_turns(cycles)))
-        return float(inside[way[row]])
-
-    def of_strain(row: int) -> float:
-        """Mean residual of the strain gained in cycles, the lesser of lines and parabolas. [1]."""
-        by_both, _ = mean_of(sides_of(row, strains[row], over=tensions))
-        return float(np.abs(by_both).min())
-
-    modulus = np.full(shape, np.nan)
-    way, other_way = [0] * areas.size, [0.0] * areas.size
-    if cycles.n_cycles:
         for row in range(areas.size):
-            sides = sides_of(row, tensions[row])
-            both, _ = mean_of(sides)
-            # a fault of a record shows in both, an uneven sampling in one of them
-            way[row] = int(abs(both[1]) < abs(both[0]))
-            other_way[row] = float(np.nan_to_num(abs(both[1] - both[0])))
-            difference[row], loss[row], modulus[row] = sides[:, way[row]]
+            one = _StrokeBalance(strains[row], tensions[row], areas[row], cycles, n_pieces)
+            difference[row], loss[row], modulus[row] = one.sides[:, one.way]
+            balances.append(one)
     residual = (difference + loss) / modulus
     mean, error = _mean_over_cycles(residual)
     notes = []
-    for row, (name, one, spread) in enumerate(zip(names, mean, error, strict=True)):
-        least = max(_SIGNIFICANT * spread, worth_a_note)
-        if abs(one) > least and abs(one) > (most := least + of_bend(row)):
-            # creep continues after a turn of the load; a late load has the other sign
-            if control == "load" and 0 < one and of_strain(row) <= most:
-                continue
-            explained = of_lag(row)
-            # intervals include the stated lag already; its residual is not worth a warning
-            is_of_lag = explained > 0 and abs(one) <= explained + least
-            is_of_turns = not is_of_lag and np.sign(one) * without_turns(row) <= most
-            found = note(
-                "identity-open", name, effect=one, error=spread, is_coarse=n_pieces < _MOST_PIECES,
-                of_lag=explained if is_of_lag else 0.0, is_of_turns=is_of_turns,
-            )  # fmt: skip
-            told = is_of_lag or is_of_turns
-            notes.append(replace(found, severity="note") if told else found)
+    for row, one in enumerate(balances):
+        effect, size = float(mean[row]), abs(float(mean[row]))
+        least = max(_SIGNIFICANT * float(error[row]), worth_a_note)
+        if not (size > least and size > (most := least + one.change_by_bend)):
+            continue
+        # creep continues after a turn of the load; a late load has the other sign
+        if control == "load" and 0 < effect and one.of_strain <= most:
+            continue
+        explained = 0.0 if time is None or not any(lag) else one.change_by_lag(time, lag[row])
+        # intervals include the stated lag already; its residual is not worth a warning
+        is_of_lag = explained > 0 and size <= explained + least
+        is_of_turns = not is_of_lag and np.sign(effect) * one.without_turns <= most
+        found = note(
+            "identity-open", names[row], effect=effect, error=float(error[row]),
+            is_coarse=one.n_pieces < _MOST_PIECES, of_lag=explained if is_of_lag else 0.0,
+            is_of_turns=is_of_turns,
+        )  # fmt: skip
+        notes.append(replace(found, severity="note") if is_of_lag or is_of_turns else found)
     return CycleIdentity(
         stroke_mean_modulus_difference=difference,
         tension_loss_modulus=loss,
