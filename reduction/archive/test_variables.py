@@ -22,7 +22,7 @@ from reduction.record.contributions import LineSpread
 from reduction.record.measurement import Floats, Specimen
 from reduction.stages.channel_lag import LagEstimate
 from reduction.stages.cycles.cycle_product import Cycles, Loops
-from reduction.stages.holds.relaxation_and_creep import HoldResult, hold_numbers
+from reduction.stages.holds.hold_product import HoldResult, hold_numbers
 from reduction.stages.moduli.modulus_product import (
     AmplitudeSummary,
     CycleIdentity,

@@ -71,7 +71,8 @@ from reduction.stages.cycles.loop_sense import (
     waveform_of_log,
 )
 from reduction.stages.cycles.periods import change_of_period
-from reduction.stages.holds.relaxation_and_creep import HoldResult, reduce_holds
+from reduction.stages.holds.hold_product import HoldResult
+from reduction.stages.holds.relaxation_and_creep import reduce_holds
 from reduction.stages.moduli.modulus_product import ModulusCurves
 from reduction.stages.moduli.slack_length import slack_crossings, slack_strain_at_unloading
 from reduction.stages.moduli.stepwise_test import greatest_step_strain, reduce_stepwise

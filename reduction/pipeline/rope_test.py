@@ -15,7 +15,7 @@ from reduction.record.notes import Note, note
 from reduction.record.samples import last_sample
 from reduction.record.settings import CycleSettings, RopeSettings
 from reduction.stages.cycles.cycle_product import Cycles, Loops
-from reduction.stages.holds.relaxation_and_creep import HoldResult
+from reduction.stages.holds.hold_product import HoldResult
 from reduction.stages.strain.strain_model import StrainModel
 from reduction.stages.three_parameter_line.hold_pairs import (
     CreepOfHold,

@@ -13,7 +13,7 @@ from reduction.record.measurement import Floats, Integers, Record, Source, Speci
 from reduction.record.notes import Note, by_severity, note
 from reduction.stages.channel_lag import LagEstimate
 from reduction.stages.cycles.cycle_product import Cycles, Loops
-from reduction.stages.holds.relaxation_and_creep import HoldResult, hold_numbers
+from reduction.stages.holds.hold_product import HoldResult, hold_numbers
 from reduction.stages.moduli.modulus_product import (
     AmplitudeSummary,
     CycleIdentity,

@@ -124,7 +124,7 @@ from reduction.record.contributions import (
 )
 from reduction.record.measurement import Floats
 from reduction.record.settings import Control, Waveform
-from reduction.stages.holds.relaxation_and_creep import HoldResult
+from reduction.stages.holds.hold_product import HoldResult
 from reduction.stages.moduli.elastomer_laws import PARAMETERS, Law, even_grid, hyperelastic_stress
 from reduction.stages.moduli.modulus_product import Ratio
 from reduction.stages.moduli.stepwise_test import StepwiseResult

@@ -42,7 +42,7 @@ from reduction.stages.cycles.cycle_product import Cycles, Loops
 from reduction.stages.cycles.cycle_search import control_channel
 from reduction.stages.cycles.reading_noise import reading_noise
 from reduction.stages.cycles.turns import kind_of_turns
-from reduction.stages.holds.relaxation_and_creep import HoldResult, hold_numbers
+from reduction.stages.holds.hold_product import HoldResult, hold_numbers
 from reduction.stages.load_train import length_by_stroke
 from reduction.stages.moduli.elastomer_laws import LAWS
 from reduction.stages.moduli.modulus_product import (

@@ -6,12 +6,12 @@ from examples import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from reduction.stages.holds.hold_selection import _find_ramp
 from reduction.stages.holds.prony_series import _ramp_factor, prony_tension
-from reduction.stages.holds.relaxation_and_creep import (
-    _find_ramp,
-    _rate_per_decade,
-    _relaxation_drop,
+from reduction.stages.holds.relaxation_numbers import (
     logarithmic_blocks,
+    rate_per_decade,
+    relaxation_drop,
 )
 from reduction.stages.moduli.elastomer_laws import fit_elastomers, hyperelastic_stress
 from reduction.stages.moduli.secant_modulus import slope_per_decade
@@ -23,7 +23,7 @@ positive = st.floats(1e-3, 1e3)
 
 @given(st.floats(1, 1e4), st.floats(0, 1e4), positive)
 def test_a_drop_does_not_depend_on_the_unit_of_tension(initial, final, unit):
-    one, other = _relaxation_drop(initial, final), _relaxation_drop(unit * initial, unit * final)
+    one, other = relaxation_drop(initial, final), relaxation_drop(unit * initial, unit * final)
     assert other == pytest.approx(float(one), rel=1e-9, abs=1e-12)
 
 
@@ -50,7 +50,7 @@ def test_a_prony_series_only_falls(terms, long_time_tension):
 def test_a_rate_per_decade_does_not_depend_on_the_unit_of_time(unit, decades, slope):
     time = np.geomspace(1, 10**decades, 300)
     rates = [
-        _rate_per_decade(
+        rate_per_decade(
             logarithmic_blocks(scale * time, slope * np.log10(time)), ramp_duration=0.0
         ).value
         for scale in (1.0, unit)

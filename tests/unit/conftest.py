@@ -18,7 +18,7 @@ from reduction.record.measurement import Quality, Record, Source, Specimen, Step
 from reduction.record.notes import Note
 from reduction.stages.channel_lag import LagEstimate
 from reduction.stages.cycles.cycle_product import Cycles, Loops
-from reduction.stages.holds.relaxation_and_creep import HoldResult
+from reduction.stages.holds.hold_product import HoldResult
 from reduction.stages.moduli.modulus_product import (
     AmplitudeSummary,
     CycleIdentity,

@@ -5,8 +5,9 @@ import pytest
 
 from reduction.record.settings import HoldSettings, PhaseSettings
 from reduction.stages.approach import find_approach
+from reduction.stages.holds.hold_selection import select_hold
 from reduction.stages.holds.ramp_end import ramp_end_time
-from reduction.stages.holds.relaxation_and_creep import reduce_holds, select_hold
+from reduction.stages.holds.relaxation_and_creep import reduce_holds
 from reduction.stages.standstills import find_standstills
 
 END, RAMP, DURATION = 20.0, 15.0, 300.0

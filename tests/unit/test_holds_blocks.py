@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from reduction.record.errors import DataError
-from reduction.stages.holds.relaxation_and_creep import logarithmic_blocks
+from reduction.stages.holds.relaxation_numbers import logarithmic_blocks
 
 
 def test_blocks_keep_the_sum_of_the_series():

@@ -5,7 +5,7 @@ import pytest
 
 from reduction.record.errors import DataError, FitError
 from reduction.stages.holds.prony_series import fit_prony, prony_tension
-from reduction.stages.holds.relaxation_and_creep import logarithmic_blocks
+from reduction.stages.holds.relaxation_numbers import logarithmic_blocks
 
 RAMP = 4.0
 TERMS = {

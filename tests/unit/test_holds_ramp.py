@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from reduction.record.errors import DataError
-from reduction.stages.holds.relaxation_and_creep import _find_ramp
+from reduction.stages.holds.hold_selection import _find_ramp
 
 
 def record(rate=0.2, stroke=1.0, power=1.0, rest=10.0, step=0.05):

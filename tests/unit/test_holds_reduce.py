@@ -5,15 +5,11 @@ import pytest
 from scipy.signal import lfilter
 
 from reduction.record.settings import HoldSettings
+from reduction.stages.holds.hold_selection import Hold, _Ramp
 from reduction.stages.holds.prony_series import prony_tension
 from reduction.stages.holds.ramp_end import level_at_end
-from reduction.stages.holds.relaxation_and_creep import (
-    Hold,
-    _late_load,
-    _Ramp,
-    _value_at_times,
-    reduce_holds,
-)
+from reduction.stages.holds.relaxation_and_creep import _late_load, reduce_holds
+from reduction.stages.holds.relaxation_numbers import value_at_times
 from reduction.stages.standstills import Standstills
 
 STEP = 0.1
@@ -368,7 +364,7 @@ def test_between_two_readings_of_a_slow_log_a_fall_may_bend(interval, late):
         return 1000 + sum(force * np.exp(-elapsed / time) for force, time in terms)
 
     elapsed = np.append(0.0, np.arange(late * interval, 600, interval))
-    value, spread = _value_at_times(elapsed, tension(elapsed), [1.0, 3.0])
+    value, spread = value_at_times(elapsed, tension(elapsed), [1.0, 3.0])
     known = np.isfinite(value)
     assert known.any()
     error = np.abs(value - tension(np.array([1.0, 3.0])))[known]
@@ -382,7 +378,7 @@ def test_a_relaxation_that_bends_over_the_logarithm_of_time_is_read_where_it_is(
     off = []
     for seed in range(20):
         noise = 7e-4 * np.random.default_rng(seed).standard_normal(elapsed.size)
-        value, spread = _value_at_times(elapsed, 2.0 * elapsed**-0.15 + noise, [60.0, 600.0])
+        value, spread = value_at_times(elapsed, 2.0 * elapsed**-0.15 + noise, [60.0, 600.0])
         off.append((value - true) / spread)
     assert np.abs(np.mean(off, axis=0)).max() < 0.7
     assert np.sqrt(np.mean(np.square(off))) == pytest.approx(1.0, abs=0.4)
@@ -393,7 +389,7 @@ def test_a_converter_in_coarse_steps_leaves_no_value_without_uncertainty():
     elapsed = np.arange(0.0, 600, 0.1)
     true = 1500 - 40 * np.log10(1 + elapsed)
     read = 20 * np.round((true + rng.normal(0, 0.5, elapsed.size)) / 20)
-    value, spread = _value_at_times(elapsed, read, [10.0, 60.0])
+    value, spread = value_at_times(elapsed, read, [10.0, 60.0])
     expected = 1500 - 40 * np.log10(1 + np.array([10.0, 60.0]))
     assert (np.abs(value - expected) < 2 * spread).all()
 

@@ -4,28 +4,28 @@ import numpy as np
 import pytest
 
 from reduction.record.errors import DataError
-from reduction.stages.holds.relaxation_and_creep import (
-    _rate_per_decade,
-    _relaxation_drop,
-    _value_at_times,
+from reduction.stages.holds.relaxation_numbers import (
     end_mean,
     logarithmic_blocks,
+    rate_per_decade,
+    relaxation_drop,
+    value_at_times,
 )
 
 TIME = np.arange(1.0, 1001.0)
 
 
 def test_a_drop_from_nothing_is_nan():
-    assert np.isnan(_relaxation_drop(0.0, 1.0))
+    assert np.isnan(relaxation_drop(0.0, 1.0))
 
 
 def test_drops_pair_up():
     with pytest.raises(DataError, match="series do not pair up"):
-        _relaxation_drop([1.0, 2.0], [1.0])
+        relaxation_drop([1.0, 2.0], [1.0])
 
 
 def test_a_logarithmic_relaxation_gives_its_rate():
-    rate = _rate_per_decade(logarithmic_blocks(TIME, 400 - 20 * np.log10(TIME)), ramp_duration=2.0)
+    rate = rate_per_decade(logarithmic_blocks(TIME, 400 - 20 * np.log10(TIME)), ramp_duration=2.0)
     assert rate.value == pytest.approx(-20, rel=2e-3)
     assert rate.elapsed_low >= 6
     assert rate.elapsed_high > 950
@@ -34,7 +34,7 @@ def test_a_logarithmic_relaxation_gives_its_rate():
 def test_the_stated_uncertainty_is_the_scatter_of_repeated_holds():
     rng = np.random.default_rng(0)
     rates = [
-        _rate_per_decade(
+        rate_per_decade(
             logarithmic_blocks(TIME, 400 - 20 * np.log10(TIME) + rng.standard_normal(TIME.size)),
             ramp_duration=2.0,
         )
@@ -47,8 +47,8 @@ def test_the_stated_uncertainty_is_the_scatter_of_repeated_holds():
 
 
 def test_curvature_widens_the_uncertainty():
-    straight = _rate_per_decade(logarithmic_blocks(TIME, -20 * np.log10(TIME)), ramp_duration=2.0)
-    bent = _rate_per_decade(logarithmic_blocks(TIME, 50 * np.exp(-TIME / 300)), ramp_duration=2.0)
+    straight = rate_per_decade(logarithmic_blocks(TIME, -20 * np.log10(TIME)), ramp_duration=2.0)
+    bent = rate_per_decade(logarithmic_blocks(TIME, 50 * np.exp(-TIME / 300)), ramp_duration=2.0)
     assert bent.standard_uncertainty > 20 * straight.standard_uncertainty
 
 
@@ -58,7 +58,7 @@ def test_a_hold_too_short_for_a_rate_is_refused(ramp_duration, last):
     with pytest.raises(
         DataError, match="too short for a rate per decade: .* decades of time remain; needed 0.5"
     ):
-        _rate_per_decade(blocks, ramp_duration=ramp_duration)
+        rate_per_decade(blocks, ramp_duration=ramp_duration)
 
 
 def test_the_mean_of_an_end_has_the_uncertainty_of_its_noise():
@@ -90,16 +90,16 @@ def test_values_at_times_are_free_of_noise_where_samples_are_many():
     rng = np.random.default_rng(2)
     time = np.arange(0, 700, 0.01)
     series = 400 - 10 * np.log1p(time) + rng.standard_normal(time.size)
-    found, _ = _value_at_times(time, series, [60.0, 600.0])
+    found, _ = value_at_times(time, series, [60.0, 600.0])
     np.testing.assert_allclose(found, 400 - 10 * np.log1p([60.0, 600.0]), atol=0.2)
 
 
 def test_values_beyond_the_series_and_in_gaps_are_nan():
     time = np.array([0.0, 1.0, 2.0, 3.0, 100.0, 101.0])
-    found, _ = _value_at_times(time, time, [0.0, 1.0, 50.0, 101.0, 102.0])
+    found, _ = value_at_times(time, time, [0.0, 1.0, 50.0, 101.0, 102.0])
     np.testing.assert_allclose(found, [0, 1, np.nan, 101, np.nan])
 
 
 def test_values_at_times_need_finite_values():
     with pytest.raises(DataError, match="values are not finite"):
-        _value_at_times([0.0, 1.0], [1.0, np.nan], [0.5])
+        value_at_times([0.0, 1.0], [1.0, np.nan], [0.5])

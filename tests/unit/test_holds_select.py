@@ -5,8 +5,8 @@ from dataclasses import astuple, replace
 import numpy as np
 import pytest
 
-from reduction.stages.holds import relaxation_and_creep
-from reduction.stages.holds.relaxation_and_creep import _find_ramp, select_hold
+from reduction.stages.holds import hold_selection
+from reduction.stages.holds.hold_selection import _find_ramp, select_hold
 from reduction.stages.standstills import Standstills
 
 TIME = np.arange(0.0, 100.0, 0.5)
@@ -128,7 +128,7 @@ def cycled_before_a_hold(seed):
 def test_the_ramp_is_that_of_the_whole_record_however_far_is_looked_back(monkeypatch, length, seed):
     record = cycled_before_a_hold(seed)
     ramp = select(**record).ramp
-    monkeypatch.setattr(relaxation_and_creep, "_LOOKED_BACK", length)
+    monkeypatch.setattr(hold_selection, "_LOOKED_BACK", length)
     # a ramp of one step has no stiffness, which is NaN
     np.testing.assert_equal(astuple(select(**record).ramp), astuple(ramp))
 
@@ -147,7 +147,7 @@ def test_many_cycles_before_a_hold_are_not_taken_along(monkeypatch):
         lengths.append(time.size)
         return _find_ramp(time, *series, band=band)
 
-    monkeypatch.setattr(relaxation_and_creep, "_find_ramp", find)
+    monkeypatch.setattr(hold_selection, "_find_ramp", find)
     one = select(time=number / 10, position=position, tension=100 * position, stand=stand)
     assert one.ramp.end_time == 19_900.0
     assert lengths == [1 << 16]

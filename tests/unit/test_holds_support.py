@@ -7,7 +7,8 @@ import pytest
 
 from reduction.record.errors import DataError
 from reduction.record.settings import HoldSettings
-from reduction.stages.holds.relaxation_and_creep import Hold, _hold_ends, _Ramp, _reasons_against
+from reduction.stages.holds.hold_selection import Hold, _Ramp
+from reduction.stages.holds.relaxation_and_creep import _hold_ends, _reasons_against
 
 TIME = np.arange(0.0, 180.0, 0.1)
 RELAXING = 350 + 50 * np.exp(-TIME / 40)

@@ -3,7 +3,7 @@ import pytest
 
 from reduction.record.errors import DataError, FitError, SettingsError
 from reduction.stages.cycles.cycle_product import Loops
-from reduction.stages.holds.relaxation_and_creep import HoldResult
+from reduction.stages.holds.hold_product import HoldResult
 from reduction.stages.three_parameter_line.hold_pairs import _static_stiffness, creep_of_hold
 from reduction.stages.three_parameter_line.line_product import mean_of_rows, one_a_specimen
 from reduction.stages.three_parameter_line.rope_programme import (

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from reduction.record.contributions import InstrumentErrors
-from reduction.stages.holds.relaxation_and_creep import HoldResult
+from reduction.stages.holds.hold_product import HoldResult
 from reduction.stages.strain.strain_model import StrainModel
 from reduction.uncertainty.propagation import LoopQuantities, loop_contributions
 from reduction.uncertainty.shared_contributions import _friction_on_branches, _of_hold

@@ -30,13 +30,12 @@ from reduction.record.errors import DataError, FitError, SettingsError
 from reduction.record.measurement import Bools, Floats, read_only_arrays
 from reduction.record.notes import Note, note
 from reduction.record.samples import empty_like, finite_extremes, sample_blocks, select_samples
-from reduction.stages.holds.relaxation_and_creep import (
+from reduction.stages.holds.hold_product import HoldResult
+from reduction.stages.holds.hold_selection import Hold, select_hold
+from reduction.stages.holds.relaxation_numbers import (
     RAMP_TIMES_LEFT_OUT,
-    Hold,
-    HoldResult,
     end_mean,
     logarithmic_blocks,
-    select_hold,
 )
 from reduction.stages.moduli.least_squares import lag_one_inflation
 from reduction.stages.standstills import Standstills
