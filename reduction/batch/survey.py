@@ -40,7 +40,7 @@ from reduction.stages.load_at_slack import (
 )
 from reduction.stages.moduli.cycle_alignment import jump_of_mean, time_with_hidden
 from reduction.stages.standstills import median_step
-from reduction.stages.strain.strain_fit import MarkReading
+from reduction.stages.strain.mark_readings import MarkReading
 from reduction.stages.strain.tape_and_crosshead import (
     TAPE_UNCERTAINTY,
     check_tape_against_crosshead,

@@ -28,13 +28,9 @@ from reduction.record.errors import DataError, ReductionError
 from reduction.record.measurement import Floats, Specimen, SpliceMarks
 from reduction.record.notes import Note, note
 from reduction.stages.reduced_test import History
+from reduction.stages.strain.mark_readings import MarkReading
 from reduction.stages.strain.splice_laws import SpliceAverage
-from reduction.stages.strain.strain_fit import (
-    MarkReading,
-    PooledMarks,
-    average_over_laws,
-    fit_strain_model,
-)
+from reduction.stages.strain.strain_fit import PooledMarks, average_over_laws, fit_strain_model
 from reduction.stages.strain.strain_model import StrainModel
 from reduction.stages.strain.zero_strain import ZeroStrain
 

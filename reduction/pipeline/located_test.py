@@ -49,7 +49,7 @@ from reduction.stages.standstills import (
     median_step,
 )
 from reduction.stages.strain.impossible_strain import refuse_impossible_strain
-from reduction.stages.strain.strain_fit import MarkReading, measure_mark_tension
+from reduction.stages.strain.mark_readings import MarkReading, measure_mark_tension
 from reduction.stages.strain.strain_model import StrainModel, extrapolated, strain_by_model
 
 CYCLIC = ("cyclic", "fatigue", "snap", "bedding-in")

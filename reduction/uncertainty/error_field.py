@@ -41,7 +41,7 @@ from numpy.typing import ArrayLike
 from reduction.record.arrays import as_same_shape
 from reduction.record.contributions import Component, InstrumentErrors
 from reduction.record.measurement import Bools, Floats, read_only_arrays
-from reduction.stages.strain.strain_fit import HELD_EXPONENT
+from reduction.stages.strain.splice_calibration import HELD_EXPONENT
 from reduction.stages.strain.strain_model import (
     StrainModel,
     position_by_model,

@@ -16,7 +16,8 @@ from reduction.record.contributions import InstrumentErrors
 from reduction.record.measurement import Specimen
 from reduction.record.settings import StrainSettings
 from reduction.stages.standstills import Standstills
-from reduction.stages.strain.strain_fit import fit_strain_model, measure_mark_tension
+from reduction.stages.strain.mark_readings import measure_mark_tension
+from reduction.stages.strain.strain_fit import fit_strain_model
 from reduction.stages.strain.strain_model import extrapolated, strain_by_model
 from reduction.uncertainty.error_field import error_field
 

@@ -4,10 +4,10 @@ import numpy as np
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from reduction.stages.strain.strain_fit import (
-    _fit_free_length_line,
-    _fit_splice_law,
-    _fit_splice_ratio,
+from reduction.stages.strain.splice_calibration import (
+    fit_free_length_line,
+    fit_power_law,
+    fit_splice_ratio,
 )
 from reduction.stages.strain.strain_model import (
     _marked_line_strain,
@@ -51,7 +51,7 @@ def test_strain_grows_with_length(total, step, share, relaxed):
 def test_splices_of_a_constant_ratio_are_found_and_inverted(strain, free, splice, ratio):
     strain = np.array(strain)
     free_length, splice_length = free * (1 + strain), splice * (1 + ratio * strain)
-    found = _fit_splice_ratio(
+    found = fit_splice_ratio(
         free_length,
         splice_length,
         relaxed_free_length=free,
@@ -73,7 +73,7 @@ def test_with_splices_of_a_constant_ratio_line_and_ratio_agree(strain, free, spl
     free_length = free * (1 + strain)
     position = free_length + splice * (1 + ratio * strain)
     assume(np.ptp(position) > 1e-3 * position.max())
-    line = _fit_free_length_line(free_length, position, reading_uncertainty=0.0).values
+    line = fit_free_length_line(free_length, position, reading_uncertainty=0.0).values
     back = _marked_line_strain(
         position,
         free_length_intercept=line[0],
@@ -94,7 +94,7 @@ def test_a_power_law_is_found_in_any_unit_of_length(force, strain_at_500, expone
     assume(force[-1] > 2 * force[0])
     compliance = strain_at_500 / 500.0**exponent
     splice = unit * (1 + compliance * force**exponent)
-    found = _fit_splice_law(splice, force, relaxed_splice_length=unit, reading_uncertainty=0.0)
+    found = fit_power_law(splice, force, relaxed_splice_length=unit, reading_uncertainty=0.0)
     np.testing.assert_allclose(found.values[1], exponent, atol=1e-5)
     np.testing.assert_allclose(found.values[0] * 500.0 ** found.values[1], strain_at_500, rtol=1e-5)
 

@@ -1,4 +1,4 @@
-"""Unit tests of reduction.stages.strain.strain_fit and its covariances.
+"""Coefficients of splice laws and their covariances.
 
 Covariances are checked against many sets of marks drawn with reading errors: an
 independent way to the same number.
@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from reduction.record.errors import DataError
-from reduction.stages.strain.strain_fit import (
-    _fit_free_length_line,
-    _fit_splice_ratio,
-    _line_slope,
+from reduction.stages.strain.splice_calibration import (
+    fit_free_length_line,
+    fit_splice_ratio,
+    line_slope,
 )
 
 READING = 0.00124
@@ -26,7 +26,7 @@ def drawn_rows(free, splice, seed):
 
 
 def test_two_marks_give_the_line_through_them():
-    line = _fit_free_length_line([4.0, 5.0], [5.0, 6.25], reading_uncertainty=READING)
+    line = fit_free_length_line([4.0, 5.0], [5.0, 6.25], reading_uncertainty=READING)
     assert line.values.tolist() == pytest.approx([0.0, 0.8])
     np.testing.assert_allclose(line.residual, 0, atol=1e-14)
 
@@ -36,8 +36,8 @@ def test_the_covariance_of_a_line_is_that_of_many_sets_of_marks():
     free, splice = drawn_rows(true_free, true_splice, 2)
     # slope and intercept of each set, by the normal equations of numpy
     fits = [np.polyfit(f + s, f, 1)[::-1] for f, s in zip(free, splice, strict=True)]
-    line = _fit_free_length_line(true_free, true_free + true_splice, reading_uncertainty=READING)
-    residual_free = _fit_free_length_line(
+    line = fit_free_length_line(true_free, true_free + true_splice, reading_uncertainty=READING)
+    residual_free = fit_free_length_line(
         line.values[0] + line.values[1] * (true_free + true_splice),
         true_free + true_splice,
         reading_uncertainty=READING,
@@ -52,12 +52,12 @@ def test_the_covariance_of_a_line_is_that_of_many_sets_of_marks():
 
 def test_marks_at_one_position_have_no_line():
     with pytest.raises(DataError, match="a line needs marks at two positions; found 1"):
-        _fit_free_length_line([4.0, 4.1], [5.0, 5.0], reading_uncertainty=READING)
+        fit_free_length_line([4.0, 4.1], [5.0, 5.0], reading_uncertainty=READING)
 
 
 def test_a_missing_mark_is_refused():
     with pytest.raises(DataError, match="1 of 2 values of position are not finite"):
-        _fit_free_length_line([4.0, 5.0], [5.0, np.nan], reading_uncertainty=READING)
+        fit_free_length_line([4.0, 5.0], [5.0, np.nan], reading_uncertainty=READING)
 
 
 def test_the_uncertainty_of_a_ratio_is_that_of_many_sets_of_marks():
@@ -66,7 +66,7 @@ def test_the_uncertainty_of_a_ratio_is_that_of_many_sets_of_marks():
     free, splice = drawn_rows(true_free, true_splice, 3)
     x, y = free / 2.55 - 1, splice / 1.18 - 1
     drawn = np.sum(x * y, axis=1) / np.sum(x * x, axis=1)
-    found = _fit_splice_ratio(
+    found = fit_splice_ratio(
         true_free,
         true_splice,
         relaxed_free_length=2.55,
@@ -83,7 +83,7 @@ def test_a_ratio_follows_the_relaxed_lengths_as_stated(which):
     lengths = np.array([2.55, 1.18])
 
     def ratio(values):
-        return _fit_splice_ratio(
+        return fit_splice_ratio(
             free,
             splice,
             relaxed_free_length=values[0],
@@ -98,7 +98,7 @@ def test_a_ratio_follows_the_relaxed_lengths_as_stated(which):
 
 def test_a_ratio_without_stretch_is_refused():
     with pytest.raises(DataError, match="a strain ratio needs a stretched row"):
-        _fit_splice_ratio(
+        fit_splice_ratio(
             [2.5], [1.2], relaxed_free_length=2.5, relaxed_splice_length=1.2, reading_uncertainty=0
         )
 
@@ -109,12 +109,12 @@ def test_marks_that_contradict_the_tape_widen_line_and_ratio_and_say_so():
     off = 30 * READING * np.array([0.0, 1.0, 0.0])
     relaxed = {"relaxed_free_length": 2.55, "relaxed_splice_length": 1.18}
     sound = (
-        _fit_free_length_line(free, free + splice, reading_uncertainty=READING),
-        _fit_splice_ratio(free, splice, reading_uncertainty=READING, **relaxed),
+        fit_free_length_line(free, free + splice, reading_uncertainty=READING),
+        fit_splice_ratio(free, splice, reading_uncertainty=READING, **relaxed),
     )
     wide = (
-        _fit_free_length_line(free + off, free + splice, reading_uncertainty=READING),
-        _fit_splice_ratio(free + off, splice - off, reading_uncertainty=READING, **relaxed),
+        fit_free_length_line(free + off, free + splice, reading_uncertainty=READING),
+        fit_splice_ratio(free + off, splice - off, reading_uncertainty=READING, **relaxed),
     )
     for before, after in zip(sound, wide, strict=True):
         assert before.note is None
@@ -130,7 +130,7 @@ def test_marks_that_contradict_the_tape_widen_line_and_ratio_and_say_so():
 
 def test_a_ratio_without_a_stated_error_takes_its_scatter():
     free, splice = np.array([4.5, 5.2, 5.8]), np.array([1.40, 1.46, 1.55])
-    found = _fit_splice_ratio(
+    found = fit_splice_ratio(
         free, splice, relaxed_free_length=2.55, relaxed_splice_length=1.18, reading_uncertainty=0.0
     )
     x = free / 2.55 - 1
@@ -142,4 +142,4 @@ def test_a_ratio_without_a_stated_error_takes_its_scatter():
 def test_line_slope_is_that_of_numpy():
     rng = np.random.default_rng(4)
     position, values = rng.random(9), rng.random(9)
-    assert _line_slope(position, values) == pytest.approx(np.polyfit(position, values, 1)[0])
+    assert line_slope(position, values) == pytest.approx(np.polyfit(position, values, 1)[0])

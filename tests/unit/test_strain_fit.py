@@ -1,4 +1,4 @@
-"""Unit tests of reduction.stages.strain.strain_fit and reduction.stages.strain.strain_fit: which method, on which marks."""
+"""Which method fits a specimen, and on which marks."""
 
 import dataclasses
 
@@ -10,11 +10,7 @@ from reduction.record.errors import DataError, FitError
 from reduction.record.measurement import Specimen, SpliceMarks
 from reduction.record.settings import StrainSettings
 from reduction.stages.standstills import Standstills
-from reduction.stages.strain.strain_fit import (
-    PooledMarks,
-    fit_strain_model,
-    fit_to_marks,
-)
+from reduction.stages.strain.strain_fit import PooledMarks, fit_strain_model, fit_to_marks
 from reduction.stages.strain.strain_model import (
     StrainModel,
     strain_by_model,

@@ -1,11 +1,11 @@
-"""Unit tests of reduction.stages.strain.strain_fit."""
+"""A power law of tension fitted to the splices."""
 
 import numpy as np
 import pytest
 from scipy.optimize import curve_fit
 
 from reduction.record.errors import DataError, FitError
-from reduction.stages.strain.strain_fit import _fit_splice_law
+from reduction.stages.strain.splice_calibration import fit_power_law
 
 RELAXED, READING = 1.18, 0.00124
 FORCE = np.array([190.0, 250.0, 380.0, 480.0, 600.0, 720.0, 900.0, 1100.0, 1300.0, 1600.0])
@@ -21,7 +21,7 @@ def noisy(seed):
 
 
 def law(lengths, force=FORCE, relaxed=RELAXED, **more):
-    return _fit_splice_law(
+    return fit_power_law(
         lengths, force, relaxed_splice_length=relaxed, reading_uncertainty=READING, **more
     )
 

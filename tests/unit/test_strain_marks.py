@@ -1,4 +1,4 @@
-"""Unit tests of reduction.stages.strain.strain_fit."""
+"""Tape readings checked against the record, and the tension of each."""
 
 from dataclasses import replace
 
@@ -8,11 +8,8 @@ import pytest
 from reduction.record.errors import DataError
 from reduction.record.measurement import Specimen, SpliceMarks
 from reduction.stages.standstills import Standstills
-from reduction.stages.strain.strain_fit import (
-    _check_marks,
-    fit_strain_model,
-    measure_mark_tension,
-)
+from reduction.stages.strain.mark_readings import check_marks, measure_mark_tension
+from reduction.stages.strain.strain_fit import fit_strain_model
 
 
 def marks(position, free, *, hold=None, test=None, reading_uncertainty=0.00124):
@@ -115,20 +112,20 @@ def test_a_hold_of_one_sample_has_its_tension():
 
 
 def test_a_free_length_that_falls_is_refused_by_test_and_hold():
-    _check_marks(marks([3.74, 5.90, 6.63, 7.35], [2.55, 4.51, 5.17, 5.80]))  # one that rises
+    check_marks(marks([3.74, 5.90, 6.63, 7.35], [2.55, 4.51, 5.17, 5.80]))  # one that rises
     rows = marks([3.74, 5.90, 6.63], [2.55, 4.51, 4.40], hold=("slack", "min", "max"))
     with pytest.raises(
         DataError,
         match=r"marks of 'new' in test T-1 contradict each other: holds min and max; "
         r"found free lengths 4.510 and 4.400 m at positions 5.900 and 6.630 m",
     ):
-        _check_marks(rows)
+        check_marks(rows)
 
 
 def test_one_position_has_one_free_length_but_for_the_error_of_reading():
-    _check_marks(marks([5.90, 5.90], [4.510, 4.516]))
+    check_marks(marks([5.90, 5.90], [4.510, 4.516]))
     with pytest.raises(DataError, match="holds 0 and 1; found free lengths 4.510 and 4.560"):
-        _check_marks(marks([5.90, 5.90], [4.51, 4.56]))
+        check_marks(marks([5.90, 5.90], [4.51, 4.56]))
 
 
 @pytest.mark.parametrize(("misread", "off"), [(1, 0.7), (2, 0.15), (3, -0.7)])
@@ -139,12 +136,12 @@ def test_of_contradicting_rows_the_one_is_named_without_which_the_others_agree(m
     free[misread] += off
     hold = ("slack", "min", "centre", "max")
     with pytest.raises(DataError, match=f"Correct the mark at {hold[misread]}: without it"):
-        _check_marks(marks(position, free, hold=hold))
+        check_marks(marks(position, free, hold=hold))
 
 
 def test_rows_too_few_to_tell_which_is_wrong_name_none():
     with pytest.raises(DataError, match=r"Correct the row in the marks file"):
-        _check_marks(marks([3.74, 5.90, 6.63], [2.55, 4.51, 4.40]))
+        check_marks(marks([3.74, 5.90, 6.63], [2.55, 4.51, 4.40]))
 
 
 def of_slack_rows(*far_toe):
@@ -181,25 +178,25 @@ def test_slack_rows_that_differ_by_the_error_of_the_tape_are_sound():
 
 def test_splices_that_shrink_under_more_stretch_are_refused():
     with pytest.raises(DataError, match="grows with position, by no more than position does"):
-        _check_marks(marks([5.90, 6.00], [4.51, 4.70]))
+        check_marks(marks([5.90, 6.00], [4.51, 4.70]))
 
 
 def test_a_tape_is_not_taken_to_read_better_than_a_hundredth_of_a_foot():
     rows = marks([5.90, 5.90], [4.510, 4.530], reading_uncertainty=0.0)
-    _check_marks(rows)
+    check_marks(rows)
     with pytest.raises(DataError, match="contradict each other"):
-        _check_marks(marks([5.90, 5.90], [4.510, 4.540], reading_uncertainty=0.0))
+        check_marks(marks([5.90, 5.90], [4.510, 4.540], reading_uncertainty=0.0))
 
 
 def test_the_same_position_in_two_tests_is_no_contradiction():
-    _check_marks(marks([5.90, 5.90], [4.51, 4.60], test=("T-1", "T-2")))
+    check_marks(marks([5.90, 5.90], [4.51, 4.60], test=("T-1", "T-2")))
     with pytest.raises(DataError, match="contradict"):
-        _check_marks(marks([5.90, 5.90], [4.51, 4.60], test=("T-1", "T-1")))
+        check_marks(marks([5.90, 5.90], [4.51, 4.60], test=("T-1", "T-1")))
 
 
 def test_only_the_tests_asked_for_are_looked_at():
     rows = marks([5.90, 5.90], [4.51, 4.60])
-    _check_marks(rows, tests=["T-2"])
+    check_marks(rows, tests=["T-2"])
     with pytest.raises(DataError, match="contradict"):
         measured(rows, HOLDS, RAMP)
 

@@ -1,47 +1,49 @@
-"""Tape readings at the splice toes, and the strain model fitted to them.
-
-**Coefficients of the strain methods from tape readings, each with its covariance.** A row of marks
-is three tape readings (near toe, far toe, far thimble) of one standard uncertainty.  The relaxed
-lengths come from the slack rows alone, so that strain is
-zero at slack by construction; the stretched rows give the rest.  Where the rows scatter more than
-the tape explains, the covariance is widened.
+"""Strain model of a specimen from its tape readings: laws are fitted, chosen or averaged.
 
 References
 ----------
-.. [1] R. T. Birge, "The calculation of errors by the method of least squares," Phys. Rev., vol.
-   40, pp. 207-227, 1932 (the ratio of external to internal consistency).
-.. [2] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
-   in measurement," 4.3 (stated errors), 4.2 and G.3 (scatter, Student's t).
-.. [3] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
+.. [1] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
    Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
    MA, Tech. Rep. WHOI-2005-10, Dec. 2005.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from math import sqrt
-from typing import Literal
 
 import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from reduction.record.arrays import as_finite, as_positive, as_same_shape
-from reduction.record.contributions import covariance_root
-from reduction.record.errors import DataError, FitError
+from reduction.record.errors import DataError
 from reduction.record.measurement import (
     Bools,
     Floats,
     Integers,
     Specimen,
     SpliceMarks,
-    read_only_arrays,
 )
 from reduction.record.notes import Note, note
 from reduction.record.settings import StrainMethod, StrainSettings
-from reduction.stages.standstills import Standstills
+from reduction.stages.strain.mark_readings import (
+    TREND_ROWS,
+    RelaxedLengths,
+    check_marks,
+    relaxed_lengths,
+    root_mean_square,
+)
+from reduction.stages.strain.splice_calibration import (
+    EXPONENT_UNCERTAINTY,
+    HELD_EXPONENT,
+    TENSION_SPAN,
+    SpliceCalibration,
+    fit_free_length_line,
+    fit_power_law,
+    fit_splice_ratio,
+    line_slope,
+)
 from reduction.stages.strain.splice_laws import (
     LAWS,
     OF_TENSION,
@@ -57,16 +59,13 @@ from reduction.stages.strain.strain_model import (
     position_by_model,
     strain_by_model,
 )
-from reduction.stages.strain.tape_and_crosshead import POSITION_TOLERANCE, TAPE_UNCERTAINTY
+from reduction.stages.strain.tape_and_crosshead import TAPE_UNCERTAINTY
 from reduction.stages.strain.zero_strain import ZeroStrain
-
-LEVEL = 0.005
-
-"""Probability that sound marks are judged to scatter too much. [1]"""
 
 # five thousandths of a foot: scatter of a reading of a stretched tether, where the error of the
 # tape is not stated
 _USUAL_TAPE = 0.005 * 0.3048
+
 _USUAL_READINGS = 4.0  # weight of this value, beside those of slack rows
 
 # creep of the splices between the time of a cycle and that of a mark, as a fraction of their
@@ -78,627 +77,6 @@ _CREEP_TOLD = 0.1  # of their extension: a note states the effect of this creep
 _CREEP_NOTICE = 0.005  # of a strain amplitude: smaller effects are not stated
 
 _ANY = 12**0.5  # range over standard deviation of a uniform distribution
-
-_CONFIDENCE = 0.975  # of one side of a 95 % interval
-
-
-@dataclass(frozen=True)
-class _RowScatter:
-    """Information in one row of a fit."""
-
-    variance: float
-    widening: float = 1.0
-    note: Note | None = None
-
-
-def _row_scatter(
-    stated: float, residual: ArrayLike, design: ArrayLike, shared: ArrayLike | None = None
-) -> _RowScatter:
-    r"""Variance of one row: the stated one, unless the residuals refute it.
-
-    .. math:: \chi^2 = z^T V^{-1} z, \quad z = Q^T r, \quad V = \sigma^2 I + Q^T G^T G Q
-
-    Notes
-    -----
-    The columns of Q span the space that the coefficients cannot follow.  The stated error of the
-    tape is better known than what a few residuals show ([2]_).  To take the larger of the two would
-    widen too much on average: with one mark to spare by :math:`E \max(1, \chi^2_1) = 1.48`, which
-    is 1.22 of the standard uncertainty.  The residuals are therefore tested.  Only where sound
-    marks would have residuals that large in one of 200 fits is the variance multiplied by the
-    square of the Birge ratio :math:`\chi^2 / \nu` ([1]_).  With one mark to spare this adds 4.4 %
-    to the mean variance of sound marks (:math:`P(\chi^2_3 > 7.88) - 0.005`); a test at 1 % would
-    add 7.5 %.
-
-    Where nothing is stated, only the scatter is known: its variance by :math:`\nu` degrees of
-    freedom, times :math:`(t_\nu / 1.96)^2`, so that 1.96 standard uncertainties hold 95 %.
-    Without a spare row nothing is known, and the coefficients count as exact.
-
-    Examples
-    --------
-    Three marks about a mean, good to 1; then the same marks good to 0.2:
-
-    >>> marks = np.array([1.0, -1.0, 0.0])
-    >>> print(_row_scatter(1.0, marks, np.ones((1, 3))).variance)
-    1.0
-    >>> wide = _row_scatter(0.04, marks, np.ones((1, 3)))
-    >>> print(round(wide.variance, 3), round(wide.widening, 2))
-    1.0 5.0
-    """
-    left, columns = np.asarray(residual, dtype=np.float64), np.atleast_2d(design)
-    spare = left.size - columns.shape[0]
-    if not stated > 0:
-        return _unstated(left, spare)
-    if spare <= 0:
-        return _RowScatter(stated)
-    free = np.linalg.qr(columns.T, mode="complete")[0][:, columns.shape[0] :]
-    common = np.zeros((1, left.size)) if shared is None else np.atleast_2d(shared)
-    common = common @ free
-    away = free.T @ left
-    covariance = stated * np.eye(spare) + common.T @ common
-    chi_square = float(away @ np.linalg.solve(covariance, away))
-    chance = float(scipy.special.chdtrc(spare, chi_square))
-    if chance >= LEVEL:
-        return _RowScatter(stated)
-    ratio = float(np.sqrt(chi_square / spare))
-    return _RowScatter(
-        stated * ratio**2,
-        ratio,
-        note("marks-scatter", ratio=ratio, chi_square=chi_square, freedom=spare, chance=chance),
-    )
-
-
-def _unstated(residual: Floats, spare: int) -> _RowScatter:
-    if spare <= 0:
-        return _RowScatter(0.0, note=note("marks-count-as-exact"))
-    factor = float(scipy.special.stdtrit(spare, _CONFIDENCE) / scipy.special.ndtri(_CONFIDENCE))
-    return _RowScatter(
-        float(residual @ residual) / spare * factor**2,
-        note=note("marks-error-from-scatter", freedom=spare),
-    )
-
-
-# free = far toe - near toe; splices = far thimble - far toe + near toe
-_OF_READINGS = np.array([[2.0, -2.0], [-2.0, 3.0]])
-
-
-@dataclass(frozen=True)
-@read_only_arrays
-class _RelaxedLengths:
-    """Mean lengths of the slack rows."""
-
-    values: Floats
-    covariance: Floats
-    note: Note | None = None
-
-
-def _relaxed_lengths(
-    free_length: ArrayLike, splice_length: ArrayLike, *, reading_uncertainty: float
-) -> _RelaxedLengths:
-    """Mean free and splice length of the slack rows.
-
-    Notes
-    -----
-    The mean over tests is used, not each test's own row: a reading is good to 0.01 ft
-    ([3]_, Table 3), which is 0.12 % of the free length, and that would enter every
-    strain and modulus of the test.  Rows that scatter more than the tape explains widen both
-    lengths (`reduction.stages.strain.strain_fit._row_scatter`).  Causes are a permanent set from
-    test to test, and a tape that is read less precisely than its last digit.
-
-    Examples
-    --------
-    Two slack rows read to 1 mm:
-
-    >>> found = _relaxed_lengths([2.553, 2.555], [1.180, 1.179], reading_uncertainty=1e-3)
-    >>> print(found.values.round(4), (1e3 * np.sqrt(np.diag(found.covariance))).round(2))
-    [2.554  1.1795] [1.   1.22]
-    """
-    rows = np.array(as_same_shape(free_length=free_length, splice_length=splice_length))
-    if rows.shape[-1] == 0:
-        raise DataError(
-            "the marks have no slack row",
-            needed="at least one row with hold = slack, read before the specimen is stretched",
-        )
-    as_positive("relaxed length", rows)
-    n_slack = rows.shape[1]
-    mean = rows.mean(axis=1)
-    # made uncorrelated: one tape measured both lengths, and one scatter is judged
-    apart = np.linalg.solve(np.linalg.cholesky(_OF_READINGS), rows - mean[:, None])
-    scatter = _row_scatter(
-        reading_uncertainty**2, apart.ravel(), np.kron(np.eye(2), np.ones((1, n_slack)))
-    )
-    return _RelaxedLengths(mean, scatter.variance * _OF_READINGS / n_slack, scatter.note)
-
-
-MarkReading = Literal["arrival", "start", "end"]
-
-# the tape is read in about this long, or in a third of a shorter hold
-_READING_TIME = 10.0
-
-# readings that have the tension of a hold as the crosshead stopped, by noise and by relaxation
-_ON_ARRIVAL = 3
-
-# difference of two free lengths has twice the standard uncertainty of one reading (four readings)
-_CONTRADICTION = 4 * 2
-
-
-def _check_marks(marks: SpliceMarks, *, tests: Collection[str] | None = None) -> None:
-    """Refuse marks of one test that contradict each other.
-
-    Notes
-    -----
-    The same position at another tension has another free length (the splices
-    are shorter when the rubber has relaxed).  Rows are taken to come from the
-    set-up of a test, where each position is visited once; readings after
-    cycling belong to a test of their own in the marks file.
-
-    Examples
-    --------
-    A misread toe, 14.48 for 19.48 m:
-
-    >>> marks = SpliceMarks("new", ("T-1", "T-1"), ("min", "centre"),
-    ...     np.array([2.4, 2.5]), np.array([17.2, 14.48]), np.array([19.4, 21.7]))
-    >>> _check_marks(marks)  # doctest: +ELLIPSIS
-    Traceback (most recent call last):
-    ...
-    reduction.record.errors.DataError: marks of 'new' in test T-1 contradict each other: holds ...
-    """
-    allowance = _CONTRADICTION * max(marks.reading_uncertainty, TAPE_UNCERTAINTY)
-    test = np.array(marks.test)
-    for name in dict.fromkeys(marks.test) if tests is None else tests:
-        # friction makes splices longer on the way down
-        rows = np.flatnonzero((test == name) & ~marks.is_unloading)
-        rows = rows[np.argsort(marks.far_thimble[rows], kind="stable")]
-        growth = np.diff(marks.free_length[rows])
-        stroke = np.diff(marks.far_thimble[rows])
-        # the free length grows by no more than the stroke, and never shrinks
-        bad = (growth < -allowance) | (growth > stroke + allowance)
-        if bad.any():
-            low, high = rows[np.flatnonzero(bad)[0] :][:2]
-            raise DataError(
-                f"marks of '{marks.specimen}' in test {name} contradict each other: holds "
-                f"{marks.hold[low]} and {marks.hold[high]}",
-                found=f"free lengths {marks.free_length[low]:.3f} and "
-                f"{marks.free_length[high]:.3f} m at positions {marks.far_thimble[low]:.3f} and "
-                f"{marks.far_thimble[high]:.3f} m",
-                needed="a free length that grows with position, by no more than position does, "
-                f"within {allowance:.3f} m",
-                hint=_which_row(marks, rows),
-            )
-
-
-_PLAIN = 3.0  # times as far from a line with it as without it: a row that is misread
-
-
-def _which_row(marks: SpliceMarks, rows: Integers) -> str:
-    """Which of some contradicting rows to correct, if the others lie about one line without it."""
-    if rows.size < _TREND_ROWS:
-        return "Correct the row in the marks file."
-    position, free = marks.far_thimble[rows], marks.free_length[rows]
-    left = []
-    for one in range(rows.size):
-        x, y = np.delete(position, one), np.delete(free, one)
-        left.append(_rms(y - np.polyval(np.polyfit(x, y, 1), x)))
-    best, second = np.argsort(left)[:2]
-    if left[best] * _PLAIN > left[second]:
-        return "Correct the row in the marks file."
-    row = rows[best]
-    where = f", {marks.place[row].file} row {marks.place[row].row}" if marks.place else ""
-    return (
-        f"Correct the mark at {marks.hold[row]}{where}: without it the other "
-        f"{rows.size - 1} rows agree."
-    )
-
-
-def _windows(standstills: Standstills, reading: MarkReading) -> list[slice]:
-    """Samples of each standstill in which the tape is taken to be read."""
-    duration = standstills.end_time - standstills.start_time
-    samples = standstills.last - standstills.first + 1
-    with np.errstate(divide="ignore", invalid="ignore"):
-        share = np.fmin(np.divide(_READING_TIME, duration), 1 / 3)
-    length = np.maximum(np.round(share * samples).astype(np.int64), 1)
-    if reading == "arrival":
-        length = np.minimum(length, _ON_ARRIVAL)
-    first = standstills.last + 1 - length if reading == "end" else standstills.first
-    return [slice(int(a), int(a + n)) for a, n in zip(first, length, strict=True)]
-
-
-def _finite_mean(values: Floats) -> float:
-    kept = values[np.isfinite(values)]
-    return float(kept.mean()) if kept.size else float("nan")
-
-
-_APPROACH = 5  # samples
-
-
-def _falls_to(tension: Floats, first: int) -> bool:
-    """Whether a hold was approached from a higher tension."""
-    before = _finite_mean(tension[max(first - _APPROACH, 0) : first])
-    return before > _finite_mean(tension[first : first + _APPROACH])
-
-
-def measure_mark_tension(
-    marks: SpliceMarks,
-    *,
-    test_id: str,
-    standstills: Standstills,
-    tension: ArrayLike,
-    reading: MarkReading = "end",
-) -> Floats:
-    """Tension of one specimen while each mark of a test was read.
-
-    Parameters
-    ----------
-    marks : SpliceMarks
-        Tape readings of the specimen over the campaign.
-    test_id : str
-        The test whose log this is; rows of other tests are left out.
-    standstills : Standstills
-        Of the same log.
-    tension : array_like, shape (n_samples,)
-        Of this specimen. [N]
-    reading : {"end", "start", "arrival"}
-        When in the hold the tape was read; or the first readings of the hold.
-
-    Returns
-    -------
-    tension : ndarray, shape (n_marks_of_the_test,)
-        In the order of the rows; NaN where no hold lies at the mark's position. A
-        slack row has the tension of the first rest, or 0 where there is none. [N]
-
-    Raises
-    ------
-    DataError
-        If marks of the test contradict each other.
-
-    Notes
-    -----
-    A mark belongs to the earliest hold at its position, within 50 mm: the marks of the report
-    were read during set-up, before cycling, and the crosshead may
-    stand there again at another tension ([3]_, sec. 4.1).  A mark on the way down belongs to the
-    earliest hold whose tension was higher just before.
-
-    The rubber relaxes while a hold lasts, by 12 % in the longest one of a test at
-    275 %, so it matters when the tape was read; the report does not say.  The
-    default is the last 10 s (the last third of a hold under 30 s): the crosshead
-    moves on once the readings are written down.  ``start`` is the other bound; ``arrival``, when no
-    tape is read yet, has the tension at which friction stops the splices.
-    NaN samples are left out.
-
-    Examples
-    --------
-    One hold at 6 m, 100 samples at 10 Hz, relaxing from 400 to 300 N:
-
-    >>> hold = Standstills(
-    ...     first=np.array([0]), last=np.array([99]), start_time=np.array([0.0]),
-    ...     end_time=np.array([9.9]), mean_position=np.array([6.0]),
-    ...     mean_tension=np.array([[350.0]]), is_rest=np.array([False]),
-    ...     position_tolerance=0.01, slack_tension=5.0)
-    >>> marks = SpliceMarks("new", ("T-1",), ("min",), np.array([0.7]), np.array([5.3]),
-    ...                     np.array([6.01]))
-    >>> print(measure_mark_tension(
-    ...     marks, test_id="T-1", standstills=hold, tension=np.linspace(400, 300, 100)))
-    [316.16]
-    """
-    _check_marks(marks, tests=[test_id])
-    log = np.asarray(tension, dtype=np.float64)
-    during = [_finite_mean(log[window]) for window in _windows(standstills, reading)]
-    rests = np.flatnonzero(standstills.is_rest)
-    slack = during[rests[0]] if rests.size else 0.0
-    measured = []
-    from_above = np.array([_falls_to(log, first) for first in standstills.first], dtype=bool)
-    for test, is_slack, position, is_down in zip(
-        marks.test, marks.is_slack, marks.far_thimble, marks.is_unloading, strict=True
-    ):
-        if test != test_id:
-            continue
-        distance = np.where(
-            standstills.is_rest | (is_down & ~from_above),
-            np.inf,
-            np.abs(standstills.mean_position - position),
-        )
-        distance[np.isnan(distance)] = (
-            np.inf
-        )  # for a hold in which all readings of position are flagged
-        nearest = float(distance.min(initial=np.inf))
-        if is_slack:
-            measured.append(slack)
-        elif nearest > POSITION_TOLERANCE:
-            measured.append(float("nan"))
-        else:
-            same = distance <= nearest + standstills.position_tolerance
-            measured.append(during[int(np.flatnonzero(same)[0])])
-    return np.array(measured)
-
-
-@dataclass(frozen=True)
-@read_only_arrays
-class _SpliceCalibration:
-    """Fitted coefficients of one method."""
-
-    values: Floats
-    covariance: Floats
-    relaxed_sensitivity: Floats
-    residual: Floats
-    note: Note | None = None
-
-
-def _line_slope(position: ArrayLike, values: ArrayLike) -> float:
-    """Least squares slope of a series on position.
-
-    Examples
-    --------
-    >>> print(_line_slope([1.0, 2.0, 3.0], [0.1, 0.3, 0.5]))
-    0.2
-    """
-    at, series = as_same_shape(position=position, values=values)
-    centred = at - at.mean()
-    return float(centred @ series) / float(centred @ centred)
-
-
-def _fit_free_length_line(
-    free_length: ArrayLike, position: ArrayLike, *, reading_uncertainty: float
-) -> _SpliceCalibration:
-    """Least squares line of free length on position.
-
-    Notes
-    -----
-    A line through three marks leaves 0.1 to 0.2 points of strain in Table 3 of
-    [3]_, no more than the tape explains.  Two marks give the line but no residual.
-
-    Examples
-    --------
-    Table 3 of [3]_, used tether, in feet:
-
-    >>> line = _fit_free_length_line(
-    ...     [14.79, 16.96, 19.09], [19.37, 21.75, 24.12], reading_uncertainty=0.004)
-    >>> print(line.values.round(4))
-    [-2.7399 0.9053]
-    """
-    free, length = as_same_shape(
-        free_length=as_finite("free_length", free_length), position=as_finite("position", position)
-    )
-    if np.unique(length).size < 2:
-        raise DataError(
-            "a line needs marks at two positions",
-            found=f"{np.unique(length).size}",
-            needed="at least two stretched rows at different positions",
-            hint="Use strain-ratio or constant-fraction, which need one.",
-        )
-    centre = length.mean()
-    spread = float(np.sum((length - centre) ** 2))
-    slope = _line_slope(length, free)
-    intercept = float(free.mean()) - slope * centre
-    residual = intercept + slope * length - free
-    scatter = _row_scatter(
-        reading_uncertainty**2 * (2 + slope**2), residual, np.stack([np.ones_like(length), length])
-    )
-    covariance = scatter.variance * np.array(
-        [
-            [1 / free.size + centre**2 / spread, -centre / spread],
-            [-centre / spread, 1 / spread],
-        ]
-    )
-    return _SpliceCalibration(
-        np.array([intercept, slope]), covariance, np.zeros((2, 2)), residual, scatter.note
-    )
-
-
-def _fit_splice_ratio(
-    free_length: ArrayLike,
-    splice_length: ArrayLike,
-    *,
-    relaxed_free_length: float,
-    relaxed_splice_length: float,
-    reading_uncertainty: float,
-    relaxed_covariance: ArrayLike = ((0.0, 0.0), (0.0, 0.0)),
-) -> _SpliceCalibration:
-    r"""Ratio of splice strain to free strain, least squares through the slack point.
-
-    .. math:: \rho = \sum x y / \sum x^2
-
-    with :math:`x` the free strain and :math:`y` the splice strain.
-
-    Notes
-    -----
-    Errors of the free strain are one fortieth of its value in Table 3 of [3]_, so
-    their bias of the ratio is below the digits given.
-
-    Examples
-    --------
-    Table 3 of [3]_, new tether, in feet:
-
-    >>> ratio = _fit_splice_ratio(
-    ...     [14.80, 16.95, 19.03], [4.57, 4.80, 5.09],
-    ...     relaxed_free_length=8.38, relaxed_splice_length=3.88, reading_uncertainty=0.004)
-    >>> print(ratio.values.round(4))
-    [0.2386]
-    """
-    as_positive("relaxed lengths", [relaxed_free_length, relaxed_splice_length])
-    free, splice = as_same_shape(
-        free_length=as_positive("free_length", free_length),
-        splice_length=as_positive("splice_length", splice_length),
-    )
-    free_stretch, splice_stretch = free / relaxed_free_length, splice / relaxed_splice_length
-    x, y = free_stretch - 1, splice_stretch - 1
-    total = float(x @ x)
-    if total == 0:
-        raise DataError("a strain ratio needs a stretched row", needed="a free length above slack")
-    ratio = float(x @ y) / total
-    residual = ratio * x - y
-    by_x, by_y = (y - 2 * ratio * x) / total, x / total
-    # readings of a row: near toe, far toe, far thimble
-    by_toe = by_x / relaxed_free_length - by_y / relaxed_splice_length
-    variance = reading_uncertainty**2 * float(
-        np.sum(2 * by_toe**2 + (by_y / relaxed_splice_length) ** 2)
-    )
-    of_toe = ratio / relaxed_free_length + 1 / relaxed_splice_length
-    slope = np.stack([-ratio * free_stretch / relaxed_free_length,
-                      splice_stretch / relaxed_splice_length])  # fmt: skip
-    scatter = _row_scatter(
-        reading_uncertainty**2 * (2 * of_toe**2 + relaxed_splice_length**-2),
-        residual,
-        x[None],
-        covariance_root(np.asarray(relaxed_covariance, dtype=np.float64)).T @ slope,
-    )
-    variance = variance * scatter.widening**2 if variance > 0 else scatter.variance / total
-    sensitivity = np.array(
-        [
-            [
-                -float(by_x @ free_stretch) / relaxed_free_length,
-                -float(by_y @ splice_stretch) / relaxed_splice_length,
-            ]
-        ]
-    )
-    return _SpliceCalibration(
-        np.array([ratio]), np.array([[variance]]), sensitivity, residual, scatter.note
-    )
-
-
-EXPONENT_BOUNDS = (0.3, 1.9)
-
-"""Bounds of the search for the exponent of a splice law: a friction-locked splice
-stiffens with tension (below 1), one that beds in and then slides softens (above 1)."""
-
-HELD_EXPONENT = 1.0
-
-"""Exponent where the marks do not determine one: splices that strain in proportion to tension."""
-
-_POLISHING_STEPS = 30
-
-
-def _fit_splice_law(
-    splice_length: ArrayLike,
-    tension: ArrayLike,
-    *,
-    relaxed_splice_length: float,
-    reading_uncertainty: float,
-    exponent: float | None = None,
-    relaxed_standard_uncertainty: float = 0.0,
-) -> _SpliceCalibration:
-    r"""Power law of splice strain on tension.
-
-    .. math:: \ell_s (1 + c F^n)
-
-    Notes
-    -----
-    Rows have equal weight: each splice length is three readings of one tape, and its stated
-    error is taken unless the residuals refute it
-    (`reduction.stages.strain.strain_fit._row_scatter`).  The
-    compliance is linear and solved for.  The exponent is found by a bounded search
-    in one dimension, so that there is no starting value to depend on, then refined to
-    its last digits.
-
-    Examples
-    --------
-    Three splices of 1.2 m that strain by 0.002 times the square root of tension:
-
-    >>> force = np.array([100.0, 400.0, 900.0])
-    >>> law = _fit_splice_law(1.2 * (1 + 0.002 * np.sqrt(force)), force,
-    ...                      relaxed_splice_length=1.2, reading_uncertainty=1e-3)
-    >>> print(law.values.round(5))
-    [0.002 0.5 ]
-    """
-    as_positive("relaxed_splice_length", relaxed_splice_length)
-    splice, force = as_same_shape(
-        splice_length=as_positive("splice_length", splice_length),
-        tension=as_positive("tension", tension),
-    )
-    n_values = 1 if exponent is not None else 2
-    if splice.size < n_values:
-        raise DataError(
-            "a splice law needs more marks",
-            found=f"{splice.size} stretched rows with a tension",
-            needed=f"at least {n_values}",
-        )
-    strain = splice / relaxed_splice_length - 1
-    # tension is scaled by its geometric mean to decorrelate compliance and exponent in the fit
-    reference = float(np.exp(np.mean(np.log(force))))
-    relative = force / reference
-
-    def compliance(trial: float) -> tuple[float, Floats]:
-        power = relative**trial
-        best = float(power @ strain) / float(power @ power)
-        return best, best * power - strain
-
-    if exponent is None:
-        search = scipy.optimize.minimize_scalar(
-            lambda trial: float(np.sum(compliance(trial)[1] ** 2)),
-            bounds=EXPONENT_BOUNDS,
-            method="bounded",
-            options={"xatol": 1e-9},
-        )
-        exponent = _polished(float(search.x), compliance, relative)
-    at_reference, strain_residual = compliance(exponent)
-    if at_reference <= 0:
-        raise FitError(
-            "the splices do not lengthen with tension",
-            found=f"mean splice strain {float(strain.mean()):.4f}",
-            needed="longer splices under tension than slack",
-            n_marks=splice.size,
-        )
-    if n_values == 2 and min(abs(exponent - bound) for bound in EXPONENT_BOUNDS) < 1e-3:
-        raise FitError(
-            "the exponent of the splice law runs to the edge of its range",
-            found=f"{exponent:.3f}",
-            needed="between {} and {}".format(*EXPONENT_BOUNDS),
-            hint="The marks do not follow a power law of tension; use marks or strain-ratio.",
-            n_marks=splice.size,
-        )
-    power = relative**exponent
-    design = relaxed_splice_length * np.stack([power, at_reference * power * np.log(relative)])
-    design = design[:n_values]
-    inverse = np.linalg.inv(design @ design.T)
-    residual = relaxed_splice_length * strain_residual
-    stretch = 1 + at_reference * power
-    scatter = _row_scatter(
-        3 * reading_uncertainty**2, residual, design, relaxed_standard_uncertainty * stretch
-    )
-    covariance, sensitivity = np.zeros((2, 2)), np.zeros(2)
-    covariance[:n_values, :n_values] = scatter.variance * inverse
-    # d(splice length)/d(relaxed splice length) is the stretch of the splice
-    sensitivity[:n_values] = -inverse @ design @ stretch
-    # from the compliance at the reference tension to that at 1 N
-    scale = reference**-exponent
-    to_si = np.array([[scale, -at_reference * scale * np.log(reference)], [0.0, 1.0]])
-    sensitivity = to_si @ sensitivity
-    return _SpliceCalibration(
-        np.array([at_reference * scale, exponent]),
-        to_si @ covariance @ to_si.T,
-        np.stack([np.zeros(2), sensitivity], axis=1),
-        residual,
-        scatter.note,
-    )
-
-
-def _polished(
-    exponent: float, compliance: Callable[[float], tuple[float, Floats]], relative: Floats
-) -> float:
-    """Gauss-Newton steps while they get shorter.
-
-    A search that compares sums of squares finds only half the digits of the exponent; the rest
-    depends on the rounding of the sums, which differs between processors.
-    """
-    shortest = np.inf
-    for _ in range(_POLISHING_STEPS):
-        power = relative**exponent
-        at_reference, residual = compliance(exponent)
-        slope = at_reference * power * np.log(relative)
-        slope -= power * float(power @ slope) / float(power @ power)
-        size = float(slope @ slope)
-        step = -float(slope @ residual) / size if size > 0 else np.inf
-        low, high = EXPONENT_BOUNDS
-        if not (abs(step) < shortest and low < exponent + step < high):
-            break
-        exponent, shortest = exponent + step, abs(step)
-    return exponent
-
-
-TENSION_SPAN = 2.0
-
-"""Marks must span this factor in tension before an exponent is fitted to them. [1]"""
-
-# an exponent less certain than this adds nothing to a straight line
-_EXPONENT_UNCERTAINTY = 0.25
 
 
 @dataclass(frozen=True)
@@ -754,10 +132,10 @@ class PooledMarks:
         force = self.tension[self.stretched_rows("tension-driven")]
         return float(force.max() / force.min()) if force.size else 1.0
 
-    def relaxed(self) -> _RelaxedLengths:
+    def relaxed(self) -> RelaxedLengths:
         """Relaxed free and splice length and their covariance. [m], [m2]."""
         slack = self.marks.is_slack
-        return _relaxed_lengths(
+        return relaxed_lengths(
             self.marks.free_length[slack],
             self.marks.splice_length[slack],
             reading_uncertainty=self.marks.reading_uncertainty,
@@ -765,7 +143,7 @@ class PooledMarks:
 
 
 def _with_relaxed(
-    names: tuple[str, ...], relaxed: _RelaxedLengths, fit: _SpliceCalibration
+    names: tuple[str, ...], relaxed: RelaxedLengths, fit: SpliceCalibration
 ) -> tuple[dict[str, float], Floats]:
     """Coefficients and joint covariance of relaxed lengths and fitted values."""
     both = np.zeros((2 + fit.values.size,) * 2)
@@ -779,7 +157,7 @@ def _with_relaxed(
 
 
 def _scatter_notes(
-    marks: SpliceMarks, relaxed: _RelaxedLengths, fit: _SpliceCalibration
+    marks: SpliceMarks, relaxed: RelaxedLengths, fit: SpliceCalibration
 ) -> tuple[Note, ...]:
     """Scatter of the marks that the tape does not explain."""
     told = {"slack rows": relaxed.note, "stretched marks": fit.note}
@@ -792,7 +170,7 @@ def _scatter_notes(
 
 def _fit_marks(readings: PooledMarks) -> StrainModel:
     marks, rows = readings.marks, readings.stretched_rows("marks")
-    line = _fit_free_length_line(
+    line = fit_free_length_line(
         marks.free_length[rows],
         marks.far_thimble[rows],
         reading_uncertainty=marks.reading_uncertainty,
@@ -813,7 +191,7 @@ def _fit_marks(readings: PooledMarks) -> StrainModel:
 def _fit_strain_ratio(readings: PooledMarks) -> StrainModel:
     marks, rows = readings.marks, readings.stretched_rows("strain-ratio")
     relaxed = readings.relaxed()
-    ratio = _fit_splice_ratio(
+    ratio = fit_splice_ratio(
         marks.free_length[rows],
         marks.splice_length[rows],
         relaxed_free_length=float(relaxed.values[0]),
@@ -854,8 +232,8 @@ def _fit_tension_driven(readings: PooledMarks) -> StrainModel:
     marks, rows = readings.marks, readings.stretched_rows("tension-driven")
     relaxed = readings.relaxed()
 
-    def law(exponent: float | None) -> _SpliceCalibration:
-        return _fit_splice_law(
+    def law(exponent: float | None) -> SpliceCalibration:
+        return fit_power_law(
             marks.splice_length[rows],
             readings.tension[rows],
             relaxed_splice_length=float(relaxed.values[1]),
@@ -872,7 +250,7 @@ def _fit_tension_driven(readings: PooledMarks) -> StrainModel:
             f"{rows.size} marks over a factor of {readings.tension_span:.2f} in "
             "tension do not fix the exponent of the splice law; it is held at 1",
         )
-    elif (uncertainty := float(np.sqrt(fit.covariance[1, 1]))) > _EXPONENT_UNCERTAINTY:
+    elif (uncertainty := float(np.sqrt(fit.covariance[1, 1]))) > EXPONENT_UNCERTAINTY:
         made = (
             "the marks fix the exponent of the splice law only to "
             f"{fit.values[1]:.2f} +- {uncertainty:.2f}; it is held at 1",
@@ -894,7 +272,7 @@ class _MixedFit:
     rows: Integers
 
 
-def _splice_readings(readings: PooledMarks, relaxed: _RelaxedLengths) -> SpliceReadings:
+def _splice_readings(readings: PooledMarks, relaxed: RelaxedLengths) -> SpliceReadings:
     """Strains at every row whose tension is known, or at all rows where hardly one is."""
     marks = readings.marks
     known = marks.is_slack.copy()
@@ -1062,7 +440,7 @@ def _tape_freedom(marks: SpliceMarks) -> float:
     return _USUAL_READINGS + 3.0 * max(int(marks.is_slack.sum()) - 1, 0)
 
 
-_NO_FIT = _SpliceCalibration(np.empty(0), np.empty((0, 0)), np.empty((0, 2)), np.empty(0))
+_NO_FIT = SpliceCalibration(np.empty(0), np.empty((0, 0)), np.empty((0, 2)), np.empty(0))
 
 
 def _on_laws(fit: _MixedFit, readings: PooledMarks) -> tuple[Note, ...]:
@@ -1151,7 +529,7 @@ def _slope_ratio(model: StrainModel, readings: PooledMarks) -> float:
         return float("nan")
     strain = strain_by_model(model, position=position, tension=readings.tension[rows])
     legacy = _fit_constant_fraction(readings).coefficients
-    return legacy["free_fraction"] / legacy["relaxed_free_length"] / _line_slope(position, strain)
+    return legacy["free_fraction"] / legacy["relaxed_free_length"] / line_slope(position, strain)
 
 
 def fit_to_marks(method: StrainMethod, readings: PooledMarks) -> StrainModel:
@@ -1238,7 +616,7 @@ def _on_creep(model: StrainModel, marks: SpliceMarks, rows: Integers) -> tuple[N
     free = marks.free_length[rows]
     if np.ptp(free) < _CREEP_NOTICE * model.coefficients["relaxed_free_length"]:
         return ()
-    effect = _CREEP_TOLD * _line_slope(free, marks.splice_length[rows])
+    effect = _CREEP_TOLD * line_slope(free, marks.splice_length[rows])
     if effect < _CREEP_NOTICE:
         return ()
     return (note("splice-creep-unknown", marks.specimen, effect=effect),)
@@ -1284,14 +662,7 @@ _SCATTER_NOTICE = 2.0
 
 _OUTLIER_NOTICE = 5.0
 
-# fewest slack rows that can show a trend, and the probability that level ones show it
-_TREND_ROWS = 4
-
 _TREND_CHANCE = 0.01
-
-
-def _rms(residual: Floats) -> float:
-    return sqrt(float(np.mean(residual**2)))
 
 
 def _on_constant_fraction(model: StrainModel, is_stretched: Bools) -> tuple[Note, ...]:
@@ -1302,7 +673,7 @@ def _on_constant_fraction(model: StrainModel, is_stretched: Bools) -> tuple[Note
         return ()
     residual = model.mark_strain_residual[is_stretched]
     steepness = model.coefficients["free_fraction"] / model.coefficients["relaxed_free_length"]
-    excess = _line_slope(position, residual)
+    excess = line_slope(position, residual)
     ratio = steepness / (steepness - excess)
     if abs(ratio - 1) < _SLOPE_NOTICE:
         return ()
@@ -1326,7 +697,7 @@ def _on_scatter(model: StrainModel, is_stretched: Bools, expected: float) -> tup
     if model.method in ("constant-fraction", "mixed"):
         return ()
     residual = model.mark_strain_residual[is_stretched]
-    rms = _rms(residual)
+    rms = root_mean_square(residual)
     notes = []
     if expected > 0 and rms > _SCATTER_NOTICE * expected:
         notes.append(
@@ -1360,10 +731,10 @@ def _growth_of_slack(marks: SpliceMarks) -> float:
         step = float(length[1:].mean() - length[0])
         if step > _OUTLIER_NOTICE * marks.reading_uncertainty * sqrt(1 + 1 / (length.size - 1)):
             return step
-    if length.size < _TREND_ROWS or np.ptp(length) == 0:
+    if length.size < TREND_ROWS or np.ptp(length) == 0:
         return 0.0
     row = np.arange(length.size)
-    slope, correlation = _line_slope(row, length), float(np.corrcoef(row, length)[0, 1])
+    slope, correlation = line_slope(row, length), float(np.corrcoef(row, length)[0, 1])
     # probability of a correlation this large in rows without a trend (Student's t, both sides)
     chance = scipy.special.betainc(length.size / 2 - 1, 0.5, max(0.0, 1 - correlation**2))
     return 0.0 if slope <= 0 or chance > _TREND_CHANCE else float(slope * (length.size - 1))
@@ -1415,7 +786,8 @@ def _on_reading_time(
         )[0]
     )
     end, start = (
-        100 * _rms(entry.mark_strain_residual[is_stretched]) for entry in (model, at_start)
+        100 * root_mean_square(entry.mark_strain_residual[is_stretched])
+        for entry in (model, at_start)
     )
     return (
         "marks are taken to be read as a hold ends, and then differ from the "
@@ -1584,7 +956,7 @@ def fit_strain_model(
     marks : SpliceMarks, optional
         Of this specimen over the whole campaign.
     mark_tension : array_like, shape (n_marks,), optional
-        From `reduction.stages.strain.strain_fit.measure_mark_tension`, row by row of ``marks``;
+        From `reduction.stages.strain.mark_readings.measure_mark_tension`, row by row of ``marks``;
         NaN where no hold was found. [N]
     mark_tension_at_start : array_like, shape (n_marks,), optional
         The same at the start of each hold, where the tape may have been read too. [N]
@@ -1633,7 +1005,7 @@ def fit_strain_model(
 
     Examples
     --------
-    Table 3 of [3]_, new tether.  The report's own strain reads its moduli 14.5 % high:
+    Table 3 of [1]_, new tether.  The report's own strain reads its moduli 14.5 % high:
 
     >>> foot = 0.3048
     >>> marks = SpliceMarks(
@@ -1673,7 +1045,7 @@ def fit_strain_model(
             needed="rows of it in the marks file",
         )
     used = readings.stretched_rows(method)
-    _check_marks(readings.marks, tests=sorted({readings.marks.test[row] for row in used}))
+    check_marks(readings.marks, tests=sorted({readings.marks.test[row] for row in used}))
     if method == "mixed":
         model, fit = _average_at_marks(readings, average)
         is_stretched = np.array([hold != "slack" for hold in model.mark_hold], dtype=bool)
