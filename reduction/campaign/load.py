@@ -410,10 +410,10 @@ def _cells(path: Path, row: int, cells: dict[str, str]) -> dict[str, Any]:
 def read_test_table(path: Path) -> dict[str, TestSection]:
     """Read a table of tests."""
     header, rows = read_csv_rows(path, "the table of tests", fault=_in_table)
-    if "id" not in header or "file" not in header or len(set(header)) != len(header):
+    if "id" not in header or len(set(header)) != len(header):
         raise _in_table(
             path, "the table of tests has no usable header", row=1, found=", ".join(header),
-            needed="id, file and keys of [tests.ID], each once",
+            needed="id and keys of [tests.ID], such as file, each once",
         )  # fmt: skip
     for name in header:
         if name not in _COLUMNS:
@@ -433,8 +433,6 @@ def read_test_table(path: Path) -> dict[str, TestSection]:
                 path, "a test appears twice", row=number, channel="id", found=repr(name)
             )
         filled = _cells(path, number, cells)
-        if "file" not in filled:
-            raise _in_table(path, "a test has no file", row=number, channel="file")
         try:
             identifier.validate_python(name)
             tests[name] = TestSection.model_validate(filled)
@@ -752,8 +750,7 @@ def _load(path: Path, *, allow_remote: bool, text: str | None) -> Campaign:
     table = file.tests if isinstance(file.tests, str) else file.campaign.tests
     if table:
         tests |= read_test_table(path.parent / _file_inside(path, table))
-    if not isinstance(file.tests, str):
-        tests = _merge_tests(path, table, tests, file.tests)
+    tests = _merge_tests(path, table, tests, {} if isinstance(file.tests, str) else file.tests)
     if not (tests or file.results or file.campaign.results or file.hoses):
         raise in_toml(
             path, "the campaign has no tests",

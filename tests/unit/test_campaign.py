@@ -179,7 +179,7 @@ def test_the_table_may_stand_in_place_of_the_sections(folder):
 @pytest.mark.parametrize(
     ("rows", "message"),
     [
-        ("id,order\nT,1\n", r"tests.csv:1: .*no usable header; found id, order"),
+        ("file,order\nT.csv,1\n", r"tests.csv:1: .*no usable header; found file, order"),
         ("id,file\nT,T.csv\nT,T.csv\n", r"tests.csv:3 \[id\]: a test appears twice; found 'T'"),
         ("id,file,order\nT,T.csv,first\n", r"tests.csv:2 \[order\]: .*found 'first'"),
         ("id,file,order\nT,T.csv,--5\n", r"tests.csv:2 \[order\]: .*found '--5'"),
@@ -194,7 +194,8 @@ def test_the_table_may_stand_in_place_of_the_sections(folder):
             "id,file,steps\nT,T.csv,red\n",
             r"tests.csv:1 \[steps\]: .*reduction and steps stand in campaign.toml, as \[tests.ID\]",
         ),
-        ("id,file\nT,\n", r"tests.csv:2 \[file\]: a test has no file"),
+        ("id,order\nT,1\n", r"1 test has no file, .*row of tests.csv\n  tests.T.file: is required"),
+        ("id,file\nT,\n", r"1 test has no file, .*row of tests.csv\n  tests.T.file: is required"),
         ("id,file\n../T,T.csv\n", r"tests.csv:2 \[id\]"),
     ],
 )
@@ -217,6 +218,15 @@ def test_steps_and_numbers_of_a_test_in_the_table_stand_in_campaign_toml(folder)
     assert tests["T"].steps[0].time_range == (2.0, 9.0)
     assert tests["T"].settings.modulus.window == pytest.approx(0.12)
     assert not tests["U"].steps
+
+
+def test_pieces_of_a_test_in_the_table_stand_in_campaign_toml(folder):
+    (folder / "U.csv").write_text((folder / "T.csv").read_text())
+    pieces = '[tests.T]\nfile = [{ file = "T.csv" }, { file = "U.csv" }]\n'
+    for table in ("id,file,order\nT,,2\n", "id,order\nT,2\n"):
+        (folder / "tests.csv").write_text(table)
+        (test,) = load(folder, BESIDE + pieces).tests.values()
+        assert test.order == 2 and [name for name, _ in test.files] == ["T.csv", "U.csv"]
 
 
 def test_a_setting_in_both_places_is_refused(folder):
