@@ -294,6 +294,17 @@ class TestPull:
         with pytest.raises(DataError, match="tension falls by 9.% of its rise on the way"):
             fit_pull(turn, load / 1e4, load)
 
+    @pytest.mark.parametrize("lost", [0.0, 0.2])
+    def test_a_fall_is_that_of_the_line_and_not_of_its_noise(self, lost):
+        # of 50,000 readings some lie four standard deviations, 12 % of the rise, off the line
+        along = np.linspace(0, 1, 50_000)
+        noise = np.random.default_rng(3).normal(0, 0.03, along.size)
+        pull = fit_pull(along, along, along - lost * (along > 0.5) + noise)
+        found = [one for one in pull.notes if one.code == "pull-falls"]
+        falls = [one.numbers["fall"] for one in found]
+        # six standard deviations of a mean of 50 readings count as noise
+        assert falls == pytest.approx([lost / (1 - lost)] if lost else [], abs=0.035)
+
     def test_a_fall_on_the_way_is_something_to_check(self):
         time, strain, load = rising()
         load = load.copy()

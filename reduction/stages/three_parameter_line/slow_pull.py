@@ -72,6 +72,29 @@ def _greatest_fall(tension: ArrayLike) -> float:
     return float((np.maximum.accumulate(series) - series).max())
 
 
+_MEANS_OF_PULL = 1000
+
+
+def _fall_beyond_noise(tension: Floats) -> float:
+    """Largest fall on the way up that noise does not make.
+
+    Notes
+    -----
+    The greatest and the least of thousands of readings are further apart than noise parts a few:
+    means of readings are compared, so short that a fall within one has no effect on the curve.
+
+    Examples
+    --------
+    >>> noise = np.random.default_rng(0).normal(0, 1.0, 50_000)
+    >>> _fall_beyond_noise(np.linspace(0.0, 70.0, 50_000) + noise)
+    0.0
+    """
+    together = max(tension.size // _MEANS_OF_PULL, 1)
+    whole = tension.size // together * together
+    means = tension[:whole].reshape(-1, together).mean(axis=1)
+    return max(_greatest_fall(means) - _NOISE_FACTOR * reading_noise(means), 0.0)
+
+
 def _find_loading(
     tension: ArrayLike, strain: ArrayLike, *, reference_tension: float | None = None
 ) -> Integers:
@@ -746,8 +769,7 @@ def fit_pull(
     clock, stretch, load = clock[rows], stretch[rows], load[rows]
     low, high = float(load[0]), float(load.max())
     blocks = _block_means(clock, stretch, load)
-    # falls of single readings count as noise
-    fall = max(_greatest_fall(load) - _NOISE_FACTOR * reading_noise(load), 0.0) / (high - low)
+    fall = _fall_beyond_noise(load) / (high - low)
     if fall > _FALL_REFUSED:
         raise DataError(
             f"tension falls by {fall:.0%} of its rise on the way to the peak",
