@@ -30,7 +30,12 @@ from reduction.experiments.designs import DesignKind, FactorLevels, LevelBasis
 from reduction.experiments.response_transform import Transform
 from reduction.experiments.run_sheet import RepeatPlacing
 from reduction.quantities.names import QUANTITIES, quantity
-from reduction.quantities.units import Dimension, parse_quantity, scale_of_unit
+from reduction.quantities.units import (
+    Dimension,
+    parse_quantity,
+    scale_of_unit,
+    scale_to_show,
+)
 from reduction.record.errors import DataError, LogError, SettingsError
 from reduction.record.measurement import Floats, Specimen, read_only_arrays
 from reduction.record.plain_text import cut
@@ -223,7 +228,7 @@ def _sigma(text: str) -> tuple[float, str]:
     """Scatter of one run and its unit; a fraction of the response if the unit is 1."""
     unit = _written_unit(text)
     number = parse_quantity(text.strip().removesuffix(unit), "number")
-    si_unit, factor, _ = scale_of_unit(unit)
+    si_unit, factor, _ = scale_to_show(unit)
     if not number > 0:
         raise SettingsError("sigma is not above zero", found=repr(text), needed='such as "2 %"')
     return factor * number, si_unit
@@ -329,12 +334,14 @@ def _response_unit(name: str, unit: str) -> tuple[str, float, float]:
     --------
     >>> _response_unit("hysteresis_energy", "lbf")
     ('J m-1', 4.4482216152605, 0.0)
+    >>> _response_unit("loss", "J/m")
+    ('J m-1', 1.0, 0.0)
     """
     if not unit:
         return "", 1.0, 0.0
-    si_unit, factor, offset = scale_of_unit(unit)
     if name not in QUANTITIES:
-        return si_unit, factor, offset
+        return scale_to_show(unit)
+    si_unit, factor, offset = scale_of_unit(unit)
     known = quantity(name).unit
     if scale_of_unit(known)[0] != si_unit:
         raise SettingsError(

@@ -24,7 +24,7 @@ from reduction.experiments.fit_results import (
     ResponseSurfaces,
 )
 from reduction.experiments.response_surfaces import OBJECTS, fit_surfaces, scatter_by_scale
-from reduction.experiments.response_transform import Transform
+from reduction.experiments.response_transform import Transform, fitted_unit
 from reduction.experiments.run_sheet import (
     SIGNIFICANCE,
     Caution,
@@ -59,12 +59,6 @@ from reduction.uncertainty.surface_errors import surfaces_between_runs
 _ROUNDING = 1e-9
 
 
-def _fitted_unit(unit: str, transform: str) -> str:
-    """Unit of the coefficients of a response; empty if not stated."""
-    names = {"none": unit, "log": f"ln({unit})", "log-times-frequency": f"ln(Hz {unit})"}
-    return names.get(transform, f"Box-Cox({unit})") if unit else ""
-
-
 class _ShownUnits:
     """Display units of a response and of its factors."""
 
@@ -73,7 +67,7 @@ class _ShownUnits:
     ) -> None:
         # a logarithm has no unit to convert
         self.unit, self.scale = display_unit(
-            _fitted_unit(response, transform), system if transform == "none" else "si"
+            fitted_unit(response, transform), system if transform == "none" else "si"
         )
         self._factors = [display_unit(unit, system) for unit in factors]
 
@@ -344,7 +338,7 @@ def _surface_document(
 ) -> dict[str, Any]:
     """All numbers of the surface for one response."""
     anova, lack, canonical = surfaces.anova, surfaces.lack_of_fit, surfaces.canonical
-    unit = _fitted_unit(runs.response_units[index], surfaces.transform[index])
+    unit = fitted_unit(runs.response_units[index], surfaces.transform[index])
     lines = zip(
         anova.source, anova.degrees_of_freedom[index], anova.sum_of_squares[index],
         anova.mean_square[index], anova.f[index], anova.p_value[index], anova.error_term,

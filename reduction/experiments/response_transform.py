@@ -42,6 +42,12 @@ from reduction.record.measurement import Bools, Floats
 Transform = Literal["none", "log", "box-cox", "log-times-frequency"]
 
 
+def fitted_unit(unit: str, transform: str) -> str:
+    """Unit of a response on the scale of its fit; empty if not stated."""
+    names = {"none": unit, "log": f"ln({unit})", "log-times-frequency": f"ln(Hz {unit})"}
+    return names.get(transform, f"Box-Cox({unit})") if unit else ""
+
+
 def transform(values: ArrayLike, exponent: ArrayLike) -> Floats:
     r"""Power transform of Box and Cox.
 

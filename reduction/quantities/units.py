@@ -313,6 +313,25 @@ def scale_of_unit(unit: str) -> tuple[str, float, float]:
     return si_unit, float(base.magnitude), 0.0
 
 
+_PER_LENGTH = re.compile(
+    r"/\s*\(?(?:[cmk]?m|ft|in|inch)\)?\s*$"
+    r"|(?<![a-zA-Z])(?:[cmk]?m|ft|in)(?:\^|\*\*)?-1\b"
+)
+
+
+def scale_to_show(unit: str) -> tuple[str, float, float]:
+    """SI unit to show and conversion, where an energy per length is not written as a force.
+
+    Examples
+    --------
+    >>> [scale_to_show(one)[0] for one in ("J/m", "ft lbf / ft", "J m-1", "lbf", "kN", "kN/m")]
+    ['J m-1', 'J m-1', 'J m-1', 'N', 'N', 'kg s-2']
+    """
+    si_unit, factor, offset = scale_of_unit(unit)
+    is_energy = si_unit == "N" and _PER_LENGTH.search(unit) is not None
+    return "J m-1" if is_energy else si_unit, factor, offset
+
+
 UnitSystem = Literal["si", "us"]
 
 _US = {

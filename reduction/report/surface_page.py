@@ -11,8 +11,9 @@ from reduction.archive.csv_columns import Cell, csv_text
 from reduction.archive.write import write_text_atomically
 from reduction.campaign.experiment_plans import RunSeries
 from reduction.experiments.fit_results import ResponseSurfaces
+from reduction.experiments.response_transform import fitted_unit
 from reduction.experiments.surface_points import evaluate_surfaces
-from reduction.quantities.units import UnitSystem, display_unit
+from reduction.quantities.units import UnitSystem, combined_unit, display_unit
 from reduction.record.measurement import Floats
 from reduction.report.figure_data import Figure, Trace, axis, line, make_figure, plain_numbers
 from reduction.report.single_pages import write_single_page
@@ -47,7 +48,7 @@ def write_surfaces(
 ) -> list[Path]:
     """Write coefficients, analysis of variance and runs as tables, in SI, and a page."""
     tables = {
-        "coefficients": _coefficients(surfaces),
+        "coefficients": _coefficients(surfaces, runs),
         "anova": _anova(surfaces),
         "runs": _runs(surfaces, runs),
     }
@@ -68,10 +69,10 @@ def write_surfaces(
     return [*written, page]
 
 
-def _coefficients(surfaces: ResponseSurfaces) -> str:
+def _coefficients(surfaces: ResponseSurfaces, runs: RunSeries) -> str:
     head = (
         "response", "transform", "label", "term", "coefficient", "standard_error", "t", "p_value",
-        "coefficient_engineering", "standard_error_engineering",
+        "coefficient_engineering", "standard_error_engineering", "unit", "unit_engineering",
     )  # fmt: skip
     rows: list[list[Cell]] = []
     for index, name in enumerate(surfaces.response_names):
@@ -80,11 +81,15 @@ def _coefficients(surfaces: ResponseSurfaces) -> str:
             surfaces.t[index], surfaces.p_value[index], surfaces.coefficient_engineering[index],
             surfaces.coefficient_engineering_standard_uncertainty[index],
         )  # fmt: skip
+        transform = surfaces.transform[index]
+        unit = fitted_unit(runs.response_units[index], transform)
         for place, (label, term) in enumerate(
             zip(surfaces.labels, surfaces.term_names, strict=True)
         ):
             own: list[Cell] = [_known(float(one[place])) for one in numbers]
-            rows.append([name, surfaces.transform[index], label, term, *own])
+            powers = surfaces.exponents[place].tolist()
+            of_term = combined_unit(unit, runs.factor_units, powers) if unit else ""
+            rows.append([name, transform, label, term, *own, unit, of_term])
     return csv_text(head, rows)
 
 
@@ -108,8 +113,12 @@ def _columns(anova: object) -> tuple[Floats, ...]:
 def _runs(surfaces: ResponseSurfaces, runs: RunSeries) -> str:
     factors = [f"{name} [coded]" for name in runs.factor_names]
     head = ["run", *factors]
-    for name, unit in zip(runs.response_names, runs.response_units, strict=True):
-        head += [f"{name} [{unit}]" if unit else name, f"{name} fitted", f"{name} residual"]
+    for name, unit, transform in zip(
+        runs.response_names, runs.response_units, surfaces.transform, strict=True
+    ):
+        head.append(f"{name} [{unit}]" if unit else name)
+        scale = f" [{fitted_unit(unit, transform)}]" if unit else ""
+        head += [f"{name} fitted{scale}", f"{name} residual{scale}"]
     rows: list[list[Cell]] = []
     for place, run in enumerate(runs.run_names):
         row: list[Cell] = [run, *(_known(float(one)) for one in runs.coded[place])]

@@ -376,3 +376,31 @@ def test_a_surface_is_written_with_its_analysis_of_variance_and_figures(tmp_path
     page = (tmp_path / "made" / "index.html").read_text(encoding="utf-8")
     assert page.count("contour-0-") >= 3
     assert "Analysis of variance" in page
+
+
+def test_an_energy_per_length_keeps_its_unit_in_print_and_tables(tmp_path, command):
+    pairs = [(one, other) for one in (-1.0, 1.0) for other in (-1.0, 1.0)]
+    coded = np.array(
+        [np.insert(pair, at, 0.0) for at in range(3) for pair in pairs] + [[0.0] * 3] * 3
+    )
+    value = 500 + coded @ [10.0, 20.0, 30.0] + 40 * coded[:, 0] ** 2
+    value = value + np.resize([1.0, -2.0, 1.5, 0.5], len(value))
+    numbers = np.column_stack([coded, value, value]).tolist()
+    lines = [",".join(map(repr, row)) for row in numbers]
+    head = "frequency [coded],mean_tension [coded],tension_amplitude [coded],loss [J/m],force [N]"
+    (tmp_path / "runs.csv").write_text("\n".join([head, *lines]), encoding="utf-8")
+    (tmp_path / "SPEC.toml").write_text(
+        '[factors]\nfrequency = ["0.1 Hz", "0.5 Hz"]\nmean_tension = ["1 kN", "3 kN"]\n'
+        'tension_amplitude = ["0.4 kN", "0.9 kN"]\n[responses]\nloss = {}\nforce = {}\n',
+        encoding="utf-8",
+    )
+    done = command("surface", "runs.csv", "SPEC.toml", "--out", "made", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "loss [J m-1]" in done.stdout
+    assert "J m-1 Hz-2" in done.stdout
+    with (tmp_path / "made" / "tables" / "coefficients.csv").open(newline="") as file:
+        rows = [row for row in csv.DictReader(file) if row["term"] == "mean_tension^2"]
+    assert [row["unit"] for row in rows] == ["J m-1", "N"]
+    assert [row["unit_engineering"] for row in rows] == ["J m-1 N-2", "N-1"]
+    head = (tmp_path / "made" / "tables" / "runs.csv").read_text(encoding="utf-8").splitlines()[0]
+    assert "loss [J m-1],loss fitted [J m-1]" in head

@@ -51,7 +51,13 @@ def test_a_load_limit_is_a_force_or_a_share(load, written, limits):
 
 
 @pytest.mark.parametrize(
-    ("written", "sigma"), [("2 %", (0.02, "1")), ("0.02", (0.02, "1")), ("5 lbf", (5 * LBF, "N"))]
+    ("written", "sigma"),
+    [
+        ("2 %", (0.02, "1")),
+        ("0.02", (0.02, "1")),
+        ("5 lbf", (5 * LBF, "N")),
+        ("3 J/m", (3.0, "J m-1")),
+    ],
 )
 def test_sigma_is_a_share_or_in_a_unit(load, written, sigma):
     spec = load(f'[experiment]\nsigma = "{written}"\n')
@@ -60,6 +66,8 @@ def test_sigma_is_a_share_or_in_a_unit(load, written, sigma):
 
 def test_units_of_quantities_are_spelt_as_in_products():
     assert _response_unit("hysteresis_energy", "lbf") == ("J m-1", pytest.approx(LBF), 0.0)
+    assert _response_unit("loop energy", "lbf ft / ft") == ("J m-1", pytest.approx(LBF), 0.0)
+    assert _response_unit("stiffness", "kN") == ("N", pytest.approx(1000), 0.0)
     assert _response_unit("life", "") == ("", 1.0, 0.0)
     with pytest.raises(SettingsError, match="unit 'lbf' is not a unit of relaxation_time"):
         _response_unit("relaxation_time", "lbf")
