@@ -180,6 +180,7 @@ def lag_by_turns(
 
     .. math:: \ell = t_T - t_p, \qquad u^2 = u_{scatter}^2 + 4 \max_w (\ell_W - \ell_w)^2
             + \frac{1}{12} (\ell_{peaks} - \ell_{valleys})^2
+            + \left( \frac{K_2 - K_1}{K_2 + K_1} \, \frac{s}{v} \right)^2
 
     Parameters
     ----------
@@ -206,6 +207,9 @@ def lag_by_turns(
     crossing is that of a reading over it.  The bias of a power-law creep is twice the change from W
     to W/2; it is not corrected, since that would assume the law, but included in full in the
     uncertainty ([2]_).  Half of the difference between peaks and valleys counts as a half width.
+    A machine that rounds its corners stops short of the crossing of its ramps by a path s, at the
+    speed v; where the specimen is stiffer behind the turn (K_2) than before it (K_1), as with
+    friction, tension then crosses late.
     A wave that rounds its corners (a sine) is refused: it has only a phase, which is damping and
     lag together ([1]_).
 
@@ -417,6 +421,8 @@ def _of_specimen(
     if n_turns < (1 - _MOST_LOST) * turns.size or not np.median(sharp[usable]) >= _SHARP:
         return np.nan, np.nan, n_turns, LAG_REFUSALS["turns_not_sharp"]
     lag, spread = _combined(lags[:, usable], jumps[1, usable])
+    by_rounding = _by_rounding(time, position, tension, turns[usable], reach, lag)
+    spread = float(np.hypot(spread, by_rounding))
     rounding = _ROUNDING * float(time[turns[-1]] - time[turns[0]]) / turns.size
     return _unless_early(lag, spread, n_turns, rounding)
 
@@ -480,25 +486,77 @@ def _corners(
 
     The sample of the turn itself is in neither parabola, since it may be on either side.
     """
+    scale, sides = _sides(time, series, turns, (1, width), 2)
+    root, sharp, jump = _crossing(*sides)
+    return take_samples(time, turns) + root * scale, sharp, jump / scale
+
+
+def _sides(
+    time: Floats, series: Floats, turns: Integers, reach: tuple[int, int], degree: int
+) -> tuple[Floats, tuple[Floats, Floats]]:
+    """Unit of time of each turn, and the polynomials in it on both sides of the turn."""
+    inner, width = reach
     at_turn = take_samples(time, turns)
     scale = np.zeros(turns.size)
     for some, window in _windows(turns, -width, width + 1):
         since = take_samples(time, window) - at_turn[some, None]
         scale[some] = np.maximum(scale[some], np.abs(since).max(axis=1))
+    terms = degree + 1
     sides = []
-    for first, stop in ((-width, 0), (1, width + 1)):
-        gram, sums = np.zeros((turns.size, 3, 3)), np.zeros((turns.size, 3))
+    for first, stop in ((-width, 1 - inner), (inner, width + 1)):
+        gram, sums = np.zeros((turns.size, terms, terms)), np.zeros((turns.size, terms))
         for some, window in _windows(turns, first, stop):
             at = (take_samples(time, window) - at_turn[some, None]) / scale[some, None]
-            basis = np.stack([np.ones_like(at), at, at**2], axis=-1)
+            basis = at[..., None] ** np.arange(terms)
             gram[some] += np.einsum("tsi,tsj->tij", basis, basis)
             sums[some] += np.einsum("tsi,ts->ti", basis, take_samples(series, window))
-        # near a gap all samples of a side may be one instant, which no parabola fits
-        is_flat = np.linalg.det(gram) <= _FLAT * gram[:, 0, 0] ** 3
-        gram[is_flat], sums[is_flat] = np.eye(3), np.nan
+        # near a gap all samples of a side may be one instant, which no polynomial fits
+        is_flat = np.linalg.det(gram) <= _FLAT * gram[:, 0, 0] ** terms
+        gram[is_flat], sums[is_flat] = np.eye(terms), np.nan
         sides.append(np.asarray(np.linalg.solve(gram, sums[..., None])[..., 0], np.float64))
-    root, sharp, jump = _crossing(*sides)
-    return at_turn + root * scale, sharp, jump / scale
+    return scale, (sides[0], sides[1])
+
+
+def _by_rounding(
+    time: Floats, position: Floats, tension: Floats, turns: Integers, reach: int, lag: float
+) -> float:
+    """Shift of tension against position at turns that the machine rounds.
+
+    Straight ramps that a rounded corner joins cross beyond it, by a path s.  Behind the turn the
+    specimen has then gone that path less.  If it is stiffer there than before, tension crosses
+    its own ramp late by (K_2 - K_1) / (K_2 + K_1) of s over the speed, without any delay.
+    """
+    step = median_step(time[turns[0] - reach : turns[0] + reach])
+    later = int(np.clip(round(lag / step), -(reach // 2), reach // 2))
+    found, slopes = [], []
+    for series, at_turn in ((position, turns), (tension, turns + later)):
+        scale, (before, after) = _sides(time, series, at_turn, (1, reach), 2)
+        slopes.append((before[:, 1] / scale, after[:, 1] / scale))
+        bend = np.nanmean(np.abs(before[:, 2]) + np.abs(after[:, 2]))
+        bend /= np.nanmean(np.abs(before[:, 1]) + np.abs(after[:, 1]))
+        scale, (before, after) = _sides(time, series, at_turn, (int(_OUTER * reach), reach), 1)
+        level, jump = (after - before).T
+        with np.errstate(divide="ignore", invalid="ignore"):
+            at = np.clip(np.nan_to_num(-level / jump), -1, 1)
+        near = at_turn + np.clip(np.rint(at * scale / step), -reach, reach).astype(np.int64)
+        since = (take_samples(time, near) - take_samples(time, at_turn)) / scale
+        line = np.where((since < at)[:, None], before, after)
+        beyond = line[:, 0] + line[:, 1] * since - take_samples(series, near)
+        lost = -np.nanmean(beyond * np.sign(jump)) / np.nanmean(np.abs(jump) / scale)
+        found.append((float(bend), 2 * max(float(lost), 0.0)))
+    (p_before, p_after), (t_before, t_after) = slopes
+    with np.errstate(divide="ignore", invalid="ignore"):
+        stiff = [np.abs(t_before / p_before), np.abs(t_after / p_after)]
+        stiffer = (stiff[1] - stiff[0]) / (stiff[1] + stiff[0])
+    weight = (t_after - t_before) ** 2
+    known = np.isfinite(stiffer * weight)
+    if not known.any():
+        return 0.0
+    # the channel that the machine drives has the straighter ramps
+    return min(found)[1] * abs(float(np.average(stiffer[known], weights=weight[known])))
+
+
+_OUTER = 0.4  # of the reach: ramps without their corners
 
 
 def _windows(turns: Integers, first: int, stop: int) -> Iterator[tuple[slice, Integers]]:

@@ -65,6 +65,32 @@ def test_damping_is_not_taken_for_lag(material, lag):
     assert found.lag[0] < lag + 1e-3
 
 
+@pytest.mark.parametrize("lag", [0.0, 0.15])
+def test_friction_behind_a_rounded_turn_is_not_taken_for_lag(lag):
+    ramp, rounded, step = 2.5, 0.3, 0.025
+    time = np.arange(0, 80, step)
+
+    def friction(path):
+        return path + 2 * (1 - np.exp(-path / 0.5))
+
+    def tension(at):
+        """Of the path since the last turn alone: without memory of time, so without a delay."""
+        is_up = np.mod(at, 2 * ramp) < ramp
+        gone = place(at)
+        low, high = rounded / 2, ramp - rounded / 2
+        return np.where(is_up, friction(gone - low), friction(high - low) - friction(high - gone))
+
+    def place(at):
+        x = ramp - np.abs(np.mod(at, 2 * ramp) - ramp)
+        bottom, top = (x**2 + rounded**2) / (2 * rounded), ramp - x
+        round_top = ramp - (top**2 + rounded**2) / (2 * rounded)
+        return np.where(x < rounded, bottom, np.where(top < rounded, round_top, x))
+
+    turns = np.rint(np.arange(ramp, 80, ramp) / step).astype(int)
+    found = lag_by_turns(time, place(time), [tension(time - lag)], turns)
+    assert abs(found.lag[0] - lag) < 2 * found.standard_uncertainty[0]
+
+
 @pytest.mark.parametrize("material", MATERIALS)
 def test_a_lag_in_noise_is_held_by_its_uncertainty(material):
     lag = 0.04
