@@ -4,7 +4,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from reduction.pipeline.reduce_test import _plausibility_notes, _slack_in_cycles
+from reduction.pipeline.reduce_test import _drift, _plausibility_notes, _slack_in_cycles
 from reduction.record.measurement import Specimen
 from reduction.record.settings import ModulusSettings, PhaseSettings, ReductionSettings
 from reduction.stages.cycles.loops import close_loops
@@ -71,6 +71,31 @@ def test_cycles_that_are_mostly_drift_are_counted(notes_of):
     jump = np.where(samples < 410, 1.0, 0.1)
     (note,) = map(str, notes_of(1000 * notes_of.strain * jump))
     assert "cycles drift by more than" in note
+
+
+@pytest.mark.parametrize(
+    ("far", "gap", "severity"),
+    [
+        ([0], None, "note"),
+        ([0, 5], 5, "note"),
+        ([4], None, "warning"),
+        ([0, 1, 2], None, "warning"),
+    ],
+)
+def test_the_drift_of_a_first_cycle_is_that_of_the_ramp_before_it(far, gap, severity):
+    first = 50 * np.arange(10)
+    if gap is not None:
+        first[gap:] += 200  # a pause: the next cycle is the first of a run again
+    cycles = SimpleNamespace(first=first, last=first + 50)
+    half = np.full((1, 10), 100.0)
+    amplitude = half.copy()
+    amplitude[0, far] = 70.0  # 60 of a range of 200 are drift
+    loops = SimpleNamespace(
+        peak_tension=half, valley_tension=-half, tension_amplitude=half, strain_amplitude=amplitude
+    )
+    (note,) = _drift("new", loops, 0, half[0], cycles)
+    assert note.severity == severity
+    assert note.numbers["n_far"] == len(far)
 
 
 def test_snap_loads_go_slack_and_a_line_that_stays_taut_is_named(notes_of):
