@@ -127,6 +127,20 @@ def test_cycles_of_two_periods_are_unlike(other, unlike):
     assert are_unlike(*spread) == unlike
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_a_dwell_in_which_noise_places_the_turn_is_no_other_period(seed):
+    pulse = np.concatenate([1 - np.cos(2 * np.pi * np.arange(25) / 25), np.zeros(25)])
+    pieces = [np.append(ramp(0, 8), np.tile(8 + half * pulse, 15)) for half in (1, 2, 3)]
+    *_, levels = levels_of(*pieces, noise=0.002, seed=seed)
+    assert [round(one.amplitude, 1) for one in levels] == [1, 2, 3]
+    control = np.concatenate([ramp(0, 8), np.tile(8 + pulse, 20)])
+    control += 0.002 * np.random.default_rng(seed).standard_normal(control.size)
+    time, cycles, _ = levels_of(control, noise=0.0)
+    *_, of_periods = spread_of_cycles(time, control, cycles)
+    # from turn to turn, 90 % of the periods differ by a factor of 1.6
+    assert of_periods == pytest.approx(1, abs=0.02)
+
+
 @pytest.mark.parametrize("rate", [0.6, 1.0, 2.0])
 def test_a_level_of_sines_does_not_begin_on_the_ramp_to_their_mean(rate):
     # the ramp goes on as a sine from its mean: about half a stroke of the first rise is no sine

@@ -20,6 +20,7 @@ from reduction.record.measurement import Floats
 from reduction.record.samples import take_samples
 from reduction.record.settings import Waveform
 from reduction.stages.cycles.cycle_product import Cycles
+from reduction.stages.cycles.periods import own_periods
 
 _STEP = 0.1  # of the range of a cycle: least change, of the mean or of the range, for a level
 
@@ -85,9 +86,9 @@ def find_levels(
 
     Notes
     -----
-    Mean, half range and period of each cycle are taken at its turns.  A *step* is a change of
-    the mean by a tenth of the range, of the range by a tenth or of the period by a quarter,
-    or by five times the scatter from cycle to cycle if that is more.  Neighbours
+    Mean and half range are taken at the turns, periods from flank to flank.  A *step* is a
+    change of the mean by a tenth of the range, of the range by a tenth or of the period by a
+    quarter, or by five times the scatter from cycle to cycle if that is more.  Neighbours
     that differ by less than half a step belong together; three or more such cycles are a run.  Two
     runs are two levels if the medians of the three cycles on both sides differ by a step, and
     by five times the change between the cycles beside them.  A ramp of the
@@ -286,5 +287,7 @@ def _of_cycles(time: Floats, values: Floats, cycles: Cycles) -> Floats:
     begin, peak, end = take_samples(values, turns)
     valley = (begin + end) / 2
     start, stop = take_samples(time, np.stack([cycles.first, cycles.last]))
+    # where a wave dwells, noise decides where it turns; not so from flank to flank
+    period, _ = own_periods(time, values, cycles, stop - start, noise=0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
-        return np.stack([(peak + valley) / 2, np.log((peak - valley) / 2), np.log(stop - start)])
+        return np.stack([(peak + valley) / 2, np.log((peak - valley) / 2), np.log(period)])
