@@ -484,8 +484,11 @@ def _name_of(model: StrainModel, log: str) -> str:
 def _with_readings(errors: InstrumentErrors, specimen: Specimen) -> InstrumentErrors:
     """Give a diameter without a stated error the uncertainty of the mean of its readings.
 
-    A stated area gets the error of the circle of the same area.
+    A stated area gets the error of the circle of the same area. A stated error of diameters is not
+    one of a specimen without a diameter.
     """
+    if not specimen.has_area:
+        return replace(errors, diameter=0.0)
     if specimen.cross_section:
         readings = 0 if errors.area else len(specimen.cross_section)
         share = errors.area or specimen.area_scatter / specimen.area

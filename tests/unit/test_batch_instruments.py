@@ -82,3 +82,14 @@ def test_a_name_says_specimen_method_and_the_test_whose_marks_they_are(log, meth
 def test_the_scale_of_a_displacement_reads_zero_at_its_reference_length(length, zero):
     errors = instruments_by("T-1", model_of("T-1", "gauge-length"), reference_length=length)
     assert errors.position_of_scale_zero == zero
+
+
+@pytest.mark.parametrize(("diameter", "error"), [((), 0.0), ((0.026,), 5e-5)])
+def test_a_stated_error_of_diameters_is_one_of_specimens_that_have_a_diameter(
+    monkeypatch, diameter, error
+):
+    """A rope without one, in a campaign with tethers, has no stress for it to change."""
+    new = Specimen("new", gauge_length=8.4, diameter=diameter)
+    monkeypatch.setattr(CAMPAIGN, "specimens", {"new": new})
+    monkeypatch.setattr(CAMPAIGN, "uncertainty", StatedErrors(diameter=5e-5))
+    assert instruments_by("T-1", model_of("T-1", "gauge-length")).diameter == error
