@@ -399,6 +399,9 @@ def _state_document(state: WorkingState) -> dict[str, Any]:
 
 _ASSEMBLY_ROWS = 16
 
+_LARGER = 1.1
+"""Ratio of amplitudes above which a test is one of larger cycles than the one asked for. [1]"""
+
 _KNOWN = float(coverage_factor(np.inf))
 """Coverage factor for a curve of many tests, without degrees of freedom. [1]"""
 
@@ -437,6 +440,7 @@ def deployed_line(path: Path) -> DeployedLine:
             tolerance=case.tolerance,
             rated_break_strength=strength,
             has_stated_splices=case.splices is not None,
+            loops=source.loops if "cyclic" in case.rule.precedence else (),
         )
     except DataError as error:
         # a level already includes its own place
@@ -573,6 +577,13 @@ def _stiffness_in_words(state: WorkingState, share: float, output: CommandOutput
         return f"no EA: no test covers {LEAST_COVER:.0%} of {span}"
     tests = ", ".join(f"{one.words} {per_newton * one.spring_constant:.4g}" for one in used)
     nearest = f", of which {state.nearest} is nearest in mean and amplitude" if used[1:] else ""
+    own = next(one for one in used if one.words == state.nearest)
+    amplitude = (own.high - own.low) / 2
+    if own.has_loop and amplitude > _LARGER * (state.high - state.low) / 2:
+        nearest += (
+            f"; {own.words} have an amplitude of {per_newton * amplitude:.4g} {force}: the interval"
+            " includes what its loop leaves open about a smaller cycle"
+        )
     return (
         f"EA {per_newton * state.secant_spring_constant:.4g} {force} over {span}, "
         f"{per_newton * state.least_spring_constant:.4g} to "

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -13,6 +15,7 @@ from reduction.archive.test_dataset import strain_model_of
 from reduction.archive.variables import read_notes, stored
 from reduction.lines.composite import (
     CurvePiece,
+    MeasuredLoop,
     PieceBranch,
     PieceSource,
     mean_piece,
@@ -127,6 +130,36 @@ def _steps(dataset: xr.Dataset, random: Floats) -> StepwiseResult:
     )
 
 
+def number_of(archive: xr.Dataset, name: str, place: int) -> float:
+    """Value of one specimen or hose; NaN where the archive has none."""
+    return float(archive.variables[name].values[place]) if name in archive else math.nan
+
+
+@dataclass(frozen=True)
+class Turns:
+    """Turning points of the mean cycle; NaN where not known."""
+
+    strain: tuple[float, float]
+    tension: tuple[float, float]
+
+
+def turns_of(archive: xr.Dataset, place: int) -> Turns:
+    """Turns of the mean cycle: K_ap over its strain range, about the middle of peaks and valleys.
+
+    Noise biases a measured peak, but not K_ap.
+    """
+    middle = number_of(archive, "alignment_strain", place)
+    if math.isnan(middle):
+        middle = number_of(archive, "test_mean_strain", place)
+    half = number_of(archive, "test_strain_amplitude", place)
+    level = math.nan
+    if "peak_tension" in archive:
+        ends = archive["peak_tension"].values[place] + archive["valley_tension"].values[place]
+        level = float(np.mean(ends[np.isfinite(ends)]) / 2) if np.isfinite(ends).any() else math.nan
+    pull = half * number_of(archive, "test_apparent_spring_constant", place)
+    return Turns((middle - half, middle + half), (level - pull, level + pull))
+
+
 _SAME = 1e-6
 """Relative difference within which two diameters are equal."""
 
@@ -179,6 +212,53 @@ def _pieces_of_test(
     return pieces
 
 
+_BUILT = 0.1
+"""Share of the stroke over which a loop widens whose branches are not in the archive. [1]"""
+
+
+def _loop_of_test(dataset: xr.Dataset, specimen: str, name: str) -> MeasuredLoop | None:
+    """Mean loop of a cyclic test; None where its stiffness or its width is not known."""
+    place = specimens_of(dataset).index(specimen)
+    turns = turns_of(dataset, place)
+    stiffness, error, energy = (
+        number_of(dataset, f"test_{quantity}", place)
+        for quantity in (
+            "apparent_spring_constant", "apparent_spring_constant_standard_uncertainty",
+            "hysteresis_energy",
+        )
+    )  # fmt: skip
+    strain, tension = np.array(turns.strain), np.array(turns.tension)
+    stroke = float(strain[1] - strain[0])
+    # a specimen that goes slack has another stiffness in a smaller cycle
+    if not (np.isfinite(tension).all() and tension[0] > 0 and strain[0] > 0 and stroke > 0):
+        return None
+    if "branch_tension" in dataset:
+        at = np.asarray(dataset["strain_bin"].values)
+        up, down = dataset["branch_tension"].values[place]
+        known = np.isfinite(up + down) & (at > strain[0]) & (at < strain[1])
+        if not known.any():
+            return None
+        distance = np.concatenate([at[known] - strain[0], strain[1] - at[known]])
+        width = np.tile((up - down)[known], 2)
+    elif energy >= 0:
+        # a loop of straight branches, of this energy
+        distance = np.array([_BUILT * stroke])
+        width = np.array([energy / stroke / (1 - _BUILT)])
+    else:
+        return None
+    order = np.argsort(distance)
+    distance, at_first = np.unique(distance[order], return_index=True)
+    width = np.maximum.reduceat(width[order], at_first)
+    return MeasuredLoop(
+        name=name,
+        strain=strain,
+        tension=tension,
+        distance=np.concatenate([[0.0], distance]),
+        width=np.concatenate([[0.0], np.maximum.accumulate(np.maximum(width, 0.0))]),
+        relative_uncertainty=error / stiffness if error > 0 else 0.0,
+    )
+
+
 def source_of_tests(
     datasets: Sequence[xr.Dataset], specimen: str, *, branch: PieceBranch
 ) -> PieceSource:
@@ -193,6 +273,7 @@ def source_of_tests(
     wholes = {str(one.attrs.get("test", "")) for one in own}
     one_campaign = len({str(one.attrs.get("campaign", "")) for one in own}) == 1
     pieces: list[CurvePiece] = []
+    loops: list[MeasuredLoop] = []
     piece_sources: list[str] = []
     notes = [f"of other specimens: {', '.join(others)}"] if others else []
     for one in own:
@@ -202,6 +283,9 @@ def source_of_tests(
             notes.append(f"{test} is left out: it is a part of {whole}")
             continue
         found = _pieces_of_test(one, specimen, branch=branch, name=test)
+        loop = _loop_of_test(one, specimen, test) if branch == "mean" else None
+        if loop is not None:
+            loops.append(loop)
         if not found:
             notes.append(f"{test} ({one.attrs.get('test_kind', 'unknown')}) has no {branch} curve")
             continue
@@ -247,6 +331,7 @@ def source_of_tests(
         piece_sources=tuple(piece_sources),
         notes=tuple(notes),
         is_synthetic=any(one.attrs.get("synthetic") == "yes" for one in own),
+        loops=tuple(loops),
     )
 
 

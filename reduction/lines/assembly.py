@@ -28,10 +28,16 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reduction.lines.composite import CompositeCurve, PieceSource, curve_of_piece
+from reduction.lines.composite import (
+    CompositeCurve,
+    MeasuredLoop,
+    PieceSource,
+    curve_of_piece,
+)
 from reduction.lines.cycle_stiffness import (
     LEAST_COVER,
     CycleStiffness,
+    LineLoop,
     LoadedTest,
     stiffness_of_cycles,
 )
@@ -634,6 +640,8 @@ class _StiffnessOfTest:
         Share of the cycle between these loads. [1]
     spring_constant, standard_uncertainty : float
         EA over the loads common to all tests used; NaN where the test is not used. [N]
+    has_loop : bool
+        Whether ``low`` and ``high`` are the turns of its cycles.
     """
 
     words: str
@@ -642,6 +650,7 @@ class _StiffnessOfTest:
     covered: float
     spring_constant: float
     standard_uncertainty: float
+    has_loop: bool
 
 
 @dataclass(frozen=True)
@@ -798,8 +807,12 @@ def deploy(
     tolerance: float = float("nan"),
     rated_break_strength: float = float("nan"),
     has_stated_splices: bool = False,
+    loops: Sequence[MeasuredLoop] = (),
 ) -> _DeployedAssembly:
-    """Put tethers side by side and parts in line, and find the working states."""
+    """Put tethers side by side and parts in line, and find the working states.
+
+    ``loops`` are those of the cyclic tests whose stiffness may be used.
+    """
     first = free_lengths[0] if free_lengths else None
     tether = _Tether(curve, _deployed_model(model, first), is_stated=has_stated_splices)
     alike = len(set(free_lengths)) < 2
@@ -807,7 +820,7 @@ def deploy(
     assembly = _assemble(tethers, parts)
     slack = float(assembly.total_length[0])
     lengths = tuple(one.model.relaxed_length for one in tethers)
-    tests = _loaded_tests(tethers, parts)
+    tests = _loaded_tests(tethers, parts, loops)
     states = []
     for number, level in enumerate(levels, start=1):
         try:
@@ -833,15 +846,22 @@ def deploy(
 
 
 def _loaded_tests(
-    tethers: Sequence[_Tether], parts: Sequence[SeriesPart]
+    tethers: Sequence[_Tether], parts: Sequence[SeriesPart], loops: Sequence[MeasuredLoop]
 ) -> tuple[LoadedTest, ...]:
     """The assembly for each test alone, over the loads of that test.
 
     Notes
     -----
     A test is left out where tethers are so unequal that no length keeps all of them in its range.
+    Cycles without a curve (of a rope without a diameter) are a straight line from turn to turn.
     """
-    found = []
+    of_lines = {one.words: _loop_of_line(tethers, parts, one) for one in loops}
+    drawn = {piece.words for piece in tethers[0].curve.pieces}
+    found = [
+        _straight_test(one, of_lines[one.words])
+        for one in loops
+        if one.words not in drawn and of_lines[one.words].stroke > 0
+    ]
     for piece in tethers[0].curve.pieces:
         own = curve_of_piece(piece)
         try:
@@ -862,9 +882,56 @@ def _loaded_tests(
                 contribution=assembly.contribution[:, inside],
                 low=float(assembly.tension[inside[0]]),
                 high=float(assembly.tension[-1]),
+                loop=of_lines.get(piece.words),
             )
         )
     return tuple(found)
+
+
+def _loop_of_line(
+    tethers: Sequence[_Tether], parts: Sequence[SeriesPart], loop: MeasuredLoop
+) -> LineLoop:
+    """Loop of the assembly where its tethers have the loop of a test.
+
+    Parts in line are springs: they lengthen the stroke, and at one length of the assembly the loop
+    is narrower by their share in its compliance.
+    """
+    load = len(tethers) * loop.tension
+    own = np.mean(
+        [position_by_model(one.model, strain=loop.strain, tension=loop.tension) for one in tethers],
+        axis=0,
+    )
+    more = np.sum([part.length_at(load) for part in parts], axis=0) if parts else np.zeros(2)
+    stroke, stretch = float(own[1] - own[0]), float(more[1] - more[0])
+    rise, width = float(load[1] - load[0]), len(tethers) * loop.width
+    # stiffness of the tethers within the branches, and compliance of the parts
+    narrower = 1 + (rise - width[-1]) / stroke * stretch / rise
+    return LineLoop(
+        low=float(load[0]),
+        high=float(load[1]),
+        stroke=stroke + stretch,
+        distance=loop.distance * (stroke + stretch) / float(loop.strain[1] - loop.strain[0]),
+        width=width / narrower,
+    )
+
+
+def _straight_test(loop: MeasuredLoop, of_line: LineLoop) -> LoadedTest:
+    """Cycles of which the archive has no curve: straight branches within their turns."""
+    rise = of_line.high - of_line.low
+    # turns are off the middle of the branches by half the width of the loop
+    length = of_line.stroke * rise / (rise - float(of_line.width[-1]))
+    error = loop.relative_uncertainty * rise / np.sqrt(2)
+    return LoadedTest(
+        words=loop.words,
+        kind="cyclic",
+        length=np.array([0.0, length]),
+        tension=np.array([of_line.low, of_line.high]),
+        random_standard_uncertainty=np.full(2, error),
+        contribution=np.empty((0, 2)),
+        low=of_line.low,
+        high=of_line.high,
+        loop=of_line,
+    )
 
 
 def _span_loads(assembly: _AssemblyCurve, length: Floats) -> tuple[Floats, Floats]:
@@ -908,9 +975,9 @@ def _state(
     found = stiffness_of_cycles(tests, low, high, slack_length=slack)
     said = tuple(
         _StiffnessOfTest(
-            one.words, one.low, one.high, float(found.covered[place, 0]),
+            one.words, *one.cycle, float(found.covered[place, 0]),
             float(found.test_spring_constant[place, 0]),
-            float(found.test_standard_uncertainty[place, 0]),
+            float(found.test_standard_uncertainty[place, 0]), one.loop is not None,
         )
         for place, one in enumerate(tests)
     )  # fmt: skip
@@ -920,7 +987,10 @@ def _state(
     )
     joined = _curve_spring_constant(assembly, common_low, common_high)
     half = slack * level.tension_amplitude / value
-    of_slope = _doubts_of_slope(said, joined, least, greatest)
+    pieces = [piece.words for piece in tether.curve.pieces]
+    of_slope = _doubts_of_slope(
+        said, joined, float(found.curve_least[0]), float(found.curve_greatest[0]), pieces
+    )
     of_mean = [tether.curve.doubt] if _is_far(assembly, tether.curve, low, high) else []
     if has_cycle:
         gap = [] if point.is_tested else ["no test reaches a part of the cycle"]
@@ -978,9 +1048,13 @@ _LITTLE = 0.1
 
 
 def _doubts_of_slope(
-    tests: Sequence[_StiffnessOfTest], joined: float, least: float, greatest: float
+    tests: Sequence[_StiffnessOfTest],
+    joined: float,
+    least: float,
+    greatest: float,
+    pieces: Sequence[str],
 ) -> list[str]:
-    """Why EA of a cycle is unknown, or why EA of the curve differs from that of its tests."""
+    """Why EA of a cycle is unknown, or why EA of the curve differs from that of the tests."""
     if not np.isfinite(least):
         nearest = sorted(tests, key=lambda one: -one.covered)[:_NEAREST_NAMED]
         names = ", ".join(f"{one.words} {one.covered:.0%}" for one in nearest if one.covered > 0)
@@ -990,12 +1064,17 @@ def _doubts_of_slope(
         ]
     if (1 - _LITTLE) * least <= joined <= (1 + _LITTLE) * greatest:
         return []
-    names = " and ".join(one.words for one in tests if np.isfinite(one.spring_constant))
+    used = [one.words for one in tests if np.isfinite(one.spring_constant)]
     nearer = least if joined < least else greatest
+    why = (
+        "the curve joins tests in different states"
+        if set(used) <= set(pieces)
+        else f"the curve is of {' and '.join(pieces)}"
+    )
     return [
-        f"over the loads of {names} the slope of the curve is {joined / nearer:.3g} of the "
-        f"{'lowest' if joined < least else 'highest'} EA of the tests, because the curve joins "
-        "tests in different states: use its tension, not its slope"
+        f"over the loads of {' and '.join(used)} the slope of the curve is {joined / nearer:.3g} of"
+        f" the {'lowest' if joined < least else 'highest'} EA of the tests, because {why}: use its"
+        " tension, not its slope"
     ]
 
 

@@ -1010,6 +1010,38 @@ def _slopes(strain: Floats, tension: Floats, first: Integers, last: Integers) ->
 
 
 @dataclass(frozen=True)
+@read_only_arrays
+class MeasuredLoop:
+    """Mean loop of the cycles of a test, of one specimen.
+
+    Parameters
+    ----------
+    name : str
+        Test.
+    strain, tension : ndarray, shape (2,)
+        At the lower and the upper turn. [1], [N]
+    distance : ndarray, shape (n,)
+        From either turn; increasing, from zero. [1]
+    width : ndarray, shape (n,)
+        Greatest difference of tension between the branches up to there. [N]
+    relative_uncertainty : float
+        Standard uncertainty of the spring constant between the turns. [1]
+    """
+
+    name: str
+    strain: Floats
+    tension: Floats
+    distance: Floats
+    width: Floats
+    relative_uncertainty: float
+
+    @property
+    def words(self) -> str:
+        """As the words of the piece of these cycles."""
+        return f"{self.name} {_KIND_WORDS['cyclic']}"
+
+
+@dataclass(frozen=True)
 class PieceSource:
     """Pieces of one line or tether.
 
@@ -1035,6 +1067,8 @@ class PieceSource:
         Parts that were left out, and other remarks.
     is_synthetic : bool
         Nothing was tested: the numbers are synthetic.
+    loops : tuple of MeasuredLoop
+        Of its cyclic tests, also of those without a curve.
     """
 
     name: str
@@ -1049,6 +1083,7 @@ class PieceSource:
     piece_sources: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
     is_synthetic: bool = False
+    loops: tuple[MeasuredLoop, ...] = ()
 
 
 def used_of(source: PieceSource, curve: CompositeCurve) -> PieceSource:

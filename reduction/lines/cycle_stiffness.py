@@ -11,12 +11,25 @@ less its expanded uncertainty to the greatest EA_i plus it.
 A curve that joins tests of different states keeps the tension continuous, but where it changes from
 one test to the next it has the stiffness of neither: its slope is not used.
 
+The chord of a mean curve lacks what the loop adds: the cycle of a test has its K_ap, and a smaller
+cycle, whose loop was not measured, is stiffer [3]_.  With the chord c over the loads of a cycle,
+the width w(x) of the loop at the distance x from its turns and the rise T_2 - T_1 of the cycle,
+
+.. math:: c + (K_{ap} - c_{whole}) \le EA_i \le L_0 \, \frac{T_2 - T_1}{x}, \qquad
+    T_2 - T_1 = \frac{c}{L_0} x + w(x)
+
+The lower end is that of a loss in proportion to the amplitude (linear viscoelastic), the upper end
+that of friction, whose branches after a turn are the same in all cycles (Masing's rule).  EA_i is
+the middle of both, and its interval reaches from one to the other.
+
 References
 ----------
 .. [1] D. Shepard, "A two-dimensional interpolation function for irregularly-spaced data," Proc.
    23rd ACM National Conf., 1968, pp. 517-524 (weights by the inverse square of the distance).
 .. [2] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
    in measurement," 5.1, 5.2.
+.. [3] G. Masing, "Eigenspannungen und Verfestigung beim Messing," Proc. 2nd Int. Congr. Applied
+   Mechanics, Zurich, 1926, pp. 332-335.
 """
 
 from __future__ import annotations
@@ -38,6 +51,30 @@ _ROUNDING = 1e-9
 
 @dataclass(frozen=True)
 @read_only_arrays
+class LineLoop:
+    """Loop of a line in the cycles of a test.
+
+    Parameters
+    ----------
+    low, high : float
+        Tensions at the turns. [N]
+    stroke : float
+        Difference of length between the turns. [m]
+    distance : ndarray, shape (n,)
+        From either turn; increasing, from zero. [m]
+    width : ndarray, shape (n,)
+        Greatest difference of tension between the branches up to there. [N]
+    """
+
+    low: float
+    high: float
+    stroke: float
+    distance: Floats
+    width: Floats
+
+
+@dataclass(frozen=True)
+@read_only_arrays
 class LoadedTest:
     """Length of a line against its tension in one test; arrays have the shape (n,).
 
@@ -55,6 +92,8 @@ class LoadedTest:
         Signed contribution of each shared error to the tension at one length. [N]
     low, high : float
         Loads between which it was tested. [N]
+    loop : LineLoop, optional
+        Of the mean curve of cycles, where known.
     """
 
     words: str
@@ -65,6 +104,12 @@ class LoadedTest:
     contribution: Floats
     low: float
     high: float
+    loop: LineLoop | None = None
+
+    @property
+    def cycle(self) -> tuple[float, float]:
+        """Loads at its turns, or of its curve where it has no loop. [N]."""
+        return (self.low, self.high) if self.loop is None else (self.loop.low, self.loop.high)
 
 
 @dataclass(frozen=True)
@@ -86,6 +131,9 @@ class CycleStiffness:
         Share of the cycle that each test reaches. [1]
     test_spring_constant, test_standard_uncertainty : ndarray, shape (n_tests, n)
         EA of each test used. [N]
+    curve_least, curve_greatest : ndarray, shape (n,)
+        As ``least`` and ``greatest``, of the curves of the tests without their loops: what the
+        slope of a curve can be compared with. [N]
     """
 
     spring_constant: Floats
@@ -97,6 +145,8 @@ class CycleStiffness:
     covered: Floats
     test_spring_constant: Floats
     test_standard_uncertainty: Floats
+    curve_least: Floats
+    curve_greatest: Floats
 
 
 def stiffness_of_cycles(
@@ -163,6 +213,7 @@ def stiffness_of_cycles(
     last = np.where(is_used, end, np.inf).min(axis=0, initial=np.inf)
     first, last = np.where(is_known, first, np.nan), np.where(is_known, last, np.nan)
     spring, spread = np.full(shape, np.nan), np.full(shape, np.nan)
+    least_of_loop, most_of_loop = np.zeros(shape), np.zeros(shape)
     for place, one in enumerate(tests):
         own = is_used[place]
         loads = first[own], last[own]
@@ -173,27 +224,69 @@ def stiffness_of_cycles(
         ]
         spring[place, own] = rise * by
         spread[place, own] = np.linalg.norm(errors, axis=0) * by
-    apart = _distance(ends, valley, peak)
+        if one.loop is not None:
+            least_of_loop[place, own], most_of_loop[place, own] = _of_loop(
+                one, one.loop, spring[place, own], valley[own], peak[own], slack_length
+            )
+            # what changes the stiffness of the curve changes that of the whole cycle as much
+            spread[place, own] *= 1 + least_of_loop[place, own] / spring[place, own]
+    cycles = np.array([one.cycle for one in tests]).reshape(-1, 2, 1)
+    apart = _distance(cycles, valley, peak)
     weight = np.where(is_used, apart**-2, 0.0)
     factor = float(coverage_factor(np.inf))
     with np.errstate(invalid="ignore", divide="ignore"):
-        value = np.nansum(weight * spring, axis=0) / weight.sum(axis=0)
-    low_end = np.where(is_used, spring - factor * spread, np.inf).min(axis=0, initial=np.inf)
-    high_end = np.where(is_used, spring + factor * spread, -np.inf).max(axis=0, initial=-np.inf)
+        of_test = spring + (least_of_loop + most_of_loop) / 2
+        value = np.nansum(weight * of_test, axis=0) / weight.sum(axis=0)
+
+    def interval(more: Floats, most: Floats) -> tuple[Floats, Floats]:
+        low = np.where(is_used, spring + more - factor * spread, np.inf).min(0, initial=np.inf)
+        high = np.where(is_used, spring + most + factor * spread, -np.inf).max(0, initial=-np.inf)
+        return (
+            np.where(is_known, np.maximum(low, 0.0), np.nan), np.where(is_known, high, np.nan),
+        )  # fmt: skip
+
+    none = np.zeros(shape)
+    least, greatest = interval(least_of_loop, most_of_loop)
+    curve_least, curve_greatest = interval(none, none)
     nearest = (
         np.where(is_used, apart, np.inf).argmin(axis=0) if tests else np.zeros(valley.size, int)
     )
     return CycleStiffness(
         spring_constant=value,
-        least=np.where(is_known, np.maximum(low_end, 0.0), np.nan),
-        greatest=np.where(is_known, high_end, np.nan),
+        least=least,
+        greatest=greatest,
         low=first,
         high=last,
         nearest=np.where(is_known, nearest, -1),
         covered=covered,
-        test_spring_constant=spring,
-        test_standard_uncertainty=spread,
+        test_spring_constant=of_test,
+        test_standard_uncertainty=np.hypot(spread, (most_of_loop - least_of_loop) / np.sqrt(12)),
+        curve_least=curve_least,
+        curve_greatest=curve_greatest,
     )
+
+
+def _of_loop(
+    test: LoadedTest,
+    loop: LineLoop,
+    chord: Floats,
+    valley: Floats,
+    peak: Floats,
+    slack_length: float,
+) -> tuple[Floats, Floats]:
+    """What a loop adds at least and at most to the chords of its mean curve. [N]."""
+    whole = slack_length * (loop.high - loop.low) / loop.stroke
+    middle = slack_length * (test.high - test.low) / (test.length[-1] - test.length[0])
+    least = np.full(chord.size, max(whole - middle, 0.0))
+    # a cycle beyond the turns has at least the stroke of the test
+    rise = np.minimum(peak, loop.high) - np.maximum(valley, loop.low)
+    most = np.empty(chord.size)
+    for place, (slope, own) in enumerate(zip(chord / slack_length, rise, strict=True)):
+        pulled = slope * loop.distance + loop.width
+        far = loop.distance[-1] + max(own - pulled[-1], 0.0) / slope
+        at = far if own > pulled[-1] else np.interp(own, pulled, loop.distance)
+        most[place] = slack_length * own / at - chord[place]
+    return least, np.maximum(most, least)
 
 
 def _first_kind_that_covers(tests: Sequence[LoadedTest], is_enough: Bools) -> Bools:

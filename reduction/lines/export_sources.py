@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -24,7 +24,14 @@ from numpy.typing import NDArray
 from reduction.archive.open import reading
 from reduction.archive.product_files import failure_words
 from reduction.archive.variables import stored
-from reduction.lines.archive_pieces import alignment_words, check_words, parts_of
+from reduction.lines.archive_pieces import (
+    Turns,
+    alignment_words,
+    check_words,
+    number_of,
+    parts_of,
+    turns_of,
+)
 from reduction.lines.assembly import DeployedLine
 from reduction.lines.composite import CompositeCurve, PieceSource, tests_of_curve, used_of
 from reduction.lines.cycle_stiffness import LoadedTest, stiffness_of_cycles
@@ -126,10 +133,6 @@ def _place(archive: xr.Dataset, dim: str, name: str | None) -> int:
     return names.index(name)
 
 
-def _number(archive: xr.Dataset, name: str, place: int) -> float:
-    return float(archive.variables[name].values[place]) if name in archive else math.nan
-
-
 def _of_hose(archive: xr.Dataset, name: str | None) -> dict[str, Any]:
     place = _place(archive, "hose", name)
     strain, tension = (
@@ -148,7 +151,7 @@ def _of_hose(archive: xr.Dataset, name: str | None) -> dict[str, Any]:
         **_rising(strain, tension),
         "curve": "predicted from construction, up to the break of the cords",
         "tested": (math.nan, math.nan),
-        "diameter": _number(archive, "outer_diameter", place),
+        "diameter": number_of(archive, "outer_diameter", place),
         "notes": ("a prediction: the range is that of the theory",),
     }
 
@@ -199,7 +202,7 @@ def _of_test(archive: xr.Dataset, curve: CurveName, name: str | None) -> dict[st
     if spread is not None and spread.random is None:
         notes.append(_NOT_APART)
     if curve == "mean":
-        turns = _turns(archive, place)
+        turns = turns_of(archive, place)
         strain, tension, added = _to_turns(strain, tension, turns)
         if added.any():
             spread = None if spread is None else _with_ends(spread, added)
@@ -223,10 +226,10 @@ def _of_test(archive: xr.Dataset, curve: CurveName, name: str | None) -> dict[st
         "curve": words,
         "tested": tested,
         "turns": (float(strain[0]), float(strain[-1])),
-        "diameter": _number(archive, "diameter", place),
-        "rated_break_strength": _number(archive, "rated_break_strength", place),
-        "linear_density": _number(archive, "linear_density", place),
-        "wet_linear_density": _number(archive, "wet_linear_density", place),
+        "diameter": number_of(archive, "diameter", place),
+        "rated_break_strength": number_of(archive, "rated_break_strength", place),
+        "linear_density": number_of(archive, "linear_density", place),
+        "wet_linear_density": number_of(archive, "wet_linear_density", place),
         "material": (
             str(archive.variables["specimen_material"].values[place])
             if "specimen_material" in archive
@@ -239,7 +242,7 @@ def _of_test(archive: xr.Dataset, curve: CurveName, name: str | None) -> dict[st
 def _damping_of(archive: xr.Dataset, place: int) -> CycleDamping | None:
     """Dashpot of the cycles of a test; None where the energy of their loop is not known."""
     energy, frequency, amplitude, uncertainty, stiffness = (
-        _number(archive, name, place)
+        number_of(archive, name, place)
         for name in (
             "test_hysteresis_energy",
             "test_frequency",
@@ -253,31 +256,6 @@ def _damping_of(archive: xr.Dataset, place: int) -> CycleDamping | None:
     return cycle_damping(energy, frequency, amplitude, uncertainty, stiffness)
 
 
-@dataclass(frozen=True)
-class _Turns:
-    """Turning points of the mean cycle; NaN where not known."""
-
-    strain: tuple[float, float]
-    tension: tuple[float, float]
-
-
-def _turns(archive: xr.Dataset, place: int) -> _Turns:
-    """Turns of the mean cycle: K_ap over its strain range, about the middle of peaks and valleys.
-
-    Noise biases a measured peak, but not K_ap.
-    """
-    middle = _number(archive, "alignment_strain", place)
-    if math.isnan(middle):
-        middle = _number(archive, "test_mean_strain", place)
-    half = _number(archive, "test_strain_amplitude", place)
-    level = math.nan
-    if "peak_tension" in archive:
-        ends = archive["peak_tension"].values[place] + archive["valley_tension"].values[place]
-        level = float(np.mean(ends[np.isfinite(ends)]) / 2) if np.isfinite(ends).any() else math.nan
-    pull = half * _number(archive, "test_apparent_spring_constant", place)
-    return _Turns((middle - half, middle + half), (level - pull, level + pull))
-
-
 # share of the range of the curve, at each end: for a sinusoidal load and a loss factor of 0.5, a
 # third of the range, where one or the other branch has been trimmed
 _FARTHEST = 0.5
@@ -286,7 +264,7 @@ _SHORT = 0.02  # share of the range of a cycle that a curve may lack at its uppe
 
 
 def _to_turns(
-    strain: Floats, tension: Floats, turns: _Turns
+    strain: Floats, tension: Floats, turns: Turns
 ) -> tuple[Floats, Floats, NDArray[np.int64]]:
     """A mean curve continued to the turns of the cycles, and the number of points added.
 
@@ -299,7 +277,7 @@ def _to_turns(
     A parabola from 1 to 2 whose cycles turn at 0.9 and 2.1.
 
     >>> strain = np.linspace(1, 2, 21)
-    >>> longer, tension, added = _to_turns(strain, strain**2, _Turns((0.9, 2.1), (0.81, 4.41)))
+    >>> longer, tension, added = _to_turns(strain, strain**2, Turns((0.9, 2.1), (0.81, 4.41)))
     >>> print(longer[[0, -1]], tension[[0, -1]].round(6), added)
     [0.9 2.1] [0.81 4.41] [1 1]
     """
@@ -525,7 +503,9 @@ def _stiffness_notes(
         return f"{named[place][0]} {value} N ({first} to {last}), table {table} N, {loads} N"
 
     said = ["EA of the tests, 95 %, beside that of this table: " + "; ".join(map(words, known))]
-    is_off = (own < (1 - _ON_GRID) * found.least) | (own > (1 + _ON_GRID) * found.greatest)
+    # a table has no loop: it is compared with the curves of the tests without theirs
+    least, greatest = found.curve_least, found.curve_greatest
+    is_off = (own < (1 - _ON_GRID) * least) | (own > (1 + _ON_GRID) * greatest)
     off = [
         f"{named[place][0]} ({own[place] / found.spring_constant[place]:.2g} of it)"
         for place in known

@@ -5,7 +5,8 @@ from predicted_hoses import dataset, predicted
 
 from reduction.archive.dataset_builder import SCHEMA_VERSION
 from reduction.archive.write import write_archive
-from reduction.lines.export_sources import _to_turns, _Turns, line_from_archive
+from reduction.lines.archive_pieces import Turns
+from reduction.lines.export_sources import _to_turns, line_from_archive
 from reduction.record.errors import ArchiveError, DataError, SettingsError
 
 STRAIN = np.linspace(0.1, 1.0, 10)
@@ -170,7 +171,7 @@ def test_the_mean_curve_of_a_lossy_cycle_in_load_has_the_stiffness_of_the_cycle(
     mean = [np.interp(shared, *(one[np.argsort(way)] for one in (way, load)))
             for way, load in ((rise, np.sin(phase)), (fall, np.sin(np.pi - phase)))]  # fmt: skip
     longer, tension, added = _to_turns(
-        shared, np.mean(mean, axis=0), _Turns((-1.0, 1.0), (-1.0, 1.0))
+        shared, np.mean(mean, axis=0), Turns((-1.0, 1.0), (-1.0, 1.0))
     )
     assert added.tolist() == [1, 1]
     assert np.ptp(tension) / np.ptp(longer) == pytest.approx(1.0)
