@@ -216,7 +216,7 @@ _BUILT = 0.1
 """Share of the stroke over which a loop widens whose branches are not in the archive. [1]"""
 
 
-def _loop_of_test(dataset: xr.Dataset, specimen: str, name: str) -> MeasuredLoop | None:
+def loop_of_test(dataset: xr.Dataset, specimen: str, name: str) -> MeasuredLoop | None:
     """Mean loop of a cyclic test; None where its stiffness or its width is not known."""
     place = specimens_of(dataset).index(specimen)
     turns = turns_of(dataset, place)
@@ -283,7 +283,7 @@ def source_of_tests(
             notes.append(f"{test} is left out: it is a part of {whole}")
             continue
         found = _pieces_of_test(one, specimen, branch=branch, name=test)
-        loop = _loop_of_test(one, specimen, test) if branch == "mean" else None
+        loop = loop_of_test(one, specimen, test) if branch == "mean" else None
         if loop is not None:
             loops.append(loop)
         if not found:

@@ -44,7 +44,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from reduction.lines.cycle_stiffness import LoadedTest
+from reduction.lines.cycle_stiffness import LineLoop, LoadedTest
 from reduction.quantities.flags import BRANCH_VALUES
 from reduction.quantities.names import BRANCH_NAMES
 from reduction.record.arrays import as_finite, as_increasing, as_same_shape
@@ -1040,6 +1040,12 @@ class MeasuredLoop:
         """As the words of the piece of these cycles."""
         return f"{self.name} {_KIND_WORDS['cyclic']}"
 
+    def of_line(self) -> LineLoop:
+        """Loop of a line of the specimen, 1 m long at zero strain."""
+        low, high = self.tension.tolist()
+        stroke = float(self.strain[1] - self.strain[0])
+        return LineLoop(low, high, stroke, self.distance, self.width)
+
 
 @dataclass(frozen=True)
 class PieceSource:
@@ -1146,9 +1152,10 @@ def curve_of_piece(piece: CurvePiece) -> CompositeCurve:
     return _composite_curve((piece,), rule=CompositeRule(precedence=(piece.kind,)))
 
 
-def tests_of_curve(curve: CompositeCurve) -> tuple[LoadedTest, ...]:
-    """Each piece of a curve as a separate line, 1 m long at zero tension."""
+def tests_of_curve(curve: CompositeCurve, loops: Sequence[MeasuredLoop]) -> tuple[LoadedTest, ...]:
+    """Each piece of a curve as a separate line, 1 m long at zero tension, with its loop."""
     found = []
+    of_lines = {one.words: one.of_line() for one in loops}
     for piece in curve.pieces:
         own = curve_of_piece(piece)
         inside = own.strain >= piece.strain[0]
@@ -1162,6 +1169,7 @@ def tests_of_curve(curve: CompositeCurve) -> tuple[LoadedTest, ...]:
                 contribution=own.contribution[:, inside],
                 low=float(own.tension[inside][0]),
                 high=float(own.tension[-1]),
+                loop=of_lines.get(piece.words),
             )
         )
     return tuple(found)

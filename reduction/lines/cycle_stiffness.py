@@ -13,10 +13,11 @@ one test to the next it has the stiffness of neither: its slope is not used.
 
 The chord of a mean curve lacks what the loop adds: the cycle of a test has its K_ap, and a smaller
 cycle, whose loop was not measured, is stiffer [3]_.  With the chord c over the loads of a cycle,
-the width w(x) of the loop at the distance x from its turns and the rise T_2 - T_1 of the cycle,
+the width w(x) of the loop at the distance x from its turns, the rise T_2 - T_1 of the cycle, and
+the share s of a chord that is left without the loop (of the whole: that of its rise less w),
 
 .. math:: c + (K_{ap} - c_{whole}) \le EA_i \le L_0 \, \frac{T_2 - T_1}{x}, \qquad
-    T_2 - T_1 = \frac{c}{L_0} x + w(x)
+    T_2 - T_1 = \frac{s c}{L_0} x + w(x)
 
 The lower end is that of a loss in proportion to the amplitude (linear viscoelastic), the upper end
 that of friction, whose branches after a turn are the same in all cycles (Masing's rule).  EA_i is
@@ -278,10 +279,13 @@ def _of_loop(
     whole = slack_length * (loop.high - loop.low) / loop.stroke
     middle = slack_length * (test.high - test.low) / (test.length[-1] - test.length[0])
     least = np.full(chord.size, max(whole - middle, 0.0))
+    # the mean curve near its ends belongs to both branches: without the loop, the whole has less
+    bare = np.minimum(slack_length * (loop.high - loop.low - loop.width[-1]) / loop.stroke, middle)
+    slopes = chord * bare / middle / slack_length
     # a cycle beyond the turns has at least the stroke of the test
     rise = np.minimum(peak, loop.high) - np.maximum(valley, loop.low)
     most = np.empty(chord.size)
-    for place, (slope, own) in enumerate(zip(chord / slack_length, rise, strict=True)):
+    for place, (slope, own) in enumerate(zip(slopes, rise, strict=True)):
         pulled = slope * loop.distance + loop.width
         far = loop.distance[-1] + max(own - pulled[-1], 0.0) / slope
         at = far if own > pulled[-1] else np.interp(own, pulled, loop.distance)

@@ -28,12 +28,19 @@ from reduction.lines.archive_pieces import (
     Turns,
     alignment_words,
     check_words,
+    loop_of_test,
     number_of,
     parts_of,
     turns_of,
 )
 from reduction.lines.assembly import DeployedLine
-from reduction.lines.composite import CompositeCurve, PieceSource, tests_of_curve, used_of
+from reduction.lines.composite import (
+    CompositeCurve,
+    MeasuredLoop,
+    PieceSource,
+    tests_of_curve,
+    used_of,
+)
 from reduction.lines.cycle_stiffness import LoadedTest, stiffness_of_cycles
 from reduction.lines.export_dynamics import line_dynamics
 from reduction.lines.export_line import (
@@ -203,7 +210,11 @@ def _of_test(archive: xr.Dataset, curve: CurveName, name: str | None) -> dict[st
         notes.append(_NOT_APART)
     if curve == "mean":
         turns = turns_of(archive, place)
+        branches_only = strain, tension
         strain, tension, added = _to_turns(strain, tension, turns)
+        notes += _smaller_cycle(
+            loop_of_test(archive, specimen, specimen), *branches_only, strain, tension
+        )
         if added.any():
             spread = None if spread is None else _with_ends(spread, added)
             notes.append(
@@ -484,7 +495,7 @@ def _stiffness_notes(
     Each test is a cycle of its own loads; both EA are taken over the loads common to the tests that
     cover it.
     """
-    named = list((cycles or {}).items()) + [(one.words, (one.low, one.high)) for one in tests]
+    named = list((cycles or {}).items()) + [(one.words, one.cycle) for one in tests]
     # a mean of tests may end below the loads of one of them
     low, high = np.minimum(np.array([loads for _, loads in named]).reshape(-1, 2).T, tension[-1])
     found = stiffness_of_cycles(tests, low, high, slack_length=float(length[0]))
@@ -518,6 +529,71 @@ def _stiffness_notes(
             " of a cycle, export only the tests at its mean"
         )
     return said
+
+
+_SMALLER = 0.5  # of the amplitude of the test
+
+_SOFTER = 1.1  # stiffest cycle that a loop leaves open, over the slope of its mean curve
+
+
+def _smaller_cycle(
+    loop: MeasuredLoop | None,
+    branch_strain: Floats,
+    branch_tension: Floats,
+    strain: Floats,
+    tension: Floats,
+) -> list[str]:
+    """What the loop of a test leaves open about cycles of half its amplitude, beside the table."""
+    if loop is None:
+        return []
+    mean = LoadedTest(
+        words=loop.words,
+        kind="cyclic",
+        length=1 + branch_strain,
+        tension=branch_tension,
+        random_standard_uncertainty=0 * branch_strain,
+        contribution=np.empty((0, branch_strain.size)),
+        low=float(branch_tension[0]),
+        high=float(branch_tension[-1]),
+        loop=loop.of_line(),
+    )
+    middle, half = loop.tension.mean(), _SMALLER * np.ptp(loop.tension) / 2
+    loads = np.array([middle - half, middle + half])
+    if np.any(np.diff(branch_tension) <= 0):
+        return []
+    found = stiffness_of_cycles([mean], loads[:1], loads[1:], slack_length=1.0)
+    least, greatest = float(found.least[0]), float(found.greatest[0])
+    table = float(np.diff(loads)[0] / np.diff(np.interp(loads, tension, strain))[0])
+    if not greatest > _SOFTER * table:
+        return []
+    return [
+        "smaller cycles are stiffer than this curve, which is the middle of a loop: at half the"
+        f" tension amplitude of the test the loop leaves EA between {plain_number(least, 3)} and"
+        f" {plain_number(greatest, 3)} N, the curve has {plain_number(table, 3)} N; a test at that"
+        " amplitude would show it"
+    ]
+
+
+def _cycles_without_a_curve(source: PieceSource, curve: CompositeCurve) -> list[str]:
+    """K_ap of cyclic tests that are no part of the curve, beside its EA over their loads."""
+    drawn = {piece.words for piece in curve.pieces}
+    said = []
+    for one in source.loops:
+        low, high = one.tension.tolist()
+        if one.words in drawn or high > curve.tension[-1]:
+            continue
+        ends = np.interp(one.tension, curve.tension, curve.strain)
+        own, table = (
+            plain_number(float((high - low) / (at[1] - at[0])), 4) for at in (one.strain, ends)
+        )
+        said.append(
+            f"{one.words} {own} N, table {table} N, {plain_number(low, 4)} to"
+            f" {plain_number(high, 4)} N"
+        )
+    return [
+        "EA of cycles that are not in this curve, beside that of its table: " + "; ".join(said)
+        + "; for waves, --form static-dynamic"
+    ] if said else []  # fmt: skip
 
 
 _WAYS = {
@@ -639,7 +715,8 @@ def line_from_composite(source: PieceSource, curve: CompositeCurve, **stated: An
         ),
         notes=(
             *([f"DOUBTFUL: {curve.doubt}"] if curve.doubt else []),
-            *_stiffness_notes(tests_of_curve(curve), 1 + curve.strain, curve.tension),
+            *_stiffness_notes(tests_of_curve(curve, source.loops), 1 + curve.strain, curve.tension),
+            *_cycles_without_a_curve(source, curve),
             *curve.notes,
             *([f"several pieces contribute at strain {', '.join(joins)}"] if joins else []),
             *source.notes,

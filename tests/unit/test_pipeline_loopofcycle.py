@@ -5,6 +5,7 @@ import pytest
 
 from reduction.lines.assembly import SeriesPart, WorkingLevel, deploy
 from reduction.lines.composite import CompositeRule, CurvePiece, MeasuredLoop, _composite_curve
+from reduction.lines.export_sources import _smaller_cycle
 from reduction.stages.strain.strain_model import StrainModel
 
 SPRING, FRICTION, LIMIT = 1000.0, 4000.0, 50.0  # N per unit strain, and N
@@ -85,3 +86,15 @@ def test_the_slope_of_a_slow_pull_is_not_the_stiffness_of_cycles():
     state = state_of(249.0, drawn=curve("static", "Q", (0.01, 1.2), 0.7 * SPRING))
     assert "slope of the curve is 0.7" in state.doubt
     assert "the curve is of Q static" in state.doubt
+
+
+def test_a_deck_of_one_test_says_what_its_loop_leaves_open_about_smaller_cycles():
+    """250 N of rise: 150 mm of stroke of the spring and 100 N of the slider, 1,667 N at most."""
+    at = np.linspace(0.35, 0.65, 31)
+    ends = np.concatenate([[0.3], at, [0.7]])
+    table = np.concatenate([[250.0], SPRING * at, [750.0]])
+    (said,) = _smaller_cycle(loop(), at, SPRING * at, ends, table)
+    assert "between 1250 and 1670 N, the curve has 1000 N" in said
+    elastic = loop(lambda x: 0 * x, SPRING * 2 * HALF)
+    assert not _smaller_cycle(elastic, at, SPRING * at, at, SPRING * at)
+    assert not _smaller_cycle(None, at, SPRING * at, at, SPRING * at)
