@@ -392,7 +392,7 @@ def _rise(view: TestView, place: int) -> tuple[Floats, _Series, _Series, bool] |
     cubic = None
     if pulled is not None and strain is not None and np.isfinite(pulled.values).any():
         load = _Series.known(np.asarray(view.array("tension_grid")))
-        cubic = strain.values, load, pulled, False
+        cubic = strain.values, load, _at_one_strain(view, place, pulled, load.values), False
         if view.is_rope:  # the cubic is a law for ropes only; the curve of a rubber bends twice
             return cubic
         if any(
@@ -423,6 +423,31 @@ def _rise(view: TestView, place: int) -> tuple[Floats, _Series, _Series, bool] |
     if tangent is not None and tension is not None and np.isfinite(tension.values).any():
         return np.asarray(bins), tension, tangent, True
     return cubic
+
+
+def _at_one_strain(view: TestView, place: int, pulled: _Series, load: Floats) -> _Series:
+    r"""K_0 of a pull, known at tensions, with its uncertainty at strains.
+
+    .. math:: \delta K|_\varepsilon = \delta K|_T - K \frac{dK}{dT} \, \delta\varepsilon|_T
+
+    The gain of a load cell changes the tension at one strain by all of itself, and K_0 at one
+    tension by less where the curve stiffens.
+    """
+    names = (_PULLED, "quasi_static_strain")
+    rows = [view.array(f"{name}_uncertainty_contribution") for name in names]
+    random = [view.array(f"{name}_random_standard_uncertainty") for name in names]
+    if any(one is None for one in (*rows, *random)) or np.isfinite(pulled.values).sum() < _SLOPE:
+        return pulled
+    known = np.isfinite(pulled.values)
+    turn = np.full(load.size, np.nan)
+    turn[known] = pulled.values[known] * np.gradient(pulled.values[known], load[known])
+    shared = np.nan_to_num(rows[0][:, place]) - turn * np.nan_to_num(rows[1][:, place])
+    alone = np.hypot(random[0][place], turn * random[1][place])
+    spread = np.hypot(np.linalg.norm(shared, axis=0), alone)
+    return _Series(pulled.values, pulled.factor * spread, pulled.factor)
+
+
+_SLOPE = 3  # values from which a slope follows
 
 
 def hold_table(tests: Sequence[TestView]) -> PageTable | None:
