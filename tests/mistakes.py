@@ -1531,3 +1531,26 @@ def _(folder: Path) -> None:
 
 
 MISTAKES: tuple[Mistake, ...] = tuple(MISTAKES_)
+
+# areas of docs/robustness.md: the first of which a pattern is in the name of a mistake
+AREAS = {
+    "construction of a hose": "hose-(angle|wall|bore|wrap|cord|rubber|dead|length|specimen|held|dynamic)",
+    "plan of an experiment": "rope-(experiment|amplitude|mean-as|mean-in|frequency-per|frequency-rad|period|runs|plan|pull|two)",
+    "size and strength": "radius|diameter|circumference|stretch-of|break-strength|linear-density|gauge",
+    "tape readings": "mark",
+    "sign and zero": "load-sign|zero|tared",
+    "gain of the load": "gain-|volts|factor",
+    "form of the load signal": "saturated|filter|load-late|position-late|peak-hold|in-steps|spikes|-ends$|accumulator|load-dead",
+    "unit of the load": "lbf-declared|(kn|n)-log|logged-in|header-k|unit-row|channel-declared|dan-as",
+    "text of a log": "thousands|decimal|delimiter|second-header|preamble|overflow|9999|encoding|misspelt",
+    "rows of a log": "truncated|duplicated|gap|sorted|one-sample|newest|series|starts-again",
+    "files, channels, specimens": "twice|swapped|one-column|identical|as-tension|as-position$|wrong-specimen",
+    "time": "time-|sample-interval|dates|clock|sampling-rate",
+    "position and extensometer": "position|stroke|extensometer|displacement|pin-to|reference-length|encoder",
+    "statements about the test": "",
+}
+
+
+def area_of(one: Mistake) -> str:
+    """Area of docs/robustness.md in which a mistake is counted."""
+    return next(area for area, pattern in AREAS.items() if re.search(pattern, one.name))

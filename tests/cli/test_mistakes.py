@@ -7,7 +7,7 @@ import re
 from pathlib import Path
 
 import pytest
-from mistakes import MISTAKES, make, names_the_cause, prepare
+from mistakes import AREAS, MISTAKES, area_of, make, names_the_cause, prepare
 from typer.testing import CliRunner
 
 from reduction.cli.main import app
@@ -77,11 +77,26 @@ def test_the_list_is_long_and_its_exceptions_are_of_it():
     assert set(names) > SEEN_BY_A_RUN | ALWAYS
 
 
-def test_the_page_lists_every_mistake_with_what_is_said_of_it():
+def test_the_page_counts_every_mistake_and_lists_those_that_nothing_shows():
     page = (RAW.parent / "docs" / "robustness.md").read_text(encoding="utf-8")
-    rows = dict(
-        re.findall(r"(?m)^\| (.+) \| (?:the record|a band|a statement|nothing) \| (\S+) \|$", page)
-    )
+    rows = {
+        area: [int(cell) for cell in cells.split(" | ")]
+        for area, cells in re.findall(r"(?m)^\| ([^|]+) \| [^|]* \| ((?:\d+ \| ){6}\d+) \|$", page)
+    }
+    expected = {
+        area: [
+            *(sum(one.of == kind for one in there) for kind in ("tether", "rope", "hose")),
+            *(
+                sum(one.visible == by for one in there)
+                for by in ("statement", "band", "data", "no")
+            ),
+        ]
+        for area, there in (
+            *((area, [one for one in MISTAKES if area_of(one) == area]) for area in AREAS),
+            ("all", MISTAKES),
+        )
+    }
+    assert rows == expected
     for one in MISTAKES:
-        said = "-" if one.visible == "no" else "run" if one.name in SEEN_BY_A_RUN else "check"
-        assert rows[one.cause.replace("|", "/")] == said, one.name
+        assert (f"| {area_of(one)} | {one.cause} |" in page) == (one.visible == "no"), one.name
+        assert (f"\n- {one.cause}\n" in page) == (one.name in SEEN_BY_A_RUN), one.name
