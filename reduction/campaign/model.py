@@ -105,7 +105,7 @@ class _LimitsSection(BaseModel):
     file_size: Annotated[int, _Limit(1e3, 1e14, '"1 kB" to "100 TB"')] | None = None
     """Of one log: default ``"100 GB"``."""
     unpacked_size: Annotated[int, _Limit(1e6, 1e12, '"1 MB" to "1 TB"')] | None = None
-    """Memory for a file read whole, or for a piece of one: default ``"4 GB"``."""
+    """Memory for a file read whole, or for a piece of one: default ``"2.5 GB"``."""
     line_length: Annotated[int, _Limit(1e3, 1e8, '"1 kB" to "100 MB"')] | None = None
     """Of a line of text: default ``"1 MB"``."""
     columns: (

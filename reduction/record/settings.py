@@ -62,7 +62,7 @@ class StrainSettings:
     """Conversion of position to strain of the splice-free length."""
 
     method: StrainMethod | None = None
-    """None: tension-driven if the pooled marks span a factor of 2 in tension, else marks."""
+    """None: mixed if the specimen has marks, else extensometer or gauge-length."""
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ import ast
 import re
 import shutil
 import tomllib
-from dataclasses import fields
+from dataclasses import asdict, fields
 from pathlib import Path
 from typing import get_args
 
@@ -16,7 +16,7 @@ from reduction.campaign import model as numbers
 from reduction.campaign.load import load_campaign
 from reduction.readers.layout import Channel, Layout
 from reduction.readers.read_log import read_log
-from reduction.record.settings import ReductionSettings
+from reduction.record.settings import Limits, ReductionSettings
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
@@ -116,6 +116,13 @@ def test_every_number_is_listed_with_its_default():
         missing = "by length" if name == "archive.samples" else "found"
         shown = missing if default is None else ", ".join(f"{value:.7g}" for value in values)
         assert listed[name] == shown, name
+
+
+def test_every_limit_is_listed_with_its_default():
+    part = CAMPAIGN.partition("## [limits]")[2].partition("\n## ")[0]
+    listed = dict(re.findall(r'^\| `(\w+)` \| `?"?([^|"]*)"?`? \|', part, re.M))
+    values = {name: int(text) if text.isdigit() else text for name, text in listed.items()}
+    assert dict(model._LimitsSection.model_validate(values)) == asdict(Limits())
 
 
 def test_columns_and_answers_of_the_status_table_are_explained():
