@@ -20,8 +20,8 @@ machine moves.  With that channel as :math:`\cos\theta` of its half range,
 
 ([1]_), which do not depend on time: the loss of an elastic curve is zero, whatever the duration of
 its strokes.  For a sine they are those of the fundamental over time.  For a triangle they are not:
-a linear material of constant loss angle has two thirds of its loss in a sine, since ramps make its
-area.
+a linear material of constant loss angle has 0.69 of its loss in a sine, (8/pi^2)^2 times the sum of
+1/k^3 over the odd harmonics k.
 
 References
 ----------
