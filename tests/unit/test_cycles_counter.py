@@ -8,7 +8,10 @@ import pytest
 from reduction.record.errors import DataError
 from reduction.record.settings import CycleSettings, PhaseSettings
 from reduction.stages.cycles import cycle_search
+from reduction.stages.cycles.levels import find_levels
+from reduction.stages.cycles.loop_sense import unlike_neighbours
 from reduction.stages.cycles.loops import close_loops
+from reduction.stages.moduli.loop_balance import check_identity
 from reduction.stages.standstills import find_standstills
 
 
@@ -138,6 +141,36 @@ def test_cycles_stored_one_in_hundreds_are_not_mixed(begins, is_rows):
     true_energy = np.pi * 500 * 0.01 * np.sin(0.05)
     assert np.abs(loops.hysteresis_energy[0, alone] / true_energy - 1).max() < 0.01
     assert np.abs(loops.apparent_spring_constant[0, alone] / 5e4 - 1).max() < 1e-3
+
+
+@pytest.mark.parametrize("control", ["load", "position"])
+@pytest.mark.parametrize("begins", [0, 0.1, 0.25, 0.75, 0.9])
+def test_stiffness_of_cycles_stored_alone_is_theirs_wherever_the_count_changes(begins, control):
+    """A line of 50 kN whose strain lags by 0.03 rad, and which creeps, or relaxes, in each cycle."""
+    number = np.concatenate([np.arange(1, 11), np.arange(13, 60, 3)])
+    phase = (number[:, None] - 1 + begins + np.arange(72) / 72).ravel()
+    creep = 4e-4 * phase * (control == "load")
+    strain = 0.1 + creep - 0.08 * np.cos(2 * np.pi * phase - 0.03)
+    tension = 5000 - 4000 * np.cos(2 * np.pi * phase) - 10 * phase * (control == "position")
+    time = np.arange(phase.size) * 0.005
+    stands = find_standstills(time, strain, [tension], settings=PhaseSettings())
+    cycles = cycle_search.find_cycles(
+        time, strain, [tension], stands, cycle_counter=np.repeat(number, 72),
+        settings=CycleSettings(control=control),
+    )  # fmt: skip
+    loops = close_loops(
+        time, tension[None], strain[None], cycles, waveform="other", control=control
+    )
+    assert unlike_neighbours(time, strain, cycles, stands) == 0
+    assert not find_levels(time, tension if control == "load" else strain, cycles)
+    balance = check_identity(
+        strain[None], tension[None], area=[1e-4], cycles=cycles, control=control
+    )
+    assert not balance.notes
+    alone = cycles.number > 10
+    assert loops.apparent_spring_constant[0, alone] == pytest.approx(5e4, rel=1.5e-3)
+    assert loops.storage_spring_constant[0, alone] == pytest.approx(5e4 * np.cos(0.03), rel=2e-3)
+    assert loops.loss_factor[0, alone] == pytest.approx(np.tan(0.03), rel=0.04)
 
 
 def test_blocks_of_cycles_are_not_mixed_where_the_count_skips():

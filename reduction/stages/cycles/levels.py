@@ -20,7 +20,7 @@ from reduction.record.measurement import Floats
 from reduction.record.samples import take_samples
 from reduction.record.settings import Waveform
 from reduction.stages.cycles.cycle_product import Cycles
-from reduction.stages.cycles.periods import own_periods
+from reduction.stages.cycles.periods import counted_on_flanks, own_periods
 
 _STEP = 0.1  # of the range of a cycle: least change, of the mean or of the range, for a level
 
@@ -285,7 +285,8 @@ def _of_cycles(time: Floats, values: Floats, cycles: Cycles) -> Floats:
         [cycles.branch_first[:, 0], cycles.branch_last[:, 0], cycles.branch_last[:, 1]]
     )
     begin, peak, end = take_samples(values, turns)
-    valley = (begin + end) / 2
+    on_rise, on_fall = counted_on_flanks(cycles)
+    valley = (np.where(on_rise, end, begin) + np.where(on_fall, begin, end)) / 2
     start, stop = take_samples(time, np.stack([cycles.first, cycles.last]))
     # where a wave dwells, noise decides where it turns; not so from flank to flank
     period, _ = own_periods(time, values, cycles, stop - start, noise=0.0)

@@ -184,7 +184,7 @@ def unlike_neighbours(
     if threes.size >= _FEWEST_CYCLES - 1:
         # from middle to middle of the rises, which noise and rests at the turns do not shift
         which = (_spread(threes)[:, None] + np.arange(3)).ravel()
-        edges = cycles.first[which], cycles.branch_last[which, 0] + 1
+        edges = cycles.branch_first[which, 0], cycles.branch_last[which, 0] + 1
         begins = [
             _crossing(time[first:stop], driven[first:stop])
             for first, stop in zip(*(one.tolist() for one in edges), strict=True)

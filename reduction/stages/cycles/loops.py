@@ -65,7 +65,13 @@ from reduction.stages.cycles.peaks_and_valleys import (
     turns_of_wave,
     way_of_series,
 )
-from reduction.stages.cycles.periods import is_alone, own_periods, time_of_sample, touching
+from reduction.stages.cycles.periods import (
+    counted_on_flanks,
+    is_alone,
+    own_periods,
+    time_of_sample,
+    touching,
+)
 from reduction.stages.cycles.reading_noise import (
     noise_and_step,
     reading_noise,
@@ -572,10 +578,16 @@ def _drifts_of_cycles(
 ) -> _Drifts:
     """Drift of tension and of strain over each cycle; ``row`` has the quantities of `MEASURED`."""
     is_parted = waveform != "sinusoidal" and _are_parted(cycles)
+    on_rise, _ = counted_on_flanks(cycles)
     # the mean of a sine is fitted along with it, so one sample more or less does not change it
     parts = ("mean",) * 3 if waveform == "sinusoidal" else _OF_PERIOD
     tension, strain = (
-        _drift_between_rests(row[f"{name}_top"], row[f"{name}_begin"], ends, cycles.number)
+        _drift_between_rests(
+            row[f"{name}_top"],
+            np.where(on_rise, row[f"{name}_end_turn"], row[f"{name}_begin"]),
+            ends,
+            cycles.number,
+        )
         if is_parted
         else _mean_drift(np.stack([row[f"{name}_{part}"] for part in parts]), ends)
         for name in ("force", "strain")
@@ -667,6 +679,8 @@ def _levels_of_ramps(
     follows, is_parted = touching(cycles), _are_parted(cycles)
     # a cycle stored without the next one may end before its valley
     ends_alone = np.append(cycles.first[1:] == cycles.last[:-1] + 1, False)
+    is_apart = ~(follows | np.append(follows[1:], False))
+    on_rise, on_fall = counted_on_flanks(cycles)
     is_by_fall, levels = np.isfinite(drifts.on_fall), []
     for place, (name, drift) in enumerate((("force", drifts.tension), ("strain", drifts.strain))):
         answers = place == int(is_load)
@@ -682,6 +696,7 @@ def _levels_of_ramps(
             drifts.of_neighbours if answers else drift,
             rise_shares[place],
             follows & ~ends_alone,
+            (on_rise & is_apart, on_fall & is_apart),
             # both on the same way: a log that ends before its last valley is short of it in both
             np.where(
                 is_by_fall, drifts.on_fall if answers else (1 - rise_shares[place]) * drift, np.nan
@@ -899,6 +914,7 @@ def _mean_and_amplitude(
     drift: Floats,
     rise_share: Floats | float,
     follows: Bools,
+    counted_on: tuple[Bools, Bools],
     on_fall: Floats,
 ) -> tuple[Floats, Floats]:
     """Mean of peak and valley, and half their difference, without a steady drift.
@@ -906,7 +922,8 @@ def _mean_and_amplitude(
     The valley is interpolated between those on either side, at the time of the peak.  Where no
     cycle comes before, the first valley is that of an approach or a hold, and a line through both
     is not a drift.  The one farther from the peak is taken, and the range is corrected for the
-    drift on the way from it to the peak.  Where the cycle drifts more than its neighbours, the
+    drift on the way from it to the peak; a cycle that is counted from a flank on has one valley
+    (`counted_on_flanks`).  Where the cycle drifts more than its neighbours, the
     range is that of the way down, with the drift ``on_fall``; NaN elsewhere.
 
     Examples
@@ -914,15 +931,21 @@ def _mean_and_amplitude(
     A range of 20 that grows by 2 a cycle, the first after a hold at its valley:
 
     >>> one, none = (np.array([-1.0, 1.0]), np.array([1.0, 3.0])), np.full(2, np.nan)
-    >>> _mean_and_amplitude(
-    ...     np.array([20.0, 22.0]), *one, np.array([2.0, 2.0]), 0.5, np.array([False, True]), none)
+    >>> whole = (np.zeros(2, dtype=bool),) * 2
+    >>> _mean_and_amplitude(np.array([20.0, 22.0]), *one, np.array([2.0, 2.0]), 0.5,
+    ...     np.array([False, True]), whole, none)
     (array([ 9.5, 12. ]), array([10., 10.]))
     """
     # in a channel of the wrong sign the top is the lower one
-    far = np.where(np.abs(top - begin) > np.abs(top - end), begin, end)
+    on_rise, is_before = counted_on
+    is_whole = ~(on_rise | is_before)
+    is_before = is_before | (is_whole & ~(np.abs(top - begin) < np.abs(top - end)))
+    far = np.where(is_before, begin, end)
     foot = np.where(follows, (1 - rise_share) * begin + rise_share * end, far)
-    way = np.where(far == begin, rise_share, 1 - rise_share)
+    way = np.where(is_before, rise_share, 1 - rise_share)
     amplitude = np.abs(top - foot) / 2 - np.where(follows, 0.0, way * np.abs(drift) / 2)
+    of_one_valley = np.abs(top - far - np.where(is_before, way, -way) * drift) / 2
+    amplitude = np.where(is_whole | follows, amplitude, of_one_valley)
     amplitude = np.where(np.isfinite(on_fall), np.abs(top - end + on_fall) / 2, amplitude)
     return (top + foot) / 2, np.where(np.isnan(drift), np.nan, amplitude)
 
@@ -1056,11 +1079,72 @@ def _integrate_over_phase(
     begin, end = cycles.first[block] - low, cycles.last[block] - low
     peak, leaves = cycles.branch_last[block, 0] - low, cycles.branch_first[block, 1] - low
     into = np.minimum(leaves - peak, (peak - begin) // _WIDER) // 2
-    found = work_at_equal_phase(
-        answer, moved, time[low:high], np.column_stack([begin, leaves - into]),
-        np.column_stack([peak + into, end]), levels[:, block],
+    found = np.array(
+        work_at_equal_phase(
+            answer, moved, time[low:high], np.column_stack([begin, leaves - into]),
+            np.column_stack([peak + into, end]), levels[:, block],
+        )
     )  # fmt: skip
+    on_rise, on_fall = (one[block] for one in counted_on_flanks(cycles))
+    on_flank = np.flatnonzero(on_rise | on_fall)
+    if on_flank.size:
+        feet = cycles.branch_first[block, 0], cycles.branch_last[block, 1]
+        valley = np.where(on_rise, feet[1], feet[0]) - low
+        found[:, on_flank] = _work_from_valley(
+            answer, moved, begin[on_flank], end[on_flank], valley[on_flank],
+            np.column_stack([peak, leaves])[on_flank], levels[:, block][:, on_flank],
+        )  # fmt: skip
     measured[_OF_PHASE : _OF_PHASE + len(found), block] = found
+
+
+def _work_from_valley(
+    values: Floats,
+    driven: Floats,
+    first: Integers,
+    last: Integers,
+    valley: Integers,
+    peak: Integers,
+    levels: Floats,
+) -> Floats:
+    """Rows of `work_at_equal_phase` for cycles that are stored from a flank on.
+
+    Notes
+    -----
+    The readings before the valley follow the last one, as in the next cycle, which is not stored.
+    The mean of the sine removes a steady drift of the series from its integral: it is the integral
+    of a drift of one over the cycle, with its step back where the cycle is joined.
+
+    Examples
+    --------
+    A straight line of slope 900, amplitude 0.2, whose cycle is stored from the middle of its rise:
+
+    >>> strain = 0.2 * np.sin(2 * np.pi * np.arange(80) / 80)
+    >>> one = np.array([0])
+    >>> work, sine, half = _work_from_valley(900 * strain, strain, one, one + 79, one + 60,
+    ...     np.array([[20, 20]]), np.array([[-0.2], [0.2], [-0.2]]))
+    >>> print((work / (np.pi * half)).round(3), abs(sine.round(1)))
+    [900.] [1.]
+    """
+    length = last - first + 1
+    begin = np.cumsum(length + 1) - length - 1
+    place = np.arange(length.sum() + length.size) - np.repeat(begin, length + 1)
+
+    def along(of_cycle: Integers) -> Integers:
+        return np.repeat(of_cycle, length + 1)
+
+    within = (place + along(valley - first)) % along(length)
+    at = along(first) + within
+    peaks = begin[:, None] + (peak - valley[:, None]) % length[:, None]
+    feet = np.where(np.abs(levels[1] - levels[0]) > np.abs(levels[1] - levels[2]), *levels[[0, 2]])
+    work, steady = (
+        work_at_equal_phase(
+            series, driven[at], np.arange(at.size, dtype=np.float64),
+            np.column_stack([begin, peaks[:, 1]]), np.column_stack([peaks[:, 0], begin + length]),
+            np.stack([feet, levels[1], feet]),
+        )
+        for series in (values[at], within / (along(length) - 1))
+    )  # fmt: skip
+    return np.stack([work[0], -steady[0], work[2]])
 
 
 class _Reading(NamedTuple):

@@ -13,7 +13,7 @@ from reduction.record.measurement import Floats, Integers
 from reduction.record.samples import rounding_left, take_samples
 from reduction.record.settings import Waveform
 from reduction.stages.cycles.cycle_product import Cycles
-from reduction.stages.cycles.periods import touching
+from reduction.stages.cycles.periods import counted_on_flanks, touching
 from reduction.stages.cycles.reading_noise import noise_and_step, reading_noise, within_scatter
 from reduction.stages.cycles.turns import (
     STEEP,
@@ -601,5 +601,11 @@ def share_of_rise(time: Floats, cycles: Cycles, series: Floats | None = None) ->
         end = np.where(np.roll(follows, -1), np.roll(begin, -1), _places(-series, peak, end))
         peak = top
     start, turn, stop = (take_samples(time, one) for one in (begin, peak, end))
+    rise, period = turn - start, stop - start
+    on_rise, on_fall = counted_on_flanks(cycles)
+    if (on_rise | on_fall).any():  # one of their strokes is in two parts
+        whole = take_samples(time, cycles.last) - take_samples(time, cycles.first)
+        rise = np.where(on_rise, whole - (stop - turn), rise)
+        period = np.where(on_rise | on_fall, whole, period)
     with np.errstate(divide="ignore", invalid="ignore"):
-        return np.asarray((turn - start) / (stop - start))
+        return np.asarray(rise / period)

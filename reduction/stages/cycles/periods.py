@@ -58,6 +58,47 @@ def touching(cycles: Cycles) -> Bools:
     return np.concatenate([[False], cycles.last[:-1] == cycles.first[1:]])
 
 
+def counted_on_flanks(cycles: Cycles) -> tuple[Bools, Bools]:
+    """Mark cycles that the machine counts from a point on their rise, or on their fall, on.
+
+    Parameters
+    ----------
+    cycles : Cycles
+        From `reduction.stages.cycles.cycle_search`.
+
+    Returns
+    -------
+    on_rise, on_fall : ndarray of bool
+        Whether the only valley of the cycle is the one after its peak, or the one before it. [-]
+
+    Raises
+    ------
+    ValueError
+        If the arrays of the cycles differ in length.
+
+    Examples
+    --------
+    A cycle of 40 samples counted from the middle of its rise on:
+
+    >>> first, pair = np.array([0]), np.array([[0, 10]])
+    >>> cycles = Cycles(first, first + 40, pair, pair + [10, 20], np.ones((1, 2)), np.zeros(41),
+    ...     np.zeros(41), np.zeros(41), 0.1, counted_by="machine counter")
+    >>> print(*counted_on_flanks(cycles))
+    [ True] [False]
+    """
+    if cycles.counted_by != "machine counter":
+        return (np.zeros(cycles.n_cycles, dtype=bool),) * 2
+    follows = touching(cycles)
+    # of cycles that touch, the valley that two have in common may be found in either
+    is_shared = follows | np.append(follows[1:], False)
+    beside = np.where(is_shared, (cycles.last - cycles.first) // _SHARED_VALLEY, 0)
+    on_rise = cycles.branch_last[:, 1] < cycles.last - beside
+    return on_rise, ~on_rise & (cycles.branch_first[:, 0] > cycles.first + beside)
+
+
+_SHARED_VALLEY = 12  # parts of a cycle
+
+
 def spread_of_turns(turn: Floats, first: Integers, last: Integers, *, step: float) -> float:
     r"""Standard uncertainty of the time of one turn, from the scatter of the durations.
 

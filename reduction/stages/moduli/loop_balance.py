@@ -27,6 +27,7 @@ from reduction.record.notes import note
 from reduction.record.samples import BLOCK, count_samples, sample_blocks, take_samples, thinned
 from reduction.record.settings import Control
 from reduction.stages.cycles.cycle_product import Cycles
+from reduction.stages.cycles.periods import counted_on_flanks
 from reduction.stages.moduli.local_regression import sums_by_cell
 from reduction.stages.moduli.modulus_product import CycleIdentity
 from reduction.stages.moduli.tangent_modulus import pair_specimens
@@ -404,7 +405,8 @@ def check_identity(
     0.7 to 1.1 % for a two-hundredth of the period.
 
     NaN for a cycle in which a piece has fewer than 3 samples or samples in less than
-    about two thirds of it, or whose first or last sample is missing.
+    about two thirds of it, or whose first or last sample is missing, and for one that is counted
+    from a flank on, since one of its strokes is in two parts.
 
     Examples
     --------
@@ -441,6 +443,7 @@ def check_identity(
             one = _StrokeBalance(strains[row], tensions[row], areas[row], cycles, n_pieces)
             difference[row], loss[row], modulus[row] = one.sides[:, one.way]
             balances.append(one)
+    difference[:, np.logical_or(*counted_on_flanks(cycles))] = np.nan
     residual = (difference + loss) / modulus
     mean, error = _mean_over_cycles(residual)
     notes = []
