@@ -111,10 +111,18 @@ def test_every_fault_gets_its_mask_and_a_line_in_the_notes():
     assert where(along, Quality.MISSING) == [55]
     assert where(along, Quality.GAP) == [1500]
     assert where(along, Quality.REPEATED_OR_BACKWARD_TIME) == [1700]
-    assert str(result.notes[-1]) == (
+    assert str(result.notes[-1]).startswith(
         "2000 rows read, 2000 kept, flagged: crosshead_position missing 1, gap 1, "
-        "repeated_or_backward_time 1; tension of new missing 1, stuck 100, spike 1"
+        "repeated_or_backward_time 1; tension of new missing 1, stuck 100, spike 1. Saturated and "
     )
+
+
+def test_the_last_reading_of_a_machine_that_stops_makes_no_uneven_rate():
+    time = TIME.copy()
+    time[-1] -= 0.07
+    assert not flagged(record(time=time)).notes
+    time[1000] += 0.05
+    assert [one.code for one in flagged(record(time=time)).notes] == ["sampling-uneven"]
 
 
 def test_a_saturated_run_is_not_called_stuck_as_well():
