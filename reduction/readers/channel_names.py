@@ -81,7 +81,8 @@ _NAMES: dict[str, tuple[Dimension, tuple[str, ...], str]] = {
     "cycle_counter": (
         "number",
         (r"^total cycles$", r"^(cycle|zyklus|zyklen|lastspiele?)( number| count(er)?)?$",
-         r"^total cycle count$", r"^cycles$"),
+         r"^total cycle count$", r"^cycles$",
+         r"^(machine )?(n|no|nr|num|number)( of)? cycles?$", r"^cycles? (no|nr|num|index|id|n)$"),
         r"elapsed|time",
     ),
     "temperature": ("temperature", (r"^temp(erature?|eratur)?\b",), _NOT_MEASURED),

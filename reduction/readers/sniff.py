@@ -148,10 +148,18 @@ def _look_at_table(rows: Sequence[Sequence[str]], decimal: str) -> _TableShape |
 
 def _labelled_units(above: Sequence[Sequence[str]]) -> Sequence[str]:
     """Units in a preamble line that is labelled as units: ``Y_Unit_Label  mm  N``."""
+    if any(UNSCALED.search(" ".join(fields)) for fields in above):
+        return ()  # they are the units after a factor that the log only states
     for label, *units in filter(None, above):
         if re.search(r"unit|einheit", label.lower()) and _is_unit_row(units):
             return ["", *units]
     return ()
+
+
+UNSCALED = re.compile(
+    r"\bin (raw )?(volts|counts)\b|\bunits? ?/ ?(v|volts?|counts?)\b", re.IGNORECASE
+)
+"""A preamble line of a table of readings that still need a factor."""
 
 
 def _is_header(fields: Sequence[str], n_fields: int) -> bool:

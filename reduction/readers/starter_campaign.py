@@ -16,6 +16,7 @@ from reduction.readers.channel_names import is_unit
 from reduction.readers.layout import UNKNOWN
 from reduction.readers.raw_log import unreadable
 from reduction.readers.sniff import (
+    UNSCALED,
     SniffedLayout,
     format_of,
     sheets_with_tables,
@@ -192,6 +193,9 @@ def _one_layout(alike: list[_Log]) -> tuple[str, list[str]]:
     toml, remarks = alike[0].sniffed.toml, list(alike[0].sniffed.remarks)
     if (said := _units_said(alike[0])) and f'unit = "{UNKNOWN}"' in toml:
         remarks.append(f"from the log: units {', '.join(said)}")
+    if unscaled := [line for line in alike[0].sniffed.preamble if UNSCALED.search(line)]:
+        remarks.append("unknown: the factor of each channel, because the log says of its readings:")
+        remarks += [f"from the log: {line}" for line in unscaled]
     texts = [log.sniffed.toml.split("\n") for log in alike]
     merged = []
     for number, line in enumerate(toml.split("\n")):

@@ -298,6 +298,13 @@ def test_a_table_of_extremes_is_no_log_of_loops(tmp_path):
     assert "extremes of each cycle" not in " ".join(sniff_layout(path).remarks)
 
 
+@pytest.mark.parametrize("name", ["Machine_N_cycles", "No. of cycles", "Cycle No.", "cycle index"])
+def test_a_count_of_cycles_is_known_by_its_name(tmp_path, name):
+    rows = [f"{i / 10},{i // 20},{i % 20},{i % 20 / 3:.3f}" for i in range(100)]
+    path = write(tmp_path, f"Time (s),{name},Position (mm),Load (N)\n" + "\n".join(rows) + "\n")
+    assert f'cycle_counter = {{ column = "{name}"' in sniff_layout(path).toml
+
+
 def test_a_decimal_comma_that_may_part_thousands_is_a_guess(tmp_path):
     path = write(tmp_path, "a;b\n" + "".join(f"1,{i:03};2,{i:03}\n" for i in range(9)))
     assert any(

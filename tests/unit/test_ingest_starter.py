@@ -103,6 +103,19 @@ def test_a_file_without_position_or_load_is_no_log(tmp_path):
     assert "#   diameters.csv: no column looks like a position or a load" in text
 
 
+def test_units_above_a_table_in_volts_are_not_those_of_its_readings(tmp_path):
+    """As a muscle lever writes it: the units and the scale of each channel, then volts."""
+    table = "".join(f"{i}\t{i % 40 / 10:.4f}\t{i % 40 / 90:.4f}\n" for i in range(400))
+    (tmp_path / "log.ddf").write_text(
+        "Sample Frequency (Hz): 1000\nChannel\tAI0\tAI1\nUnits\tmm\tmN\n"
+        "Scale (units/V)\t1.0\t500.0\n\nTest Data in Volts:\n\nSample\tAI0\tAI1\n" + table
+    )
+    text = starter_campaign(tmp_path)["campaign.toml"]
+    assert '"AI1", 0 to 0.4333' in text and '"AI1" in mN' not in text
+    assert "# from the log: Scale (units/V) 1.0 500.0" in text
+    assert "# from the log: Test Data in Volts:" in text
+
+
 def test_a_folder_without_logs_is_refused(tmp_path):
     with pytest.raises(LogError, match="the folder holds no log; found no files"):
         starter_campaign(tmp_path)
