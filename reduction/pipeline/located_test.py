@@ -232,10 +232,12 @@ def slips_of(located: Located, settings: ReductionSettings) -> Slips | None:
     peaks = [
         over_intervals(np.fmax, load, cycles.first, cycles.last + 1) for load in located.tension
     ]
+    begin, end = take_samples(located.record.time, np.stack([cycles.first, cycles.last]))
+    # the time of rows does not show the cycles that a machine counted and did not store
+    lasts = np.fmax(np.diff(begin), np.diff(cycles.number) * np.median(end - begin))
     return find_slips(
         peaks, specimens=located.record.specimens, settings=settings.slip,
-        tension_level=level, tension_slope=slope,
-        time=take_samples(located.record.time, cycles.first),
+        tension_level=level, tension_slope=slope, time=np.append(0.0, np.cumsum(lasts)),
     )  # fmt: skip
 
 

@@ -1,12 +1,22 @@
 """The level of a cycle, and slips told from creep."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
+from reduction.pipeline.located_test import slips_of
 from reduction.record.errors import DataError
-from reduction.record.settings import SlipSettings
+from reduction.record.settings import (
+    CycleSettings,
+    PhaseSettings,
+    ReductionSettings,
+    SlipSettings,
+)
+from reduction.stages.cycles.cycle_search import find_cycles
 from reduction.stages.moduli.loop_balance import cycle_tension_level
 from reduction.stages.moduli.splice_slip import find_slips
+from reduction.stages.standstills import find_standstills
 
 SLOPE = 200.0  # N/m
 
@@ -145,6 +155,32 @@ def test_relaxation_in_a_pause_is_no_slip_and_a_slip_in_it_is_one():
                 settings=SlipSettings(), time=time,
             )  # fmt: skip
             assert slips.slip_cycle.tolist() == found
+
+
+def test_relaxation_in_cycles_that_the_machine_did_not_store_is_no_slip():
+    """Three blocks of 30 cycles; the rows have no time, and tension falls by 40 N a decade."""
+    number = np.repeat(np.array([0, 1000, 100_000])[:, None] + np.arange(1, 31), 24)
+    phase = number + np.tile(np.arange(24) / 24, 90)
+    position = 2 - 0.2 * np.cos(2 * np.pi * phase)
+    tension = 5000 * (position - 1) - 40 * np.log10(1 + phase)
+    tension += np.random.default_rng(0).normal(0, 1.0, tension.size)
+    time = 0.1 * np.arange(phase.size)
+    stands = find_standstills(time, position, [tension], settings=PhaseSettings())
+    cycles = find_cycles(
+        time,
+        position,
+        [tension],
+        stands,
+        settings=CycleSettings(),
+        cycle_counter=number,
+    )
+    located = SimpleNamespace(
+        cycles=cycles, position=position, tension=tension[None],
+        record=SimpleNamespace(specimens=("new",), time=time),
+    )  # fmt: skip
+    assert slips_of(located, ReductionSettings()).slip_cycle.size == 0
+    tension[number > 1000] -= 5000
+    assert slips_of(located, ReductionSettings()).slip_cycle.size == 1
 
 
 def test_too_few_cycles_are_a_line_of_the_history():

@@ -605,8 +605,13 @@ def _is_told_from_pause(level: Floats, time: Floats, step: _SlipStep) -> bool:
     return bool(abs(step.size) > (abs(speed) + 2 * spread) * lasts[at])
 
 
+_CLEAR_RISE = 3.0  # standard uncertainties
+
+
 def _remarks(name: str, steps: tuple[_SlipStep, ...], sizes: Floats) -> list[Note]:
-    rises = [str(step.onset + 1) for step, size in zip(steps, sizes, strict=True) if size > 0]
+    """Remark on steps up; ``sizes`` are those of the peaks, with their standard uncertainties."""
+    is_rise = sizes[0] > _CLEAR_RISE * sizes[1]
+    rises = [str(step.onset + 1) for step in compress(steps, is_rise)]
     return [note("tension-steps-up", name, cycles=", ".join(rises))] if rises else []
 
 
@@ -694,7 +699,7 @@ def find_slips(
         creep[row] = _creep_per_cycle(peak, found)
         is_slip = [_is_told_from_pause(filled, times, step) for step in found]
         found, size = tuple(compress(found, is_slip)), size[:, is_slip]
-        notes += _remarks(name, found, size[0])
+        notes += _remarks(name, found, size)
         names += [name] * len(found)
         steps += found
         sizes.append(size)
