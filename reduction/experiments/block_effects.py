@@ -14,20 +14,32 @@ References
    are Unequal," Biometrika, vol. 58, pp. 545-554, 1971.
 .. [2] J. C. Pinheiro and D. M. Bates, Mixed-Effects Models in S and S-PLUS. New York: Springer,
    2000, sec. 2.4 (degrees of freedom of the levels of grouping).
+.. [3] G. E. P. Box, J. S. Hunter, and W. G. Hunter, Statistics for Experimenters, 2nd ed.
+   Hoboken, NJ: Wiley, 2005, ch. 9 (split plots).
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from reduction.experiments.designs import engineering_matrix
-from reduction.experiments.fit_results import BlockEffects, LeastSquares
-from reduction.experiments.least_squares_fit import two_sided_p
+from reduction.experiments.fit_results import (
+    BlockEffects,
+    LackOfFit,
+    LeastSquares,
+    ScatterOfPulls,
+)
+from reduction.experiments.least_squares_fit import (
+    fit_least_squares,
+    lack_of_fit,
+    replicate_cells,
+    two_sided_p,
+)
 from reduction.experiments.response_matrix import block_contrasts
 from reduction.experiments.run_sheet import is_singular, variance_factor
 from reduction.experiments.surface_statistics import ratio_of_variances, regress
@@ -229,6 +241,82 @@ def with_blocks(
         mixed.at_boundary,
     )
     return estimates, effects
+
+
+def scatter_of_pulls(
+    fit: LeastSquares,
+    surface: Floats,
+    coded: Floats,
+    pulls: Sequence[str],
+    lack: LackOfFit,
+) -> ScatterOfPulls | None:
+    r"""Scatter by which surfaces are judged whose specimens were pulled together.
+
+    .. math:: s^2 = \frac{1}{n - p} \sum_i m_i \bar e_i^2
+
+    Returns
+    -------
+    scatter : ScatterOfPulls or None
+        None where every run is a pull of its own.
+
+    Notes
+    -----
+    An error of a pull (its lag, frequency, temperature) is common to its m specimens.  The
+    specimens are then not m independent runs: the mean of a pull is one, as the whole plot of a
+    split-plot experiment [3]_.  Lack of fit is that of the means, against repeated pulls.
+    """
+    names, place = np.unique(np.asarray(pulls), return_inverse=True)
+    if names.size == len(pulls):
+        return None
+    member = (place == np.arange(names.size)[:, None]).astype(np.float64)
+    has_levels = np.isfinite(coded).all(axis=1)
+    known = np.isfinite(fit.residual)
+
+    def mean(of_rows: Floats, taken: Bools) -> Floats:
+        count = taken @ member.T
+        total = np.where(taken, of_rows, 0.0) @ member.T
+        return np.asarray(
+            np.divide(total, count, out=np.full(count.shape, np.nan), where=count > 0)
+        )
+
+    at, columns = (
+        mean(one.T, np.broadcast_to(has_levels, one.T.shape)).T for one in (coded, surface)
+    )
+    of_pull = mean(fit.residual, known)
+    means = fit_least_squares(columns, of_pull)
+    squares = np.nansum((known @ member.T) * of_pull**2, axis=1)
+    of_means = lack_of_fit(
+        means, replicate_cells(at, tolerance=lack.tolerance),
+        baseline=np.ones((names.size, 1)), tolerance=lack.tolerance,
+    )  # fmt: skip
+    freedom = means.degrees_of_freedom
+    is_used = (freedom > 0) & (fit.reason == 0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        scale = squares / means.residual_sum_of_squares
+        sigma = np.sqrt(squares / freedom)
+    return ScatterOfPulls(
+        is_used=is_used,
+        sigma=np.where(is_used, sigma, np.nan),
+        degrees_of_freedom=freedom,
+        sum_of_squares=squares,
+        lack=replace(
+            of_means,
+            sum_of_squares=scale * of_means.sum_of_squares,
+            pure_error_sum_of_squares=scale * of_means.pure_error_sum_of_squares,
+            cell=lack.cell,
+        ),
+    )
+
+
+def judged_by_pulls(found: _Estimates, scatter: ScatterOfPulls) -> _Estimates:
+    """Estimates with the scatter of the pulls in place of that of the runs."""
+    used = scatter.is_used
+    sigma = np.where(used, scatter.sigma, found.sigma)
+    freedom = np.where(used[:, None], scatter.degrees_of_freedom[:, None], found.degrees_of_freedom)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        t = found.t * (found.sigma / sigma)[:, None]
+    p_value = np.where(used[:, None], two_sided_p(t, freedom), found.p_value)
+    return replace(found, sigma=sigma, degrees_of_freedom=freedom, t=t, p_value=p_value)
 
 
 def deviations(

@@ -459,8 +459,8 @@ def _scales(
     def fit(values: Floats, chosen: list[str], transforms: list[Transform]) -> ResponseSurfaces:
         return fit_surfaces(
             runs.level, values, factor_names=names, response_names=chosen, low=low, high=high,
-            run_names=runs.names, blocks=_specimen_blocks(runs), transforms=transforms,
-            with_tests=False,
+            run_names=runs.names, blocks=_specimen_blocks(runs), pulls=runs.run,
+            transforms=transforms, with_tests=False,
         )  # fmt: skip
 
     ratios, chances = scatter_by_scale(runs.response[free], fit)
@@ -507,7 +507,7 @@ def _with_frequency(
     trial = fit_surfaces(
         runs.level, runs.response[2 * rows], factor_names=names, low=low, high=high,
         response_names=[f"{scale} {one}" for scale in (on_log, on_product) for one in times],
-        run_names=runs.names, blocks=_specimen_blocks(runs), with_tests=False,
+        run_names=runs.names, blocks=_specimen_blocks(runs), pulls=runs.run, with_tests=False,
         transforms=[scale for scale in (on_log, on_product) for _ in times],
     )  # fmt: skip
     grid = np.array(list(product(np.linspace(-1, 1, 5), repeat=len(names))))
@@ -543,6 +543,7 @@ def _surfaces(
         high=high,
         run_names=runs.names,
         blocks=_specimen_blocks(runs),
+        pulls=runs.run,
         block_treatment="fixed" if specimens_as == "blocks" else "random",
         transforms=scales,
     )

@@ -82,6 +82,21 @@ class LackOfFit:
 
 @dataclass(frozen=True)
 @read_only_arrays
+class ScatterOfPulls:
+    """Scatter of the means over the specimens of a pull, on the scale of single runs.
+
+    Entries are those of responses, ``is_used`` where the pulls leave degrees of freedom.
+    """
+
+    is_used: Bools
+    sigma: Floats
+    degrees_of_freedom: Integers
+    sum_of_squares: Floats
+    lack: LackOfFit
+
+
+@dataclass(frozen=True)
+@read_only_arrays
 class Canonical:
     """Stationary point and curvature of each surface.
 

@@ -24,6 +24,8 @@ from reduction.experiments.block_effects import (
     block_columns,
     deviations,
     fixed_estimates,
+    judged_by_pulls,
+    scatter_of_pulls,
     with_blocks,
 )
 from reduction.experiments.designs import (
@@ -40,6 +42,7 @@ from reduction.experiments.fit_results import (
     LackOfFit,
     LeastSquares,
     ResponseSurfaces,
+    ScatterOfPulls,
 )
 from reduction.experiments.least_squares_fit import (
     fit_least_squares,
@@ -146,6 +149,7 @@ def _remarks(
     fit: LeastSquares,
     lack: LackOfFit,
     blocks: BlockEffects | None,
+    judged: ScatterOfPulls | None,
     factor_names: Sequence[str],
     run_names: Sequence[str],
     response_names: Sequence[str],
@@ -167,6 +171,9 @@ def _remarks(
         notes.append(
             note(f"blocks-{blocks.treatment}", n_specimens=n_specimens, freedom=n_specimens - 1)
         )
+    if judged is not None and judged.is_used.any():
+        freedom = int(judged.degrees_of_freedom[judged.is_used].min())
+        notes.append(note("specimens-pulled-together", freedom=freedom))
     return tuple(notes)
 
 
@@ -269,6 +276,7 @@ def fit_surfaces(
     run_names: Sequence[str] | None = None,
     blocks: Sequence[str] | None = None,
     block_treatment: Literal["fixed", "random"] = "fixed",
+    pulls: Sequence[str] | None = None,
     transforms: Transform | Sequence[Transform] = "none",
     replicate_tolerance: float = 0.1,
     with_tests: bool = True,
@@ -296,6 +304,9 @@ def fit_surfaces(
         Specimen of each run, if there are several.
     block_treatment : {'fixed', 'random'}
         The effects apply to these specimens, or to random draws of their kind.
+    pulls : sequence of str, length n_runs, optional
+        Pull of each run, equal for specimens that were pulled together. With fixed blocks, the
+        surfaces are then judged by the scatter of the pulls.
     transforms : {'none', 'log', 'box-cox', 'log-times-frequency'} or one a response
         Scale on which each response is fitted; the last one needs a factor called ``frequency``.
     replicate_tolerance : float
@@ -393,6 +404,11 @@ def fit_surfaces(
     fit = replace(fit, reason=np.where(np.isnan(power), np.int8(6), fit.reason))
     cell = replicate_cells(coded, tolerance=replicate_tolerance)
     lack = lack_of_fit(fit, cell, baseline=baseline, tolerance=replicate_tolerance)
+    judged = None
+    if grouping is not None and block_treatment == "fixed" and pulls is not None:
+        judged = scatter_of_pulls(fit, surface, coded, pulls, lack)
+    if judged is not None:
+        lack = judged.lack
     regressions = regress_each(values, matrix, fit, baseline.shape[1], index) if with_tests else {}
     tested = {row: result for row, result in regressions.items() if fit.reason[row] == 0}
     t, p_value, overall_f, overall_p_value = term_tests(tested, fit, column)
@@ -401,6 +417,14 @@ def fit_surfaces(
     if grouping is not None:
         found, effects = with_blocks(
             found, fit, surface, values, grouping[0], grouping[1], block_treatment
+        )
+    freedom = fit.degrees_of_freedom
+    if judged is not None:
+        found = judged_by_pulls(found, judged)
+        freedom = np.where(judged.is_used, judged.degrees_of_freedom, freedom)
+        overall_f = overall_f * (fit.sigma / found.sigma) ** 2
+        overall_p_value = np.where(
+            judged.is_used, fdtrc(len(terms) - 1, freedom, overall_f), overall_p_value
         )
     deviation, engineering_deviation, to_engineering = deviations(found, exponents, low, high)
     r2, adjusted, predicted = _shares(fit, baseline.shape[1])
@@ -434,7 +458,7 @@ def fit_surfaces(
         pattern=found.pattern,
         is_used=fit.is_used if found.pattern is fit.pattern else fit.is_used[fit.pattern],
         sigma=found.sigma,
-        degrees_of_freedom=fit.degrees_of_freedom,
+        degrees_of_freedom=freedom,
         r2=r2,
         adjusted_r2=adjusted,
         predicted_r2=predicted,
@@ -444,7 +468,7 @@ def fit_surfaces(
         printed_f=printed if effects is None else np.full(len(r2), np.nan),
         fitted=fit.fitted,
         residual=fit.residual,
-        anova=anova_table(regressions, groups, fit, lack),
+        anova=anova_table(regressions, groups, fit, lack, judged),
         lack_of_fit=lack,
         canonical=canonical_analysis(
             found.coefficient,
@@ -465,6 +489,7 @@ def fit_surfaces(
             fit=fit,
             lack=lack,
             blocks=effects,
+            judged=judged,
             factor_names=factor_names,
             run_names=runs,
             response_names=response_names,

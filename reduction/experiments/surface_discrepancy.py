@@ -234,8 +234,7 @@ def _runs_of(surfaces: ResponseSurfaces, is_used: Bools) -> _Runs:
     used = is_used & np.isfinite(surfaces.coded).all(axis=1)
     matrix = model_matrix(surfaces.coded[used], surfaces.exponents)
     if surfaces.blocks is not None:
-        effects = block_contrasts(surfaces.blocks.index[used])
-        matrix = np.hstack([matrix, effects - effects.mean(axis=0)])
+        matrix = np.hstack([matrix, block_contrasts(surfaces.blocks.index[used])])
     return _Runs(surfaces.coded[used], matrix, np.asarray(np.linalg.pinv(matrix)))
 
 

@@ -29,9 +29,15 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from scipy.special import ndtri
+from scipy.special import fdtrc, ndtri
 
-from reduction.experiments.fit_results import Anova, Diagnostics, LackOfFit, LeastSquares
+from reduction.experiments.fit_results import (
+    Anova,
+    Diagnostics,
+    LackOfFit,
+    LeastSquares,
+    ScatterOfPulls,
+)
 from reduction.experiments.least_squares_fit import FIXES_A_TERM
 from reduction.experiments.response_matrix import block_contrasts
 from reduction.record.measurement import Floats, Integers
@@ -66,14 +72,20 @@ def regress_each(
 
 
 def anova_table(
-    regressions: Regressions, groups: Mapping[str, slice], fit: LeastSquares, lack: LackOfFit
+    regressions: Regressions,
+    groups: Mapping[str, slice],
+    fit: LeastSquares,
+    lack: LackOfFit,
+    judged: ScatterOfPulls | None = None,
 ) -> Anova:
     """Sums of squares by source, with F and p.
 
     Notes
     -----
     Sequential sums: each source after those above it, like tests of orthogonal columns.
-    Every source is tested against the residuals, and lack of fit against pure error.
+    Every source is tested against the residuals, and lack of fit against pure error.  Where
+    specimens were pulled together, the residuals are those of the means of the pulls, and blocks
+    are tested against the differences within pulls.
     """
     n_groups = len(groups)
     table = np.full((4, fit.reason.size, n_groups + 4), np.nan)
@@ -95,11 +107,37 @@ def anova_table(
         table[:2, row, n_groups + 2] = (
             lack.pure_error_degrees_of_freedom[row], lack.pure_error_sum_of_squares[row]
         )  # fmt: skip
-    degrees, sums, f, p_value = table
-    mean_square = np.divide(sums, degrees, out=np.full(sums.shape, np.nan), where=degrees > 0)
     source = (*groups, "residuals", "lack of fit", "pure error", "total")
     against = (*(["residuals"] * n_groups), "", "pure error", "", "")
+    if judged is not None:
+        table = _between_pulls(table, list(groups), judged)
+        source = (*source[:-1], "within pulls", "total")
+        against = tuple("within pulls" if one == "blocks" else "residuals" for one in groups)
+        against = (*against, "", "pure error", "", "", "")
+    degrees, sums, f, p_value = table
+    mean_square = np.divide(sums, degrees, out=np.full(sums.shape, np.nan), where=degrees > 0)
     return Anova(source, degrees, sums, mean_square, f, p_value, against)
+
+
+def _between_pulls(table: Floats, groups: list[str], judged: ScatterOfPulls) -> Floats:
+    """Analysis of variance whose residuals are those of pulls, with a row within them."""
+    n_groups = len(groups)
+    within = table[:, :, n_groups].copy()
+    within[2:] = np.nan
+    within[0] -= judged.degrees_of_freedom
+    within[1] -= judged.sum_of_squares
+    # a response whose pulls cannot be judged keeps the residuals of its runs
+    within[:, ~judged.is_used] = np.nan
+    table[0, judged.is_used, n_groups] = judged.degrees_of_freedom[judged.is_used]
+    table[1, judged.is_used, n_groups] = judged.sum_of_squares[judged.is_used]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        for at, name in enumerate(groups):
+            df, error = within[:2] if name == "blocks" else table[:2, :, n_groups]
+            f = table[1, :, at] / table[0, :, at] / (error / df)
+            used = judged.is_used & np.isfinite(table[2, :, at]) & (df > 0)
+            table[2, used, at] = f[used]
+            table[3, used, at] = fdtrc(table[0, used, at], df[used], f[used])
+    return np.insert(table, table.shape[2] - 1, within, axis=2)
 
 
 def diagnose(regressions: Regressions, fit: LeastSquares) -> Diagnostics:

@@ -278,8 +278,13 @@ def stray_runs(surfaces: ResponseSurfaces) -> tuple[Note, ...]:
     """
     leverage, t = surfaces.diagnostics.leverage, surfaces.diagnostics.deleted_residual
     n_used = np.isfinite(t).sum(axis=1, keepdims=True)
-    freedom = np.where(surfaces.degrees_of_freedom > 1, surfaces.degrees_of_freedom - 1, np.nan)
-    p = np.minimum(n_used * two_sided_p(t, freedom[:, None]), 1.0)
+    # those of the residuals, also where surfaces are judged by pulls of several runs
+    used = surfaces.is_used[surfaces.pattern]
+    n_blocks = np.ones(len(used)) if surfaces.blocks is None else [
+        np.unique(surfaces.blocks.index[one]).size for one in used
+    ]  # fmt: skip
+    freedom = used.sum(axis=1) - len(surfaces.term_names) - n_blocks
+    p = np.minimum(n_used * two_sided_p(t, np.where(freedom > 0, freedom, np.nan)[:, None]), 1.0)
     with np.errstate(divide="ignore", invalid="ignore"):
         off = surfaces.residual / (1 - leverage)
         others = surfaces.fitted + surfaces.residual - off

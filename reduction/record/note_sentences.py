@@ -1437,6 +1437,11 @@ _OF_EXPERIMENTS: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         " include differences between specimens in their response to the factors; the mean applies"
         " to these specimens only",
     ),
+    "specimens-pulled-together": (
+        "note",
+        "specimens were pulled together, so that errors of a pull are common to them: surfaces are"
+        " judged by the scatter of the means of the pulls ({freedom} degrees of freedom)",
+    ),
     "blocks-random": (
         "note",
         "{n_specimens} specimens as random blocks (REML): the mean is tested against the scatter"

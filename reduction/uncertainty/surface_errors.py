@@ -28,6 +28,7 @@ References
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -37,6 +38,7 @@ from scipy.special import fdtri
 from reduction.experiments.designs import model_matrix
 from reduction.experiments.experiment import ExperimentResult, SharedSurfaces
 from reduction.experiments.fit_results import ResponseSurfaces
+from reduction.experiments.response_matrix import block_contrasts
 from reduction.experiments.response_transform import back_transform, back_transformed_change
 from reduction.experiments.surface_discrepancy import discrepancy_of
 from reduction.experiments.surface_points import SurfaceValues, evaluate_surfaces
@@ -101,9 +103,7 @@ def _coefficient_contributions(
     moved = of_response[:, used] - np.einsum("rj,krj->kr", slope, of_level[:, used])
     matrix = terms
     if blocks is not None:
-        _, place = np.unique(np.asarray(blocks)[used], return_inverse=True)
-        effects = np.eye(int(place.max()) + 1)[place][:, 1:]
-        matrix = np.concatenate([terms, effects - effects.mean(axis=0)], axis=1)
+        matrix = np.concatenate([terms, block_contrasts(np.asarray(blocks)[used])], axis=1)
     solved: Floats = moved @ np.linalg.pinv(matrix).T
     return solved[:, : terms.shape[1]]
 
@@ -294,6 +294,8 @@ def with_shared_surfaces(result: ExperimentResult) -> ExperimentResult:
             level[..., place] = shared.values[name] / half[place]
     blocks = result.runs.specimen if len(set(result.runs.specimen)) > 1 else None
     names = None if blocks is None else np.unique(blocks, return_inverse=True)[1]
+    is_judged_by_pulls = surfaces.blocks is not None and surfaces.blocks.treatment == "fixed"
+    pulls = result.runs.run if is_judged_by_pulls else result.runs.names
     rows = []
     for index, name in enumerate(surfaces.response_names):
         of = response_of_surface(name)
@@ -301,7 +303,7 @@ def with_shared_surfaces(result: ExperimentResult) -> ExperimentResult:
         if surfaces.transform[index] == "log-times-frequency" and "frequency" in shared.values:
             # both factors of the product have errors
             own = own + shared.values["frequency"] / surfaces.multiplier(surfaces.coded)[index]
-        several = _of_several_runs(own, level)
+        several = _of_several_pulls(own, level, pulls)
         rows.append(
             _coefficient_contributions(
                 surfaces.coded, surfaces.exponents, surfaces.coefficient[index],
@@ -322,10 +324,12 @@ def with_shared_surfaces(result: ExperimentResult) -> ExperimentResult:
     )
 
 
-def _of_several_runs(response: Floats, level: Floats) -> Bools:
-    """Mask of errors of more than one run: that of one (its temperature) is in the scatter."""
+def _of_several_pulls(response: Floats, level: Floats, pulls: Sequence[str]) -> Bools:
+    """Mask of errors of more than one pull: that of one (its temperature) is in the scatter."""
     moves = (np.nan_to_num(response) != 0) | (np.nan_to_num(level) != 0).any(axis=2)
-    return np.asarray(moves.sum(axis=1) > 1)
+    _, place = np.unique(np.asarray(pulls), return_inverse=True)
+    of_pull = place == np.arange(place.max() + 1)[:, None]
+    return np.asarray((moves @ of_pull.T > 0).sum(axis=1) > 1)
 
 
 def _slope_of_scale(

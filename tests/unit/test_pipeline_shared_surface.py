@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from experiments import surface_experiment
 
+from reduction.experiments.response_surfaces import fit_surfaces
 from reduction.record.contributions import Component, Contributions
 from reduction.uncertainty.surface_errors import with_shared_surfaces
 
@@ -57,3 +58,47 @@ def test_an_error_of_two_runs_is_in_the_surface_as_least_squares_have_it(fitted)
 def test_a_load_cell_of_all_runs_stays(fitted):
     cell = Component("tension_gain", "load cell")
     assert np.abs(coefficient(with_shared_surfaces(fitted), cell)).max() > 0
+
+
+def of_two_specimens(fitted, *, short):
+    """Both specimens in each pull, the second in the first pulls only."""
+    runs = fitted.runs
+    rows = np.concatenate([np.arange(15), np.arange(short)])
+    who = ("A",) * 15 + ("B",) * short
+    named = {
+        name: getattr(runs, name)[..., rows]
+        for name in ("response", "response_standard_uncertainty", "frequency", "mean_tension",
+                     "tension_amplitude", "peak_tension", "minimum_tension",
+                     "rated_break_strength")
+    }  # fmt: skip
+    table = replace(
+        runs, run=tuple(runs.run[row] for row in rows), specimen=who, level=runs.level[rows],
+        coded_plan=runs.coded_plan[rows], remarks=tuple(() for _ in rows), shared=None,
+        response_whole_uncertainty=None, **named,
+    )  # fmt: skip
+    surfaces = fit_surfaces(
+        table.level, table.response, factor_names=fitted.factor_names,
+        response_names=fitted.response_names, low=fitted.low, high=fitted.high,
+        run_names=table.names, blocks=who, pulls=table.run,
+    )  # fmt: skip
+    return replace(fitted, runs=table, surfaces=surfaces, shared=None)
+
+
+def shared_by(result, row):
+    values = dict.fromkeys((STIFFNESS, *result.factor_names), 0 * row[None])
+    shared = Contributions((Component("lag", "x"),), values | {STIFFNESS: row[None]})
+    found = with_shared_surfaces(replace(result, runs=replace(result.runs, shared=shared)))
+    return found.shared.coefficient[0, 0]
+
+
+def test_an_error_of_one_pull_of_two_specimens_is_in_the_scatter_of_the_pulls(fitted):
+    both = of_two_specimens(fitted, short=15)
+    row = np.zeros(30)
+    row[[2, 17]] = 50.0
+    assert (shared_by(both, row) == 0).all()
+
+
+def test_an_error_of_one_specimen_moves_the_mean_of_two_by_half_however_many_runs_it_has(fitted):
+    both = of_two_specimens(fitted, short=6)
+    row = np.where(np.arange(21) < 15, 50.0, 0.0)
+    assert shared_by(both, row) == pytest.approx([25.0, *[0.0] * 9], abs=1e-6)

@@ -5,6 +5,7 @@ from statsmodels.regression.linear_model import GLS
 
 from reduction.experiments.block_effects import _fit_random_intercept, block_columns
 from reduction.experiments.designs import box_behnken, model_matrix, quadratic_exponents
+from reduction.experiments.response_surfaces import fit_surfaces
 from reduction.record.errors import DataError
 
 RUNS = np.tile(box_behnken(3).coded, (4, 1))
@@ -134,3 +135,62 @@ def test_columns_of_blocks_leave_the_mean_the_mean_over_blocks():
 def test_one_block_is_refused():
     with pytest.raises(DataError, match="one block and nothing to compare it with; found A"):
         block_columns(["A", "A"])
+
+
+PULLS = [f"R{run}" for run in range(15)]
+LEVELS = box_behnken(3).coded
+NAMES = {"factor_names": ["f", "T", "a"], "low": [-1] * 3, "high": [1] * 3, "units": "coded"}
+
+
+def quadratic(coded):
+    return model_matrix(coded, quadratic_exponents(3)) @ np.linspace(30, 21, 10)
+
+
+def test_specimens_pulled_together_with_one_error_tell_no_more_than_one_specimen():
+    # values of the second are those of the first and a constant: nothing is learnt from them
+    one = quadratic(LEVELS) + np.random.default_rng(4).normal(0, 0.3, 15)
+    alone = fit_surfaces(LEVELS, [one], response_names=["y"], **NAMES)
+    both = fit_surfaces(
+        np.vstack([LEVELS, LEVELS]), [np.concatenate([one, one + 2.0])], response_names=["y"],
+        blocks=["A"] * 15 + ["B"] * 15, pulls=PULLS * 2, **NAMES,
+    )  # fmt: skip
+    for name in ("coefficient_standard_uncertainty", "t", "p_value"):
+        found, wanted = getattr(both, name)[0], getattr(alone, name)[0]
+        assert found[1:] == pytest.approx(wanted[1:], rel=1e-9)
+    assert both.degrees_of_freedom[0] == 5
+    assert both.overall_p_value[0] == pytest.approx(alone.overall_p_value[0], rel=1e-6)
+    assert both.lack_of_fit.p_value[0] == pytest.approx(alone.lack_of_fit.p_value[0], rel=1e-6)
+    own, other = both.anova, alone.anova
+    for source in ("first order", "interactions", "squares"):
+        place, wanted = own.source.index(source), other.source.index(source)
+        assert own.p_value[0, place] == pytest.approx(other.p_value[0, wanted], rel=1e-6)
+    within = own.sum_of_squares[0, own.source.index("within pulls")]
+    assert within == pytest.approx(0, abs=1e-9)
+
+
+@pytest.mark.parametrize("missing", [0, 3])
+def test_errors_of_pulls_leave_five_percent_of_terms_without_effect_significant(missing):
+    rng = np.random.default_rng(12)
+    ratio = []
+    for _ in range(60):
+        own, common = rng.normal(0, 0.5, 30), np.tile(rng.normal(0, 1, 15), 2)
+        values = 30 + own + common
+        values[rng.choice(30, missing, replace=False)] = np.nan
+        found = fit_surfaces(
+            np.vstack([LEVELS, LEVELS]), [values], response_names=["y"], with_tests=False,
+            blocks=["A"] * 15 + ["B"] * 15, pulls=PULLS * 2, **NAMES,
+        )  # fmt: skip
+        uncertainty = found.coefficient_standard_uncertainty
+        ratio.append(np.abs(found.coefficient / uncertainty)[0, 1:])
+    # Student's t at 5 % for five degrees of freedom; by the scatter of thirty rows it is 30 %
+    assert 0.02 < np.mean(np.array(ratio) > 2.571) < 0.09
+
+
+def test_pulls_of_one_specimen_each_change_nothing():
+    runs = np.vstack([LEVELS, LEVELS])
+    values = [quadratic(runs) + np.random.default_rng(5).normal(0, 0.3, 30)]
+    given = {"response_names": ["y"], "blocks": ["A"] * 15 + ["B"] * 15, **NAMES}
+    apart = fit_surfaces(runs, values, pulls=[*PULLS, *(f"{one} B" for one in PULLS)], **given)
+    plain = fit_surfaces(runs, values, **given)
+    assert apart.anova.source == plain.anova.source
+    np.testing.assert_array_equal(apart.p_value, plain.p_value)
