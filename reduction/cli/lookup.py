@@ -1031,7 +1031,7 @@ def look_up_against(
         look_up(line, wanted.quantity, branch=wanted.branch, extrapolate=wanted.extrapolate, **at)
         for line, at in ((first, points), (second, others))
     ]
-    found = compare_values(*values)
+    found = compare_values(*values, campaigns=(first.campaign, second.campaign))
     if pair is not None:
         found = replace(found, notes=(*pair.notes, *found.notes))
         output.say(pair.notes[0] + "; " + pair.notes[1])

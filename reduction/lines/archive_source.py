@@ -227,6 +227,7 @@ def _line_source_of_experiment(
         surfaces=surfaces,
         specimens=_specimens_of(dataset, experiment),
         notes=_synthetic(dataset),
+        campaign=str(dataset.attrs.get("campaign", "")),
         **_agreed([(specimens or {}).get(one, {}) for one in _specimens_of(dataset, experiment)]),
     )
 
@@ -491,6 +492,7 @@ def _line_of_curves(
         conditions=_conditions(dataset),
         specimens=(specimen,),
         notes=_synthetic(dataset),
+        campaign=str(dataset.attrs.get("campaign", "")),
         **_facts(dataset, place),
     )
 

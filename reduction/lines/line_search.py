@@ -38,6 +38,7 @@ from reduction.lines.line_curve import (
 )
 from reduction.lines.lookup_product import DesignValues, LineLevels, LineSource
 from reduction.quantities.units import parse_quantity
+from reduction.record.contributions import within
 from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import Bools, Floats, read_only_arrays
 
@@ -311,11 +312,15 @@ class LineDifference:
         return np.asarray(self.first.is_inside & self.second.is_inside)
 
 
-def compare_values(first: DesignValues, second: DesignValues) -> LineDifference:
+def compare_values(
+    first: DesignValues, second: DesignValues, *, campaigns: tuple[str, str] = ("", "")
+) -> LineDifference:
     """Difference and ratio of two lines at the points of two look-ups.
 
     Notes
     -----
+    Values of two campaigns share the errors of instruments that both name; those of their specimens
+    and of instruments without a name are independent, even where they are called the same.
     Limits by [2]_, which needs only the two intervals and holds where they are not symmetric: a
     surface transformed back from a logarithm, or an open coefficient.  For two normal values with
     the same degrees of freedom the half width is Student's t of these times the root of the summed
@@ -338,6 +343,12 @@ def compare_values(first: DesignValues, second: DesignValues) -> LineDifference:
     >>> print(compare_values(*values).ratio.round(3))
     1.306
     """
+    is_of_two = all(campaigns) and campaigns[0] != campaigns[1]
+    if is_of_two:
+        first, second = (
+            replace(one, component=tuple(within(error, name) for error in one.component))
+            for one, name in zip((first, second), campaigns, strict=True)
+        )
     difference = second.value - first.value
     shared = shared_of({"first": first, "second": second})
     rows, of = shared.values["second"] - shared.values["first"], shared.degrees_of_freedom
@@ -370,7 +381,7 @@ def compare_values(first: DesignValues, second: DesignValues) -> LineDifference:
         is_test_different=_apart(low, high),
         is_kind_different=_apart(kind_low, kind_high),
         is_line_different=_apart(line_low, line_high),
-        notes=_notes(first, second),
+        notes=_notes(first, second, is_of_two=is_of_two),
     )
 
 
@@ -405,7 +416,7 @@ def _root(*parts: Floats) -> Floats:
     return np.asarray(np.sqrt(sum(one**2 for one in parts)))
 
 
-def _notes(first: DesignValues, second: DesignValues) -> tuple[str, ...]:
+def _notes(first: DesignValues, second: DesignValues, *, is_of_two: bool) -> tuple[str, ...]:
     """Describe the treatment of shared errors, or say that they are not known."""
     without = [one for one in (first, second) if not one.component]
     if len(without) == 2:
@@ -421,6 +432,7 @@ def _notes(first: DesignValues, second: DesignValues) -> tuple[str, ...]:
         )
     both = set(first.component) & set(second.component)
     if not both:
-        return ()
+        said = "the two campaigns name no instrument in common: their errors are independent"
+        return (said,) if is_of_two else ()
     names = ", ".join(dict.fromkeys(f"{one.source} of {one.of}" for one in sorted(both)))
     return (f"errors that both share count by their difference: {names}",)

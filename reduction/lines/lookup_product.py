@@ -306,6 +306,8 @@ class LineSource:
         Conditions of its tests, as a campaign states them: ``medium``, ``temperature`` ...
     specimens : tuple of str
         Specimens of the numbers; none for a published line.
+    campaign : str
+        Identification of the campaign; empty for published lines.
     notes, warnings : tuple of str
         Remarks on all its values, and warnings to be read before any value.
     """
@@ -333,6 +335,7 @@ class LineSource:
     specimens: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
+    campaign: str = ""
 
     @property
     def is_printed(self) -> bool:

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from typing import Literal
 
 import numpy as np
@@ -151,6 +151,30 @@ class Component:
     of: str
     number: int = 0
     degrees_of_freedom: float = field(default=math.inf, compare=False)
+
+
+_OF_NAMED = (
+    "tension_gain", "tension_offset", "lag", "position_gain", "position_offset",
+    "machine_compliance",
+)  # fmt: skip
+
+_UNNAMED = ("load cell, channel ", "weights, channel ", "crosshead")
+
+
+def within(component: Component, campaign: str) -> Component:
+    """Error under a name that no other campaign has, unless it is one of a named instrument.
+
+    Two campaigns may each have a specimen "new", and a load cell that neither names.
+
+    Examples
+    --------
+    >>> one = Component("tension_gain", "load cell, channel 1")
+    >>> within(one, "2005").of, within(Component("tension_gain", "cell 7, channel 1"), "2005").of
+    ('load cell, channel 1 of 2005', 'cell 7, channel 1')
+    """
+    if component.source in _OF_NAMED and not component.of.startswith(_UNNAMED):
+        return component
+    return replace(component, of=f"{component.of} of {campaign}")
 
 
 @dataclass(frozen=True)

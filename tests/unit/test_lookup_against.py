@@ -280,6 +280,28 @@ def test_two_load_cells_are_two_errors():
     assert found.notes == ()
 
 
+@pytest.mark.parametrize(
+    ("source", "of", "is_common"),
+    [
+        ("tension_gain", "load cell, channel 1", False),  # neither campaign names its load cell
+        ("tension_gain", "cell 7, channel 1", True),
+        ("position_gain", "crosshead", False),
+        ("position_gain", "rig 2", True),
+        ("diameter", "new", False),  # each has a specimen of this name
+        ("strain_calibration", "new, gauge-length", False),
+    ],
+)
+def test_two_campaigns_share_the_errors_of_instruments_that_they_name(source, of, is_common):
+    error = Component(source, of)
+    sides = [curve_under((error,), level, share=[0.1], scatter=0.0) for level in (920.0, 851.0)]
+    within_one = compare_values(*sides, campaigns=("2005", "2005"))
+    found = compare_values(*sides, campaigns=("2005", "2009"))
+    apart, together = np.hypot(92.0, 85.1), 92.0 - 85.1
+    for one, u in ((within_one, together), (found, together if is_common else apart)):
+        assert one.surface_high - one.difference == pytest.approx(1.96 * u, rel=1e-3)
+    assert ("no instrument in common" in found.notes[0]) is not is_common
+
+
 def test_diameters_of_three_readings_widen_the_interval_of_a_difference():
     sides = [
         curve_under(
