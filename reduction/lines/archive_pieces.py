@@ -311,6 +311,18 @@ def source_of_tests(
             if has_cycles and not has_area
             else None,
         )
+    for name in ("material", "construction"):
+        stated = _words_of(own, specimen, name)
+        if len(stated) > 1:
+            raise SettingsError(
+                f"the archives state another {name} of '{specimen}'",
+                found=_told(stated),
+                needed="one specimen",
+            )
+    stated = _words_of(own, specimen, "condition")
+    if len(stated) > 1:
+        told = f"the archives state another condition of '{specimen}', {_told(stated)}"
+        notes.insert(0, f"DOUBTFUL: {told}: their tests belong together if this is one specimen")
     models = [strain_model_of(one, specimens_of(one).index(specimen)) for one in own]
     known = [model for model in models if model is not None]
     if any(_differ(known[0], other) for other in known[1:]):
@@ -357,6 +369,21 @@ def _differ(one: StrainModel, other: StrainModel) -> bool:
         return True
     values = [np.array(list(model.coefficients.values())) for model in (one, other)]
     return not np.allclose(values[0], values[1], rtol=_SAME, atol=0)
+
+
+def _words_of(datasets: Sequence[xr.Dataset], specimen: str, name: str) -> dict[str, str]:
+    """First archive for each text that is stated of the specimen."""
+    found: dict[str, str] = {}
+    for one in datasets:
+        if f"specimen_{name}" in one:
+            text = str(one[f"specimen_{name}"].values[specimens_of(one).index(specimen)])
+            if text:
+                found.setdefault(text, _id(one))
+    return found
+
+
+def _told(stated: dict[str, str]) -> str:
+    return ", ".join(f"{text} in {where}" for text, where in stated.items())
 
 
 def _one_number(datasets: Sequence[xr.Dataset], specimen: str, name: str) -> float:

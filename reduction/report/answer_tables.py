@@ -433,16 +433,21 @@ def _at_one_strain(view: TestView, place: int, pulled: _Series, load: Floats) ->
     The gain of a load cell changes the tension at one strain by all of itself, and K_0 at one
     tension by less where the curve stiffens.
     """
-    names = (_PULLED, "quasi_static_strain")
-    rows = [view.array(f"{name}_uncertainty_contribution") for name in names]
-    random = [view.array(f"{name}_random_standard_uncertainty") for name in names]
-    if any(one is None for one in (*rows, *random)) or np.isfinite(pulled.values).sum() < _SLOPE:
+    slope_rows, strain_rows, slope_alone, strain_alone = (
+        view.array(f"{name}_{part}")
+        for part in ("uncertainty_contribution", "random_standard_uncertainty")
+        for name in (_PULLED, "quasi_static_strain")
+    )
+    if (
+        slope_rows is None or strain_rows is None or slope_alone is None or strain_alone is None
+        or np.isfinite(pulled.values).sum() < _SLOPE
+    ):  # fmt: skip
         return pulled
     known = np.isfinite(pulled.values)
     turn = np.full(load.size, np.nan)
     turn[known] = pulled.values[known] * np.gradient(pulled.values[known], load[known])
-    shared = np.nan_to_num(rows[0][:, place]) - turn * np.nan_to_num(rows[1][:, place])
-    alone = np.hypot(random[0][place], turn * random[1][place])
+    shared = np.nan_to_num(slope_rows[:, place]) - turn * np.nan_to_num(strain_rows[:, place])
+    alone = np.hypot(slope_alone[place], turn * strain_alone[place])
     spread = np.hypot(np.linalg.norm(shared, axis=0), alone)
     return _Series(pulled.values, pulled.factor * spread, pulled.factor)
 

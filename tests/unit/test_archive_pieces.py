@@ -267,6 +267,25 @@ def test_specimens_of_one_name_and_two_diameters_are_refused():
         source_of_tests([cyclic(), cyclic("T-2", 2, diameter=0.03)], "new", branch="mean")
 
 
+def stated(dataset, **words):
+    return dataset.assign({f"specimen_{name}": ("specimen", [one]) for name, one in words.items()})
+
+
+def test_specimens_of_one_name_and_two_makes_are_refused_and_two_conditions_are_doubted():
+    """Two campaigns may each have a specimen of this name."""
+    pair = cyclic(), cyclic("T-2", 2)
+    ropes = [
+        stated(one, material=name) for one, name in zip(pair, ("nylon", "polyester"), strict=True)
+    ]
+    with pytest.raises(SettingsError, match="another material of 'new'; found nylon in c/T-1"):
+        source_of_tests(ropes, "new", branch="mean")
+    aged = [stated(pair[0], condition="new"), stated(pair[1], condition="4 years")]
+    doubt = source_of_tests(aged, "new", branch="mean").notes[0]
+    assert doubt.startswith("DOUBTFUL: the archives state another condition of 'new', new in c/T-1")
+    alike = source_of_tests([stated(pair[0], condition="new"), pair[1]], "new", branch="mean")
+    assert not any("another condition" in note for note in alike.notes)
+
+
 def test_mass_a_length_is_that_of_all_its_tests():
     tests = [
         one.assign(linear_density=("specimen", [0.1]), wet_linear_density=("specimen", [wet]))
