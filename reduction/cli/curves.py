@@ -203,6 +203,8 @@ def _show(source: PieceSource, curve: CompositeCurve, output: CommandOutput) -> 
     made = ", SYNTHETIC: nothing was tested" if source.is_synthetic else ""
     doubt = f"; DOUBTFUL: {curve.doubt}" if curve.doubt else ""
     output.say(f"{composite_table(source, curve).title}{made}{doubt}")
+    doubts, others = _doubts_first((*curve.notes, *source.notes))
+    output.say_each("note", doubts)
     _end_in_doubt(curve, output)
     table = table_of(
         "strain [%]", f"tension [{unit}]", f"standard uncertainty [{unit}]",
@@ -233,8 +235,14 @@ def _show(source: PieceSource, curve: CompositeCurve, output: CommandOutput) -> 
             ", ".join(flags),
         )
     output.show(table)
-    output.say_each("note", (*curve.notes, *source.notes))
+    output.say_each("note", others)
     output.say_each("source", source.sources)
+
+
+def _doubts_first(notes: Sequence[str]) -> tuple[list[str], list[str]]:
+    """Notes that doubt a test, which stand above the table, and the others."""
+    doubts = [one for one in notes if one.startswith("DOUBTFUL: ")]
+    return doubts, [one for one in notes if one not in doubts]
 
 
 def _end_in_doubt(curve: CompositeCurve, output: CommandOutput) -> None:
@@ -503,6 +511,8 @@ def _show_assembly(line: DeployedLine, output: CommandOutput) -> None:
     made = ", SYNTHETIC: nothing was tested" if line.source.is_synthetic else ""
     output.say(f"assembly {line.name}: {line.words}{made}")
     output.say_each("DOUBTFUL", line.doubts)
+    doubts, others = _doubts_first(line.notes)
+    output.say_each("note", doubts)
     if line.doubts:
         output.raise_status(DataError.exit_status)
     slack = assembly.slack_length
@@ -556,7 +566,7 @@ def _show_assembly(line: DeployedLine, output: CommandOutput) -> None:
     output.show(table)
     for number, state in enumerate(deployed.working, start=1):
         _show_working(number, state, assembly.span_share, output)
-    output.say_each("note", line.notes)
+    output.say_each("note", others)
     output.say_each("source", (line.splices, *line.source.sources))
 
 
