@@ -224,10 +224,16 @@ def _stretches(
         # the edge is an extreme of its own where the nearest one is at least a band away
         inner = nodes if nodes.size else np.array([end])
         if abs(values[begin] - values[inner[0]]) >= band:
-            nodes = np.concatenate([[begin], nodes])
+            at = begin
+            if edges[place] == "record":
+                at = _farthest(values, begin, int(inner[0]))
+            nodes = np.concatenate([[at], nodes])
         inner = nodes if nodes.size else np.array([begin])
         if abs(values[end] - values[inner[-1]]) >= band:
-            nodes = np.concatenate([nodes, [end]])
+            at = end
+            if edges[place + 1] == "record":
+                at = _farthest(values, end, int(inner[-1]))
+            nodes = np.concatenate([nodes, [at]])
         if nodes.size > 1:
             near = _EDGE_SHARE * (nodes[-1] - nodes[0]) / (nodes.size - 1)
             edge = edges[place]
@@ -241,6 +247,23 @@ def _stretches(
                 )
             )
     return found
+
+
+def _farthest(values: Floats, edge: int, turn: int) -> int:
+    """Sample between an edge of the record and a turn that is farthest from the turn.
+
+    A log, or a part of it between gaps, may begin a little before a turn or end a little behind
+    it, by less than the band of reversals.
+
+    Examples
+    --------
+    >>> _farthest(np.array([0.1, 0.0, 1.0, 2.0]), 0, 3)
+    1
+    """
+    begin, stop = min(edge, turn), max(edge, turn) + 1
+    is_valley = values[edge] < values[turn]
+    part = values[begin:stop]
+    return begin + int(np.nanargmin(part) if is_valley else np.nanargmax(part))
 
 
 def _finite_ends(values: Floats) -> tuple[int, int]:

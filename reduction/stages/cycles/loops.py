@@ -207,7 +207,8 @@ def _own_drift(
     missed = np.zeros(cycles.n_cycles)
     begins = np.flatnonzero(~touching(cycles))
     for start, stop in zip(begins.tolist(), [*begins[1:].tolist(), cycles.n_cycles], strict=True):
-        is_short = cycles.n_cycles <= _SHORT_RUN
+        # a cycle that is stored alone has no neighbours either, however many are stored
+        is_short = cycles.n_cycles <= _SHORT_RUN or stop - start == 1
         if is_short:
             drifts[start:stop] = 0.0
         for place in range(start, min(start + _SHORT_RUN, stop if is_short else stop - 1)):
@@ -234,6 +235,8 @@ def _own_drift(
                 drifts[place] = drift
             elif is_later:
                 missed[place] = np.nan_to_num(np.abs(drift - drifts[place]))
+            elif stop - start == 1:
+                missed[place] = np.abs(drift) if np.isfinite(drift) else error
             if not is_own[place] and not is_short:
                 break
     return drifts, is_own, missed
@@ -286,7 +289,7 @@ def _from_turn_to_turn(
         slopes.append(_slope(level - level.mean(axis=1, keepdims=True), other))
         missed, drift = (float(np.diff(one.mean(axis=1))[0]) for one in (level, other))
         by_driven = slopes[-1] * (missed - n_cycles * of_driven)
-        found.append(_at_one_level(drift, by_driven) / n_cycles)
+        found.append(_at_one_level(drift, by_driven, most=_OF_DRIVEN) / n_cycles)
     # of what dies away, the peaks before have more; what settles moves the two apart
     lesser = min(found, key=abs) if min(found) * max(found) > 0 or len(found) == 1 else 0.0
     lesser = lesser if np.isfinite(found).all() else np.nan
@@ -326,10 +329,10 @@ def _slope(apart: Floats, other: Floats) -> float:
     return float(np.sum(apart * other)) / square if square > 0 else 0.0
 
 
-def _at_one_level(drift: float, of_driven: float) -> float:
+def _at_one_level(drift: float, of_driven: float, *, most: float) -> float:
     """Without what the driven channel misses; NaN where most of it is a drift of that channel."""
     found = drift - of_driven
-    return found if np.abs(of_driven) < _OF_DRIVEN * np.abs(found) else np.nan
+    return found if np.abs(of_driven) < most * np.abs(found) else np.nan
 
 
 def _from_valley_to_valley(
@@ -351,9 +354,11 @@ def _from_valley_to_valley(
             (driven, end, begin), (answer, end, begin), (answer, peak, peak),
         )
     )  # fmt: skip
-    moved = driven[begin : end + 1]
-    slope = _slope(moved - moved.mean(), answer[begin : end + 1])
-    drift = _at_one_level(other, slope * level)
+    # of a bent curve the slope beside the valleys counts
+    beside = np.concatenate([begin + away, end - away])
+    moved = driven[beside]
+    slope = _slope(moved - moved.mean(), answer[beside])
+    drift = _at_one_level(other, slope * level, most=_OF_DRIVEN / 2)
     drift = drift if np.abs(by_friction) < _OF_DRIFT * np.abs(other) else np.nan
     return drift, slope, np.sqrt(2) * float(np.linalg.norm(odd))
 

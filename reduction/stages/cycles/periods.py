@@ -243,8 +243,14 @@ def periods_alone(
         cycles.last - cycles.first
     )
     is_cut = take_samples(time, after) - take_samples(time, cycles.last) > _GAP * steps
+    if is_sine:  # readings behind its end tell nothing that the fit does not
+        begins_next = np.append(cycles.first[1:], cycles.last[-1])
+        wait = take_samples(time, begins_next) - take_samples(time, cycles.last)
+        is_cut |= wait > _GAP * steps * np.fmax(begins_next - cycles.last, 1)
     # so is the last of them, and one that is a whole log
-    is_cut |= (after == cycles.last) & (is_cut.any() | is_alone(cycles, time.size))
+    is_last = after == cycles.last
+    is_last[-1:] |= is_sine
+    is_cut |= is_last & (is_cut.any() | is_alone(cycles, time.size))
     place = np.flatnonzero(~touch & ~np.append(touch[1:], False) & is_cut)
     period, spread = np.empty((2, place.size))
     for row, one in enumerate(place.tolist()):
