@@ -88,6 +88,15 @@ def test_a_specimen_that_settles_or_softens_has_no_clocks_that_drift(law):
     ]
 
 
+def test_a_sweep_of_frequency_has_no_clocks_that_drift():
+    # the loss angle of a linear material rises with the frequency, as in its glass transition
+    cycle = np.arange(200)
+    loops = cycles_of(11 * (1 + cycle / 200))
+    swept = replace(loops, frequency=loops.frequency * (1 + cycle / 400))
+    told = [[one.code for one in notes(each)] for each in (loops, swept)]
+    assert ["loops-widen-evenly" in codes for codes in told] == [True, False]
+
+
 def test_a_loop_that_loses_work_gets_no_note():
     assert notes(loops_of(0.1)) == ()
 

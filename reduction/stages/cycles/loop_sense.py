@@ -48,6 +48,8 @@ _EVEN = 0.5  # least ratio of the slopes of both halves of the cycles
 
 _STIFFNESS_STAYS = 0.1  # greatest relative change of EA over that of the energy
 
+_WAVE_STAYS = 0.2  # relative, of frequency times both amplitudes
+
 _LEAST_LOSS = 1e-3  # loss factor that no rubber or fibre comes near
 
 _FRICTION = 2.0  # loss over the fall of tension with stretch: less may be damping besides inertia
@@ -419,8 +421,8 @@ def _drift_of_lag(loops: Loops, row: int, *, stated: float) -> tuple[float, floa
     """Change of the lag of tension over a test, and its duration; NaN where none shows. [s].
 
     The loops widen or narrow by as much in the first half of the cycles as in the second, by more
-    than the stated lag, while EA is constant.  A specimen that settles changes less and less, and
-    one that heats or wears usually changes its stiffness too.
+    than the stated lag, while EA and the wave are constant.  A specimen that settles changes less
+    and less, and one that heats or wears usually changes its stiffness too.
     """
     energy, stiffness = loops.hysteresis_energy[row], loops.apparent_spring_constant[row]
     swing = loops.frequency[row] * loops.tension_amplitude[row] * loops.strain_amplitude[row]
@@ -438,12 +440,15 @@ def _drift_of_lag(loops: Loops, row: int, *, stated: float) -> tuple[float, floa
     change = slope * float(time[-1])
     mean = float(np.median(lag))
     softens = _slope(time, stiffness[known])[0] * time[-1] / float(np.median(stiffness[known]))
+    # in a sweep the energy changes with the wave
+    swings = _slope(time, swing[known])[0] * time[-1] / float(np.median(swing[known]))
     shows = (
         slopes[0] * slopes[1] > 0
         and min(np.abs(slopes)) > max(_EVEN * max(np.abs(slopes)), _BEYOND_SCATTER * max(errors))
         and abs(slope) > _BEYOND_SCATTER * error
         and abs(change) / 2 > max(stated, _DRIFT_TOLD * abs(mean))
         and abs(softens * mean) < _STIFFNESS_STAYS * abs(change)
+        and abs(swings) < _WAVE_STAYS
     )
     return (change, float(time[-1])) if shows else (np.nan, np.nan)
 
