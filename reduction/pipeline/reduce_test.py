@@ -205,16 +205,44 @@ def _slack_in_cycles(located: Located, settings: ReductionSettings) -> list[floa
     """Tension at or below which each specimen is slack in its cycles. [N].
 
     Two hundredths of the peak, unless the log shows the reading of the cell at slack: the tension
-    of a hose or soft rope that stiffens is well below that.
+    of a hose or soft rope that stiffens is well below that. Half of it where the load turns there
+    at once, as a machine that is set to a low load turns a stiff line.
     """
     level = located.standstills.slack_tension
     if settings.phases.slack_tension is not None:
         return [level] * len(located.record.specimens)
     rests = located.load_at_slack or (None,) * len(located.record.specimens)
-    return [
+    levels = [
         level if one is None else min(level, max(one.earlier, one.later) + _BEYOND_REST * level)
         for one in rests
     ]
+    if located.cycles is None or not located.cycles.n_cycles:
+        return levels
+    return [
+        one / 2 if _share_of_stroke_below(one, load, located.position, located.cycles) < _AT_A_TURN
+        else one
+        for one, load in zip(levels, located.tension, strict=True)
+    ]  # fmt: skip
+
+
+_AT_A_TURN = 0.01  # of the stroke: the last hundredth at which a load of 2 % of the peak turns
+
+
+def _share_of_stroke_below(level: float, load: Floats, position: Floats, cycles: Cycles) -> float:
+    """Greatest share of the stroke of a cycle that the crosshead moves at a load below a level."""
+    greatest = 0.0
+    for block in cycles.blocks():
+        low, high = int(cycles.first[block.start]), int(cycles.last[block.stop - 1]) + 1
+        place = position[low:high]
+        at_low_load = np.where(load[low:high] <= level, place, np.nan)
+        first, stop = cycles.first[block] - low, cycles.last[block] + 1 - low
+        moved, stroke = (
+            over_intervals(np.fmax, one, first, stop) - over_intervals(np.fmin, one, first, stop)
+            for one in (at_low_load, place)
+        )
+        with np.errstate(divide="ignore", invalid="ignore"):
+            greatest = max(greatest, float(np.nan_to_num(moved / stroke).max()))
+    return greatest
 
 
 def _slack(name: str, valley_tension: Floats, slack_tension: float) -> list[Note]:

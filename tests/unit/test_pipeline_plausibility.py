@@ -7,6 +7,7 @@ import pytest
 from reduction.pipeline.reduce_test import _drift, _plausibility_notes, _slack_in_cycles
 from reduction.record.measurement import Specimen
 from reduction.record.settings import ModulusSettings, PhaseSettings, ReductionSettings
+from reduction.stages.cycles.cycle_product import Cycles
 from reduction.stages.cycles.loops import close_loops
 from reduction.stages.load_at_slack import LoadAtSlack
 from reduction.stages.moduli.tangent_modulus import tangent_curves
@@ -126,10 +127,29 @@ def test_what_the_cell_reads_at_slack_says_what_is_slack_in_the_cycles():
         record=SimpleNamespace(specimens=("new", "no rest", "wrong zero")),
         standstills=SimpleNamespace(slack_tension=430.0),
         load_at_slack=(rest, None, replace(rest, later=700.0)),
+        cycles=None,
     )
     assert _slack_in_cycles(located, ReductionSettings()) == [119.5, 430.0, 430.0]
     stated = replace(ReductionSettings(), phases=PhaseSettings(slack_tension=430.0))
     assert _slack_in_cycles(located, stated) == [430.0] * 3
+
+
+@pytest.mark.parametrize(("valley", "level"), [(19.0, 10.0), (5.0, 20.0), (0.0, 20.0)])
+def test_a_line_that_turns_at_a_low_load_is_not_slack(valley, level):
+    """Load 0 to 1000 N over the travel, cut off at zero; a fiftieth of the peak is 20 N."""
+    travel = 1 - np.abs(np.arange(2001) % 400 / 200 - 1)  # five cycles from 0 to 1
+    at = np.arange(0, 2000, 400)
+    ends = np.column_stack([at, at + 200])
+    cycles = Cycles(
+        at, at + 400, ends, ends + 200, np.ones((5, 2)), np.zeros(2001, np.int32),
+        np.zeros(2001, np.int8), np.zeros(2001, bool), 0.1,
+    )  # fmt: skip
+    located = SimpleNamespace(
+        record=SimpleNamespace(specimens=("new",)), standstills=SimpleNamespace(slack_tension=20.0),
+        load_at_slack=(), cycles=cycles, position=travel,
+        tension=np.maximum(valley + (1000 - valley) * travel, 0)[None],
+    )  # fmt: skip
+    assert _slack_in_cycles(located, ReductionSettings()) == [level]
 
 
 @pytest.mark.parametrize(("share", "n_notes"), [(0.5, 1), (0.7, 0)])
