@@ -14,7 +14,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from reduction.quantities.units import DIMENSIONS, Dimension
+from reduction.quantities.units import DIMENSIONS, Dimension, scale_to_si
 from reduction.readers.columns import (
     CLOCK_TEXT,
     FORCE_OF_MASS,
@@ -532,8 +532,10 @@ class _Start:
         position = sign * self.position
         begin, travel = float(position[0]), float(np.ptp(position))
         seen = f"the position begins at {begin:g} {unit} and travels {travel:g} {unit} at the start"
-        # a pin-to-pin length is positive, and in most tests above a quarter of the travel
-        if begin > 0.25 * travel and float(position.min()) > 0.1 * travel:
+        # a pin-to-pin length is positive, and in most tests above a quarter of the travel; a
+        # specimen that is already taut begins at a few millimetres of displacement
+        is_length = unit == UNKNOWN or begin * scale_to_si(unit, "length")[0] > _SHORTEST_SPECIMEN
+        if is_length and begin > 0.25 * travel and float(position.min()) > 0.1 * travel:
             return ', datum = "pin-to-pin"', [
                 f"guess: datum pin-to-pin, because {seen}: a displacement would begin near 0"
             ]
@@ -564,6 +566,9 @@ class _Start:
             f"unknown: zero: {at_rest}: that is the zero if the specimen was slack there, and"
             f' "0 {unit}" if it was under load'
         ]
+
+
+_SHORTEST_SPECIMEN = 5e-3  # from pin to pin [m]
 
 
 def _without_blanks(values: Floats) -> Floats:

@@ -298,6 +298,13 @@ def test_a_table_of_extremes_is_no_log_of_loops(tmp_path):
     assert "extremes of each cycle" not in " ".join(sniff_layout(path).remarks)
 
 
+@pytest.mark.parametrize(("unit", "datum"), [("mm", "displacement"), ("cm", "pin-to-pin")])
+def test_a_length_of_less_than_five_millimetres_is_no_specimen(tmp_path, unit, datum):
+    rows = [f"{i / 10},{1 + abs(i % 40 - 20) / 10:.2f},{abs(i % 40 - 20)}" for i in range(200)]
+    path = write(tmp_path, f"Time (s),Crosshead ({unit}),Load (N)\n" + "\n".join(rows) + "\n")
+    assert f'datum = "{datum}"' in sniff_layout(path).toml
+
+
 @pytest.mark.parametrize("name", ["Machine_N_cycles", "No. of cycles", "Cycle No.", "cycle index"])
 def test_a_count_of_cycles_is_known_by_its_name(tmp_path, name):
     rows = [f"{i / 10},{i // 20},{i % 20},{i % 20 / 3:.3f}" for i in range(100)]
