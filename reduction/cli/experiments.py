@@ -553,6 +553,7 @@ def _show_equation(
     if np.array_equal(surfaces.coefficient[index], engineering):
         return
     errors = surfaces.coefficient_engineering_standard_uncertainty[index]
+    n_digits = _digits_of_equation(surfaces, index)
     table = table_of("", "in units", "coefficient", "standard error", "unit", texts=2)
     rows = zip(
         surfaces.labels, surfaces.term_names, engineering, errors, surfaces.exponents, strict=True
@@ -560,10 +561,28 @@ def _show_equation(
     for label, term, coefficient, error, powers in rows:
         unit, scale = shown.of_term(tuple(powers.tolist()))
         table.add_row(
-            label, escape(term), short(scale * coefficient, 8), short(scale * error),
+            label, escape(term), short(scale * coefficient, n_digits), short(scale * error),
             escape(unit),
         )  # fmt: skip
     output.show(table)
+
+
+_FEWEST_DIGITS, _MOST_DIGITS = 8, 15
+
+
+def _digits_of_equation(surfaces: ResponseSurfaces, index: int) -> int:
+    """Digits that give the surface to a hundredth of the uncertainty at the centre.
+
+    Over a range that is small beside its level, such as 1 K at 278 K, the terms are much greater
+    than their sum.
+    """
+    level = np.maximum(np.abs(surfaces.low), np.abs(surfaces.high))
+    terms = surfaces.coefficient_engineering[index] * np.prod(level**surfaces.exponents, axis=1)
+    close = 0.01 * surfaces.coefficient_standard_uncertainty[index, 0]
+    if not close > 0:
+        return _FEWEST_DIGITS
+    digits = math.ceil(math.log10(max(np.abs(terms).max() / close, 1.0))) + 1
+    return min(max(digits, _FEWEST_DIGITS), _MOST_DIGITS)
 
 
 def _show_anova(

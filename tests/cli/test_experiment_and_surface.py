@@ -404,3 +404,34 @@ def test_an_energy_per_length_keeps_its_unit_in_print_and_tables(tmp_path, comma
     assert [row["unit_engineering"] for row in rows] == ["J m-1 N-2", "N-1"]
     head = (tmp_path / "made" / "tables" / "runs.csv").read_text(encoding="utf-8").splitlines()[0]
     assert "loss [J m-1],loss fitted [J m-1]" in head
+
+
+def test_the_printed_equation_gives_the_surface_over_a_range_small_beside_its_level(fit):
+    # eight digits of terms a hundred thousand times their sum leave an error of 0.9 uncertainties
+    pairs = [(one, other) for one in (-1.0, 1.0) for other in (-1.0, 1.0)]
+    coded = np.array([np.insert(pair, at, 0.0) for at in range(3) for pair in pairs] + [[0.0] * 3])
+    coded = np.vstack([coded, coded[-1:], coded[-1:]])
+    middle, half = np.array([0.3, 278.65, 8500.0]), np.array([0.2, 0.5, 3500.0])
+    values = 5e4 * np.exp(coded @ [0.05, 0.5, -0.2]) * (1 + 0.01 * np.sin(7.0 * np.arange(15)))
+    numbers = np.column_stack([middle + half * coded, values]).tolist()
+    lines = [",".join(map(repr, row)) for row in numbers]
+    head = "frequency [Hz],temperature [K],tension_amplitude [N],K [N]"
+    spec = (
+        '[factors]\nfrequency = ["0.1 Hz", "0.5 Hz"]\ntemperature = ["278.15 K", "279.15 K"]\n'
+        'tension_amplitude = ["5 kN", "12 kN"]\n[responses]\nK = {}\n'
+    )
+    text = "\n".join([head, *lines]) + "\n"
+    printed = fit(text, spec).stdout.split("in units")[-1].splitlines()
+    equation = [float(line.split()[2]) for line in printed if line.startswith("B")]
+    answer = answered(fit(text, spec, "--json"))["responses"]["K"]
+    at = np.random.default_rng(1).uniform(-1, 1, (50, 3))
+
+    def terms(level):
+        f, mean, swing = level.T
+        squares = [f**2, mean**2, swing**2]
+        return np.column_stack(
+            [np.ones(len(f)), *squares, f, mean, swing, f * mean, f * swing, mean * swing]
+        )
+
+    missed = terms(middle + half * at) @ equation - terms(at) @ answer["coefficient"]
+    assert np.abs(missed).max() < 0.1 * answer["standard_error"][0]
