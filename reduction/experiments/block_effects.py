@@ -308,15 +308,27 @@ def scatter_of_pulls(
     )
 
 
-def judged_by_pulls(found: _Estimates, scatter: ScatterOfPulls) -> _Estimates:
-    """Estimates with the scatter of the pulls in place of that of the runs."""
+def judged_by_pulls(
+    found: _Estimates, scatter: ScatterOfPulls, sigma: Floats, treatment: Literal["fixed", "random"]
+) -> _Estimates:
+    """Estimates with the scatter of the pulls in place of that of the runs, ``sigma``.
+
+    Terms that random blocks judge (the mean) keep the scatter between them.
+    """
     used = scatter.is_used
-    sigma = np.where(used, scatter.sigma, found.sigma)
-    freedom = np.where(used[:, None], scatter.degrees_of_freedom[:, None], found.degrees_of_freedom)
     with np.errstate(divide="ignore", invalid="ignore"):
-        t = found.t * (found.sigma / sigma)[:, None]
-    p_value = np.where(used[:, None], two_sided_p(t, freedom), found.p_value)
-    return replace(found, sigma=sigma, degrees_of_freedom=freedom, t=t, p_value=p_value)
+        ratio = np.where(used, scatter.sigma / sigma, 1.0)
+    within = np.array([one != "blocks" for one in found.error_term])
+    of_term = np.where(within, ratio[:, None], 1.0)
+    is_judged = used[:, None] & within
+    freedom = np.where(is_judged, scatter.degrees_of_freedom[:, None], found.degrees_of_freedom)
+    t = found.t / of_term
+    p_value = np.where(is_judged, two_sided_p(t, freedom), found.p_value)
+    judged = replace(found, degrees_of_freedom=freedom, t=t, p_value=p_value)
+    if treatment == "fixed":
+        return replace(judged, sigma=found.sigma * ratio)
+    factor = found.covariance_factor * of_term[:, :, None] * of_term[:, None, :]
+    return replace(judged, covariance_factor=factor)
 
 
 def deviations(

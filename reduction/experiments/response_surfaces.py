@@ -305,8 +305,8 @@ def fit_surfaces(
     block_treatment : {'fixed', 'random'}
         The effects apply to these specimens, or to random draws of their kind.
     pulls : sequence of str, length n_runs, optional
-        Pull of each run, equal for specimens that were pulled together. With fixed blocks, the
-        surfaces are then judged by the scatter of the pulls.
+        Pull of each run, equal for specimens that were pulled together; the surfaces are then
+        judged by the scatter of the pulls.
     transforms : {'none', 'log', 'box-cox', 'log-times-frequency'} or one a response
         Scale on which each response is fitted; the last one needs a factor called ``frequency``.
     replicate_tolerance : float
@@ -405,7 +405,7 @@ def fit_surfaces(
     cell = replicate_cells(coded, tolerance=replicate_tolerance)
     lack = lack_of_fit(fit, cell, baseline=baseline, tolerance=replicate_tolerance)
     judged = None
-    if grouping is not None and block_treatment == "fixed" and pulls is not None:
+    if grouping is not None and pulls is not None:
         judged = scatter_of_pulls(fit, surface, coded, pulls, lack)
     if judged is not None:
         lack = judged.lack
@@ -420,12 +420,13 @@ def fit_surfaces(
         )
     freedom = fit.degrees_of_freedom
     if judged is not None:
-        found = judged_by_pulls(found, judged)
-        freedom = np.where(judged.is_used, judged.degrees_of_freedom, freedom)
-        overall_f = overall_f * (fit.sigma / found.sigma) ** 2
+        found = judged_by_pulls(found, judged, fit.sigma, block_treatment)
+        of_pulls = np.where(judged.is_used, judged.degrees_of_freedom, freedom)
+        overall_f = np.where(judged.is_used, overall_f * (fit.sigma / judged.sigma) ** 2, overall_f)
         overall_p_value = np.where(
-            judged.is_used, fdtrc(len(terms) - 1, freedom, overall_f), overall_p_value
+            judged.is_used, fdtrc(len(terms) - 1, of_pulls, overall_f), overall_p_value
         )
+        freedom = of_pulls if block_treatment == "fixed" else freedom
     deviation, engineering_deviation, to_engineering = deviations(found, exponents, low, high)
     r2, adjusted, predicted = _shares(fit, baseline.shape[1])
     printed = statistics_from_r2(

@@ -294,8 +294,6 @@ def with_shared_surfaces(result: ExperimentResult) -> ExperimentResult:
             level[..., place] = shared.values[name] / half[place]
     blocks = result.runs.specimen if len(set(result.runs.specimen)) > 1 else None
     names = None if blocks is None else np.unique(blocks, return_inverse=True)[1]
-    is_judged_by_pulls = surfaces.blocks is not None and surfaces.blocks.treatment == "fixed"
-    pulls = result.runs.run if is_judged_by_pulls else result.runs.names
     rows = []
     for index, name in enumerate(surfaces.response_names):
         of = response_of_surface(name)
@@ -303,7 +301,7 @@ def with_shared_surfaces(result: ExperimentResult) -> ExperimentResult:
         if surfaces.transform[index] == "log-times-frequency" and "frequency" in shared.values:
             # both factors of the product have errors
             own = own + shared.values["frequency"] / surfaces.multiplier(surfaces.coded)[index]
-        several = _of_several_pulls(own, level, pulls)
+        several = _of_several_pulls(own, level, result.runs.run)
         rows.append(
             _coefficient_contributions(
                 surfaces.coded, surfaces.exponents, surfaces.coefficient[index],
