@@ -71,6 +71,7 @@ from reduction.stages.cycles.loop_sense import (
     waveform_of_log,
 )
 from reduction.stages.cycles.periods import change_of_period
+from reduction.stages.cycles.reading_noise import tone_beside_wave
 from reduction.stages.holds.hold_product import HoldResult
 from reduction.stages.holds.relaxation_and_creep import reduce_holds
 from reduction.stages.moduli.modulus_product import ModulusCurves
@@ -153,6 +154,25 @@ def _plausibility_notes(
             else slack(name, loops.valley_tension[index], slack_tensions[index])
         )
     return (*notes, *_waveform(cycles, waveform))
+
+
+def _tones(
+    record: Record, tension: Floats, cycles: Cycles | None, loops: Loops | None, waveform: Waveform
+) -> Iterator[Note]:
+    """Oscillations of the load beside its wave that are in its extremes; a fundamental has none."""
+    if cycles is None or loops is None or waveform == "sinusoidal":
+        return
+    for row, (name, load) in enumerate(zip(record.specimens, tension, strict=True)):
+        frequency, size = tone_beside_wave(record.time, load, cycles)
+        amplitude = finite_median(loops.tension_amplitude[row])
+        # it is in the extremes of all cycles alike
+        own = finite_median(loops.uncertainty["tension_amplitude"][row]) / np.sqrt(cycles.n_cycles)
+        if size > max(_OF_AMPLITUDE * amplitude, _BEYOND * own):
+            effect = size / amplitude
+            yield note("tension-hums", name, frequency=frequency, size=size, effect=effect)
+
+
+_OF_AMPLITUDE, _BEYOND = 0.002, 2.0  # of the tension amplitude; standard uncertainties of the mean
 
 
 def _half_range(strain: Floats, cycles: Cycles) -> Floats:
@@ -1097,6 +1117,7 @@ def reduce_test(
                 lag=[one.lag for one in instruments] or [0.0] * len(specimens),
                 is_sinusoidal=settings.cycles.waveform == "sinusoidal",
             ),
+            *_tones(record, tension, cycles, cycle_parts["loops"], settings.cycles.waveform),
             *notes_on_jumps(
                 cycle_parts["loops"], record.specimens,
                 break_in=settings.cycles.break_in_cycles,

@@ -703,6 +703,14 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             + ". Test each frequency separately"
         ),
     ),
+    "tension-hums": (
+        "warning",
+        lambda frequency, size, effect: (
+            f"tension oscillates at {frequency:.3g} Hz by {size:.3g} N beside its wave (mains hum,"
+            f" or a vibration): its extremes are off by up to {effect:.1%} of the tension amplitude"
+            ", and EA with them. Remove the cause, or filter both channels alike before the run"
+        ),
+    ),
     "loops-give-work": (
         "warning",
         lambda energy, n_cycles, n_known, delay, stated, time_step, cause: (
@@ -2010,7 +2018,8 @@ CAUSES = (
     "target-strain-missed", "density-outside-band", "strain-above-band",
     "extensometer-off-at-slack", "reference-tension-elsewhere", "length-jumps",
     "slipped-in-earlier-step", "strain-below-zero",
-    "wave-not-periodic", "tension-late", "tension-filtered", "tension-behind-position",
+    "wave-not-periodic", "tension-hums", "tension-late", "tension-filtered",
+    "tension-behind-position",
     "loops-give-work", "loops-not-of-a-sine", "hold-load-late",
 )  # fmt: skip
 """Errors in stated inputs, causes before their consequences."""

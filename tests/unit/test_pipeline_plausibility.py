@@ -4,7 +4,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from reduction.pipeline.reduce_test import _drift, _plausibility_notes, _slack_in_cycles
+from reduction.pipeline.reduce_test import _drift, _plausibility_notes, _slack_in_cycles, _tones
 from reduction.record.measurement import Specimen
 from reduction.record.settings import ModulusSettings, PhaseSettings, ReductionSettings
 from reduction.stages.cycles.cycle_product import Cycles
@@ -97,6 +97,31 @@ def test_the_drift_of_a_first_cycle_is_that_of_the_ramp_before_it(far, gap, seve
     (note,) = _drift("new", loops, 0, half[0], cycles)
     assert note.severity == severity
     assert note.numbers["n_far"] == len(far)
+
+
+@pytest.mark.parametrize(
+    ("hum", "waveform", "is_told"),
+    [(2.0, "triangular", True), (0.0, "triangular", False), (0.1, "triangular", False),
+     (2.0, "sinusoidal", False)],
+)  # fmt: skip
+def test_hum_is_in_the_extremes_of_ramps_and_not_in_a_fundamental(hum, waveform, is_told):
+    per = 500
+    time = np.arange(10 * per + 1) / 200
+    wave = 100 * (1 - np.abs(2 * (time * 200 / per % 1) - 1))
+    load = wave + hum * np.sin(2 * np.pi * 50.02 * time)
+    load += np.random.default_rng(1).normal(0, 0.1, time.size)
+    first = per * np.arange(10)
+    cycles = SimpleNamespace(first=first, last=first + per, n_cycles=10)
+    loops = SimpleNamespace(
+        tension_amplitude=np.full((1, 10), 50.0),
+        uncertainty={"tension_amplitude": np.full((1, 10), 0.1)},
+    )
+    record = SimpleNamespace(time=time, specimens=("new",))
+    told = [str(one) for one in _tones(record, load[None], cycles, loops, waveform)]
+    assert len(told) == is_told
+    if is_told:
+        assert told[0].startswith("new: tension oscillates at 50 Hz by 2 N")
+        assert "4.0% of the tension amplitude" in told[0]
 
 
 def test_snap_loads_go_slack_and_a_line_that_stays_taut_is_named(notes_of):

@@ -87,6 +87,90 @@ def within_scatter(noise: float, top: Floats) -> float:
 _LEAST_OF_GREATEST = 0.2  # of the noise: half the scatter of the greatest of hundreds of readings
 
 
+def tone_beside_wave(time: Floats, values: Floats, cycles: Cycles) -> tuple[float, float]:
+    r"""Frequency and amplitude of an oscillation that is no part of the wave; zeros without one.
+
+    Parameters
+    ----------
+    time, values : ndarray, shape (n_samples,)
+        Time, and a channel. [s], [any]
+    cycles : Cycles
+        From `reduction.stages.cycles.cycle_search`.
+
+    Returns
+    -------
+    frequency, amplitude : float
+        [Hz], [any]
+
+    Raises
+    ------
+    IndexError
+        If a turn lies outside the record.
+
+    Notes
+    -----
+    Mains hum is such an oscillation.  It is a line in the spectrum of third differences over the
+    first cycles, of 30 times the power of any harmonic of the wave, and of the noise, within two to
+    twelve times the frequency of the wave on both sides.  Those below the twentieth are not read.
+
+    Examples
+    --------
+    >>> from reduction.record.settings import CycleSettings, PhaseSettings
+    >>> from reduction.stages.cycles.cycle_search import find_cycles
+    >>> from reduction.stages.standstills import find_standstills
+    >>> time = np.arange(0, 50, 0.005)
+    >>> wave = 100 * np.abs((time / 2.5) % 2 - 1) + np.random.default_rng(1).normal(0, 0.1, 10_000)
+    >>> stands = find_standstills(time, wave, wave[None], settings=PhaseSettings())
+    >>> cycles = find_cycles(time, wave, wave[None], stands, settings=CycleSettings())
+    >>> print(*(round(one, 1) for one in tone_beside_wave(time, wave, cycles)))
+    0 0
+    >>> hum = 2 * np.sin(2 * np.pi * 50.01 * time)
+    >>> print(*(round(one, 1) for one in tone_beside_wave(time, wave + hum, cycles)))
+    50.0 2.0
+    """
+    per_cycle = float(np.median(cycles.last - cycles.first))
+    parted = np.flatnonzero(cycles.first[1:] != cycles.last[:-1])
+    begin = int(cycles.first[0])
+    stop = int(cycles.last[parted[0] if parted.size else -1])
+    part = slice(begin, min(stop, begin + _NOISE_SAMPLES) + 1)
+    n_cycles = (part.stop - part.start) / per_cycle
+    if per_cycle < _LEAST_PER_CYCLE or n_cycles < _LEAST_CYCLES:
+        return 0, 0
+    steps, level = np.diff(time[part]), np.array(values[part])
+    known = np.isfinite(level)
+    if not known.mean() > _KNOWN or np.ptp(steps) > _UNEVEN * np.median(steps):
+        return 0, 0
+    level = np.interp(np.arange(level.size), np.flatnonzero(known), level[known])
+    third = np.diff(level, n=3)
+    window = scipy.signal.windows.hann(third.size)
+    cycles_a_step = np.arange(third.size // 2 + 1) / third.size
+    with np.errstate(divide="ignore", invalid="ignore"):
+        amplitude = 2 * np.abs(scipy.fft.rfft(third * window)) / window.sum()
+        amplitude /= np.abs(2 * np.sin(np.pi * cycles_a_step)) ** 3
+    power = amplitude**2
+    power[: int(_OF_WAVE * n_cycles)] = 0.0  # the wave
+    wide, middle = round(10 * n_cycles), round(7 * n_cycles)
+    highest = scipy.ndimage.maximum_filter1d(power, wide, mode="constant")
+    padded = np.pad(highest, middle)
+    beside = np.maximum(padded[: power.size], padded[2 * middle :])
+    first = int((_OF_WAVE + 12) * n_cycles)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        above = np.nan_to_num(power[first:] / beside[first:], posinf=0.0)
+    if not above.size or not above.max() > _ABOVE_ALL:
+        return 0, 0
+    found = first + int(np.argmax(above))
+    return float(cycles_a_step[found] / np.median(steps)), float(amplitude[found])
+
+
+_LEAST_PER_CYCLE, _LEAST_CYCLES = 160, 4
+
+_OF_WAVE = 20  # harmonics
+
+_KNOWN, _UNEVEN = 0.99, 0.1  # share of readings, and spread of the steps of time over one
+
+_ABOVE_ALL = 30.0  # powers of the greatest line beside it
+
+
 def noise_and_step(values: Floats, noise: float) -> tuple[float, float]:
     r"""Noise of readings before they were rounded, and the step to which they were rounded.
 
