@@ -39,6 +39,7 @@ from reduction.lines.cycle_stiffness import (
     CycleStiffness,
     LineLoop,
     LoadedTest,
+    middle_of_cycle,
     stiffness_of_cycles,
 )
 from reduction.lines.line_lookup import cycle_loads
@@ -678,7 +679,7 @@ class WorkingState:
     stiffness : float
         EA over the length at which the assembly goes slack. [N m-1]
     peak_length, minimum_length : float
-        Mean length plus and minus half the stroke; NaN where EA is. [m]
+        Middle of the cycle plus and minus half the stroke; NaN where EA is. [m]
     common_low, common_high : float
         Loads common to the tests that cover the cycle. [N]
     curve_spring_constant : float
@@ -909,6 +910,7 @@ def _loop_of_line(
     return LineLoop(
         low=float(load[0]),
         high=float(load[1]),
+        begin=float(own[0] + more[0]),
         stroke=stroke + stretch,
         distance=loop.distance * (stroke + stretch) / float(loop.strain[1] - loop.strain[0]),
         width=width / narrower,
@@ -987,17 +989,20 @@ def _state(
     )
     joined = _curve_spring_constant(assembly, common_low, common_high)
     half = slack * level.tension_amplitude / value
+    nearest = int(found.nearest[0])
+    middle = at + (middle_of_cycle(tests[nearest], low, high) if nearest >= 0 else 0.0)
     pieces = [piece.words for piece in tether.curve.pieces]
     of_slope = _doubts_of_slope(
         said, joined, float(found.curve_least[0]), float(found.curve_greatest[0]), pieces
     )
+    if nearest >= 0 and tests[nearest].words not in pieces:
+        of_slope += _off_the_curve(assembly, tests[nearest])
     of_mean = [tether.curve.doubt] if _is_far(assembly, tether.curve, low, high) else []
     if has_cycle:
         gap = [] if point.is_tested else ["no test reaches a part of the cycle"]
         doubts, notes = [*gap, *of_slope, *of_mean], []
     else:
         doubts, notes = of_mean, of_slope
-    nearest = int(found.nearest[0])
     return WorkingState(
         level=level,
         point=point,
@@ -1013,8 +1018,8 @@ def _state(
         least_spring_constant=least,
         greatest_spring_constant=greatest,
         stiffness=value / slack,
-        peak_length=at + half,
-        minimum_length=at - half,
+        peak_length=middle + half,
+        minimum_length=middle - half,
         common_low=common_low,
         common_high=common_high,
         curve_spring_constant=joined,
@@ -1042,6 +1047,9 @@ def _curve_spring_constant(assembly: _AssemblyCurve, low: float, high: float) ->
 
 
 _NEAREST_NAMED = 3
+
+_FAR = 2.0
+"""Distance from a curve that is more than its uncertainty, in standard uncertainties."""
 
 _LITTLE = 0.1
 """Share of an EA by which new lines of one kind differ (CG-D-39-80, sec. 4.4.1)."""
@@ -1075,6 +1083,22 @@ def _doubts_of_slope(
         f"over the loads of {' and '.join(used)} the slope of the curve is {joined / nearer:.3g} of"
         f" the {'lowest' if joined < least else 'highest'} EA of the tests, because {why}: use its"
         " tension, not its slope"
+    ]
+
+
+def _off_the_curve(assembly: _AssemblyCurve, test: LoadedTest) -> list[str]:
+    """Where cycles that are no part of the curve lie beside it, at their mean tension."""
+    if test.loop is None:
+        return []
+    tension = (test.loop.low + test.loop.high) / 2
+    cycles, at = test.loop.begin + test.loop.stroke / 2, float(assembly.length_at(tension))
+    error = assembly.uncertainty_at(at)[0]
+    # a line that was not tested to this tension has no length there
+    if not abs(float(assembly.tension_at(cycles)) - tension) > _FAR * error:
+        return []
+    return [
+        f"at their mean tension of {tension:.4g} N {test.words} had {cycles:.5g} m, and the curve"
+        f" has {at:.5g} m"
     ]
 
 

@@ -1044,7 +1044,9 @@ class MeasuredLoop:
         """Loop of a line of the specimen, 1 m long at zero strain."""
         low, high = self.tension.tolist()
         stroke = float(self.strain[1] - self.strain[0])
-        return LineLoop(low, high, stroke, self.distance, self.width)
+        return LineLoop(
+            low, high, 1 + float(self.strain[0]), stroke, self.distance, self.width
+        )  # fmt: skip
 
 
 @dataclass(frozen=True)

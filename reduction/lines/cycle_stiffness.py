@@ -59,8 +59,8 @@ class LineLoop:
     ----------
     low, high : float
         Tensions at the turns. [N]
-    stroke : float
-        Difference of length between the turns. [m]
+    begin, stroke : float
+        Length at the lower turn, and from there to the upper. [m]
     distance : ndarray, shape (n,)
         From either turn; increasing, from zero. [m]
     width : ndarray, shape (n,)
@@ -69,6 +69,7 @@ class LineLoop:
 
     low: float
     high: float
+    begin: float
     stroke: float
     distance: Floats
     width: Floats
@@ -265,6 +266,40 @@ def stiffness_of_cycles(
         curve_least=curve_least,
         curve_greatest=curve_greatest,
     )
+
+
+def middle_of_cycle(test: LoadedTest, low: float, high: float) -> float:
+    """How far the middle of a cycle is from the length at its mean tension. [m].
+
+    Notes
+    -----
+    Both are on the curve of one test, up to the turns of its loop.  Of a cycle that goes beyond it,
+    the part within is taken, and the bend grows by the square of the amplitude.
+
+    Examples
+    --------
+    T = x^2 between 0.25 and 2.25 N: 0.5 to 1.5 m, with 1.25 N at 1.118 m.
+
+    >>> x = np.linspace(0.4, 1.6, 1201)
+    >>> none = np.empty((0, x.size))
+    >>> test = LoadedTest("T", "static", x, x**2, 0 * x, none, 0.16, 2.56)
+    >>> print(round(middle_of_cycle(test, 0.25, 2.25), 3))
+    -0.118
+    """
+    length, tension = test.length, test.tension
+    if test.loop is not None:
+        ends = np.array([test.loop.low, test.loop.high])
+        turns = test.loop.begin + np.array([0.0, test.loop.stroke])
+        is_inside = (tension > ends[0]) & (tension < ends[1])
+        is_inside &= (length > turns[0]) & (length < turns[1])
+        tension = np.concatenate([ends[:1], tension[is_inside], ends[1:]])
+        length = np.concatenate([turns[:1], length[is_inside], turns[1:]])
+    within = np.clip((low, high), tension[0], tension[-1])
+    rise = float(within[1] - within[0])
+    if rise <= 0:
+        return 0.0
+    at = np.interp((*within, within.mean()), tension, length)
+    return float((at[:2].mean() - at[2]) * ((high - low) / rise) ** 2)
 
 
 def _of_loop(

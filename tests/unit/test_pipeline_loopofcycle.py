@@ -86,6 +86,20 @@ def test_the_slope_of_a_slow_pull_is_not_the_stiffness_of_cycles():
     state = state_of(249.0, drawn=curve("static", "Q", (0.01, 1.2), 0.7 * SPRING))
     assert "slope of the curve is 0.7" in state.doubt
     assert "the curve is of Q static" in state.doubt
+    # 500 N at 1.5 m in the cycles; the pull has 500 / 700 of strain there
+    assert "at their mean tension of 500 N T cycles had 1.5 m, and the curve has 1.7143 m" in (
+        state.doubt
+    )
+
+
+def test_the_middle_of_a_cycle_follows_the_bend_of_its_test():
+    """An elastic T = 1000 e^2: 160 and 640 N are at 40 and 80 % strain, 400 N at 63.2 %."""
+    at = np.linspace(0.3, 0.9, 601)
+    piece = CurvePiece("T", "cyclic", "mean", at, 1000 * at**2, 0 * at)
+    bent = _composite_curve((piece,), rule=CompositeRule())
+    level = WorkingLevel("tension", 400.0, 240.0)
+    state = deploy(bent, MODEL, n_tethers=1, levels=[level]).working[0]
+    assert (state.minimum_length, state.peak_length) == pytest.approx((1.4, 1.8), abs=2e-3)
 
 
 def test_a_deck_of_one_test_says_what_its_loop_leaves_open_about_smaller_cycles():
