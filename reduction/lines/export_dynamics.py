@@ -659,7 +659,7 @@ def line_dynamics(
                 _said_instead(part, measured, amplitude, reason),
                 *_warnings_of_printed(printed[_TIME]),
             ]
-        notes += _over_frequency(source, part, levels)
+        notes += [*_over_frequency(source, part, levels), *_over_tests(source, part, levels)]
     else:
         spring, time = (float(one.value) for one in printed.values())
         part = _part(rest, spring, time, levels)
@@ -804,6 +804,36 @@ def _over_frequency(
     over = {name: np.full(_FREQUENCIES, value) for name, value in levels.items()}
     found = _value(source, _APPARENT, over | {"frequency": frequencies}, "flag")
     return [_said_over_frequency(part, frequencies, found)]
+
+
+_CYCLE = ("mean_tension", "frequency", "tension_amplitude")
+
+
+def _over_tests(
+    source: LineSource, part: Viscoelasticity, levels: Mapping[str, float]
+) -> list[str]:
+    """K_ap of the exported line beside tests at this mean, of other amplitudes or frequencies."""
+    rows = []
+    for one in source.levels:
+        if one.quantity != _APPARENT or not set(_CYCLE) == set(one.variables) <= set(levels):
+            continue
+        asked = np.array([levels[name] for name in one.variables])
+        is_alike = np.abs(one.at / asked - 1) <= SAME_LEVEL
+        mean, frequency, amplitude = (one.variables.index(name) for name in _CYCLE)
+        for row in np.flatnonzero(is_alike[:, mean] & ~is_alike.all(axis=1)):
+            at, own = one.at[row], float(one.value[row])
+            model = part.apparent_stiffness_at(float(at[frequency]))
+            rows.append(
+                f"{one.tests[row]} ({plain_number(at[frequency], 3)} Hz,"
+                f" +- {plain_number(at[amplitude], 4)} N) {plain_number(model, 4)} against"
+                f" {plain_number(own, 4)} N ({100 * (model / own - 1):+.1f} percent)"
+            )
+    if not rows:
+        return []
+    return [
+        "the exported line has one K_ap at all amplitudes, and one K_1 and tau do not fit every"
+        f" frequency; its K_ap against other tests at this mean tension: {', '.join(rows)}"
+    ]
 
 
 def _growth(

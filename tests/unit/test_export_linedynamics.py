@@ -149,6 +149,19 @@ def rope_of_levels(springs, *, also=()):
     return source(surfaces={}, factor_names=(), levels=levels)
 
 
+def test_k_ap_at_another_tested_amplitude_stands_beside_that_of_the_line():
+    """The line has one K_ap at all amplitudes; a rope that was tested at half of it has another."""
+    mean = LEVELS["mean_tension"]
+    one = rope_of_levels([2.5e4, 3e4, 3.5e4], also=[(0.3, mean, 350.0, 9e4)])
+    (text,) = (note for note in line_dynamics(one, LEVELS).notes if "all amplitudes" in note)
+    line, tested = loop(spring=3e4)[0], loop(spring=9e4)[0]
+    shown = [f"{float(f'{one:.4g}'):.0f}" for one in (line, tested)]
+    off = 100 * (line / tested - 1)
+    assert f"C3 (0.3 Hz, +- 350 N) {' against '.join(shown)} N ({off:+.1f} percent)" in text
+    alone = line_dynamics(rope_of_levels([2.5e4, 3e4, 3.5e4]), LEVELS)
+    assert not any("all amplitudes" in note for note in alone.notes)
+
+
 def test_the_growth_of_a_rope_tested_at_three_means_is_that_of_its_tests():
     """K_1 of 25, 30 and 35 kN at 1, 2 and 3 kN of mean: 5 N per N; another amplitude is left out."""
     one = rope_of_levels([2.5e4, 3e4, 3.5e4], also=[(0.3, 2500.0, 900.0, 9e4)])
