@@ -100,6 +100,16 @@ def _unknown_compliance(compliance: float, usual: float, effect: float) -> str:
     )
 
 
+def _unknown_hysteresis(reversibility: float, play: float | None) -> str:
+    """Effect of a load cell or a position that reads other values on the way down."""
+    or_play = "" if play is None else f", or {1000 * play:.2g} mm of play in the position,"
+    return (
+        f"the hysteresis of the load cell is not stated: {reversibility:.2%} at half its load"
+        f"{or_play} would change the hysteresis energy by one standard uncertainty. State"
+        " reversibility in [uncertainty.tension], from the calibration"
+    )
+
+
 _OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "laboratory": ("note", "{text}"),
     "misprint-corrected": (
@@ -838,6 +848,7 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         " at the fixed end",
     ),
     "compliance-unknown": ("note", _unknown_compliance),
+    "instrument-hysteresis-unknown": ("note", _unknown_hysteresis),
     "compliance-matters": ("warning", _unknown_compliance),
     "tension-late": (
         "warning",

@@ -35,7 +35,7 @@ _SMALL = 1e-3  # step of strain for a slope
 
 
 def load_train_notes(test: ReducedTest, instruments: Sequence[InstrumentErrors]) -> Iterator[Note]:
-    """Note for each unstated term the size at which it moves K_ap by its standard uncertainty."""
+    """Note for each unstated term the size at which it moves K_ap or H by its uncertainty."""
     summary, record = test.amplitude, test.record
     if summary is None or record is None:
         return
@@ -89,6 +89,19 @@ def load_train_notes(test: ReducedTest, instruments: Sequence[InstrumentErrors])
                 compliance=spread / abs(constant * effect),
                 usual=_USUAL_COMPLIANCE,
                 effect=_USUAL_COMPLIANCE * effect,
+            )
+        of_energy = _standard_uncertainty(test, summary, "hysteresis_energy", index)
+        stroke = float(summary.tension_amplitude[index] * summary.strain_amplitude[index])
+        is_told = index < len(instruments) and instruments[index].tension_reversibility > 0
+        if of_energy > 0 and stroke > 0 and not is_told:
+            yield note(
+                "instrument-hysteresis-unknown",
+                specimen.name,
+                reversibility=of_energy / (4 / 3 * stroke),
+                # a loop of the width of the play over the range of tension
+                play=of_energy * length / (2 * float(summary.tension_amplitude[index]))
+                if is_crosshead
+                else None,
             )
 
 

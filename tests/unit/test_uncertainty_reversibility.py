@@ -1,10 +1,14 @@
 """What the hysteresis of a load cell does to a loop and its branches."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from reduction.record.contributions import InstrumentErrors
+from reduction.record.measurement import LoadTrain
 from reduction.stages.strain.strain_model import StrainModel
+from reduction.uncertainty.effects_on_answers import load_train_notes
 from reduction.uncertainty.propagation import LoopQuantities, loop_contributions
 from reduction.uncertainty.shared_contributions import _reversibility_on_branches
 
@@ -74,3 +78,32 @@ def test_only_the_falling_branch_is_off_and_its_modulus_by_the_slope_of_that_err
     assert np.abs(off[1]).max() == pytest.approx(0.8, rel=1e-4)
     slope = np.gradient(tension[1], strain)
     assert steeper[1] * slope == pytest.approx(np.gradient(off[1], strain), abs=0.02)
+
+
+@pytest.mark.parametrize("stated", [0.0, 0.001])
+def test_the_hysteresis_that_moves_the_energy_by_its_uncertainty_is_told_where_none_is_stated(
+    stated,
+):
+    """By hand: tension half range 500 N, 0.01 of strain on 2 m, an energy known to 0.2 J/m.
+
+    0.4 mm of play is 2e-4 of strain: times a range of 1,000 N, it is 0.2 J/m.
+    """
+    rope = StrainModel("rope", "gauge-length", {"gauge_length": 2.0, "reference_position": 2.0})
+    one = np.ones(1)
+    summary = SimpleNamespace(
+        apparent_spring_constant=50_000.0 * one, frequency=0.1 * one, strain_amplitude=0.01 * one,
+        tension_amplitude=500.0 * one, mean_strain=0.02 * one, mean_tension=500.0 * one,
+        uncertainty={"apparent_spring_constant": 50.0 * one, "hysteresis_energy": 0.2 * one},
+    )  # fmt: skip
+    test = SimpleNamespace(
+        amplitude=summary, cycles=None, contributions=None, strain_models=[rope],
+        specimens=[SimpleNamespace(name="rope", linear_density=None)],
+        record=SimpleNamespace(load_train=LoadTrain("fixed", 0.0)),
+    )  # fmt: skip
+    errors = [InstrumentErrors("rope", tension_reversibility=stated)]
+    codes = {one.code: one for one in load_train_notes(test, errors)}
+    assert ("instrument-hysteresis-unknown" in codes) == (not stated)
+    if not stated:
+        assert codes["instrument-hysteresis-unknown"].numbers == pytest.approx(
+            {"reversibility": 0.03, "play": 4e-4}, rel=1e-6
+        )
