@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from reduction.record.contributions import Component, Contributions
+from reduction.record.contributions import Component, Contributions, InstrumentErrors
 from reduction.record.measurement import LoadTrain
 from reduction.stages.strain.strain_model import StrainModel
 from reduction.uncertainty.effects_on_answers import load_train_notes, splice_slip_notes
@@ -110,7 +110,8 @@ def test_a_compliance_whose_uncertainty_is_stated_is_not_asked_for(stated):
     test.specimens[0].linear_density = None
     test.cycles = None
     test.amplitude.uncertainty["apparent_spring_constant"] = np.array([4.0])
+    test.amplitude.uncertainty["hysteresis_energy"] = np.array([4.0])
     test.record = SimpleNamespace(load_train=LoadTrain())
-    errors = SimpleNamespace(machine_compliance=stated)
+    errors = InstrumentErrors("new", machine_compliance=stated)
     codes = [one.code for one in load_train_notes(test, [errors])]
     assert ("compliance-matters" in codes) == (stated == 0)

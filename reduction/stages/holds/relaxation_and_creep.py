@@ -478,7 +478,7 @@ def _reasons_against(hold: Hold, ends: _Ends, settings: HoldSettings) -> list[No
     return reasons
 
 
-_RINGING = 2.0  # longest time over which a machine rings; rubber relaxes within seconds too. [s]
+_RINGING = 0.5  # longest time over which a machine rings; rubber relaxes within a second too. [s]
 
 
 def _rate(hold: Hold, ends: _Ends, *, known_to: float) -> Rate | None:
