@@ -103,7 +103,8 @@ def safe_cell(text: str) -> str:
     -------
     cell : str
         The text with an apostrophe in front if it begins with ``=``, ``+``, ``-``, ``@``, a tab or
-        a carriage return and is not a number, or if only apostrophes precede such a sign.
+        a carriage return and is neither a number nor a minus alone, or if only apostrophes
+        precede such a sign.
 
     Examples
     --------
