@@ -142,10 +142,10 @@ def tone_beside_wave(time: Floats, values: Floats, cycles: Cycles) -> tuple[floa
         return 0, 0
     level = np.interp(np.arange(level.size), np.flatnonzero(known), level[known])
     third = np.diff(level, n=3)
-    window = scipy.signal.windows.hann(third.size)
+    window = np.hanning(third.size)
     cycles_a_step = np.arange(third.size // 2 + 1) / third.size
     with np.errstate(divide="ignore", invalid="ignore"):
-        amplitude = 2 * np.abs(scipy.fft.rfft(third * window)) / window.sum()
+        amplitude = 2 * np.abs(np.fft.rfft(third * window)) / window.sum()
         amplitude /= np.abs(2 * np.sin(np.pi * cycles_a_step)) ** 3
     power = amplitude**2
     power[: int(_OF_WAVE * n_cycles)] = 0.0  # the wave
