@@ -698,18 +698,28 @@ def _fitted(
 ) -> _Fitted:
     """Least squares with the bend at each strain, on the nodes of the reading or at the centres."""
     x, past = axis / axis[-1], np.maximum(axis - at[:, None], 0.0)  # scaled against collinearity
-    below = [np.broadcast_to(x**k, past.shape) for k in range(_ORDER + 1)]
-    above = [past * (past / axis[-1]) ** (toe - 1 + k) for k in range(degree)]
-    curves = np.stack([*below, *above], axis=1)
     is_node = axis.size == measured.reading.node.size
-    basis = (measured.reading.of(curves) if is_node else curves)[..., place].swapaxes(1, 2)
     noise = measured.independent_uncertainty()[place]
     noise = np.maximum(noise, np.median(noise) / 10 + _TINY)
+
+    def basis(curves: list[Floats]) -> Floats:
+        columns = np.stack(curves, axis=-2)
+        read = (measured.reading.of(columns) if is_node else columns)[..., place]
+        return np.asarray((read / noise).swapaxes(-1, -2))
+
     tension = measured.tension_of(measured.judged)[place] / noise
-    directions, triangle = np.linalg.qr(basis / noise[:, None])
-    along = tension @ directions
-    residual = tension - (directions @ along[..., None])[..., 0]
-    of_jump = np.linalg.pinv(triangle)[:, _ORDER + 1]
+    # the polynomial below is the same for every place of the bend: it is taken out once
+    below = np.linalg.qr(basis([x**k for k in range(_ORDER + 1)]))[0]
+    share = past / axis[-1]
+    first = past if toe == 1 else past * share ** (toe - 1)
+    above = basis([first * share**k for k in range(degree)])
+    for _ in range(2):  # once leaves rounding that the nearly parallel columns would enlarge
+        above = above - below @ (below.T @ above)
+    directions, triangle = np.linalg.qr(above)
+    left = tension - below @ (below.T @ tension)
+    along = left @ directions
+    residual = left - (directions @ along[..., None])[..., 0]
+    of_jump = np.linalg.pinv(triangle)[:, 0]
     return _Fitted(
         squares=np.sum(residual**2, axis=1),
         residual=residual,

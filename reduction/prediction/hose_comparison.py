@@ -19,7 +19,7 @@ References
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from itertools import compress, product
@@ -53,8 +53,15 @@ from reduction.prediction.cord_curve import CordCurve, cord_load
 from reduction.prediction.hose_geometry import cord_stretch_ratio
 from reduction.prediction.hose_prediction import HosePlan
 from reduction.prediction.hose_product import HOSE_PARAMETERS, HoseDesign, HosePrediction
-from reduction.prediction.hose_sensitivity import hose_sensitivity
-from reduction.prediction.hose_tension import find_events, loads_at, numbers_of, predict_hose
+from reduction.prediction.hose_sensitivity import curve_sensitivity, hose_sensitivity
+from reduction.prediction.hose_tension import (
+    Load,
+    find_events,
+    hose_load,
+    loads_at,
+    numbers_of,
+    predict_hose,
+)
 from reduction.prediction.measured_curve import (
     Loading,
     MeasuredCurve,
@@ -271,15 +278,13 @@ def _design_with(design: HoseDesign, numbers: Mapping[str, Any]) -> HoseDesign:
     return replace(design, **changes)
 
 
-_Load = Literal["tension", "fill_pressure"]
-
-
 def _trial_load(
     design: HoseDesign,
     names: Sequence[str],
     values: Floats,
     strain: Floats,
-    load: _Load = "tension",
+    load: Load = "tension",
+    beside: Callable[[slice, Floats], Floats] | None = None,
 ) -> Floats:
     """Tension or fill pressure at trial values of some parameters.
 
@@ -299,7 +304,7 @@ def _trial_load(
     True
     """
     trials = _design_with(design, {name: values[:, k] for k, name in enumerate(names)})
-    found = np.array(getattr(predict_hose(trials, strain), load))
+    found = hose_load(trials, strain, load, beside=beside)
     gap = ~np.isfinite(found)
     if gap.any():
         last = find_events(trials).cord_break
@@ -339,7 +344,7 @@ def _input_draws(
     strain: Floats,
     *,
     n_draws: int,
-    load: _Load = "tension",
+    load: Load = "tension",
 ) -> Floats:
     """Errors of the load of a hose in draws of its uncertain parameters.
 
@@ -377,16 +382,19 @@ def _input_draws(
         axis=1,
     )
     centre = np.array([[_number_of(design, name) for name in known]])
-    found = _trial_load(design, tuple(known), np.vstack([centre, values]), strain, load)
     cord = _open_cord_of(design.cord)
-    size = random.standard_normal((n_draws, len(cord.apart), design.cord.strain.size + 1))
-    trials = _design_with(design, {name: values[:, k] for k, name in enumerate(known)})
-    found[1:] += _load_between_points(trials, strain, cord, size, load)
+    size = np.zeros((1 + n_draws, len(cord.apart), design.cord.strain.size + 1))
+    size[1:] = random.standard_normal(size[1:].shape)
+
+    def beside(rows: slice, at: Floats) -> Floats:
+        return cord.between(at, size[rows])[0]
+
+    found = _trial_load(design, tuple(known), np.vstack([centre, values]), strain, load, beside)
     return np.asarray(found[1:] - found[0])
 
 
 def _cord_curve_errors(
-    design: HoseDesign, strain: Floats, load: _Load = "tension"
+    design: HoseDesign, strain: Floats, load: Load = "tension"
 ) -> tuple[Floats, tuple[tuple[str, int], ...]]:
     r"""Possible errors of the load because the cord curve is known only at its points.
 
@@ -442,18 +450,23 @@ class _OpenCord(NamedTuple):
             size[:, names.index(name), place + 1] = own
         return size
 
-    def between(self, at: Floats, size: Floats) -> Floats:
-        """Difference of curves of these sizes from the own at strains, (n_trial or 1, n_strain)."""
+    def between(self, at: Floats, size: Floats) -> tuple[Floats, Floats]:
+        """Difference of curves of these sizes from the own at strains, and its slope.
+
+        Strains have the shape (n_trial or 1, n_strain).
+        """
         # all of them pass through the points, so the intervals join
         apart = np.reshape([one for _, one in self.apart], (-1, self.strain.size))
         interval = np.minimum(np.arange(self.strain.size) // _BETWEEN + 1, self.point.size - 1)
         curve = np.einsum("tcs,cs->ts", size[:, :, interval], apart)
         place = np.searchsorted(self.strain[1:-1], at)
         # zero before the first point and beyond the last
-        share = np.clip((at - self.strain[place]) / np.diff(self.strain)[place], 0.0, 1.0)
-        rise = np.diff(curve, axis=1)
+        width = np.diff(self.strain)[place]
+        share = (at - self.strain[place]) / width
+        inside = np.clip(share, 0.0, 1.0)
         trial = np.arange(len(size))[:, None]
-        return np.asarray(curve[trial, place] + share * rise[trial, place])
+        rise = np.diff(curve, axis=1)[trial, place]
+        return curve[trial, place] + inside * rise, np.where(share == inside, rise / width, 0.0)
 
 
 def _open_cord_of(points: CordCurve) -> _OpenCord:
@@ -471,34 +484,31 @@ def _open_cord_of(points: CordCurve) -> _OpenCord:
     return _OpenCord(points.strain, np.append(dense, points.strain[-1]), tuple(apart))
 
 
-def _load_between_points(
-    trials: HoseDesign, strain: Floats, cord: _OpenCord, size: Floats, load: _Load
-) -> Floats:
-    """Load of trials with other curves through the points of the cord, less that with its own.
-
-    ``size`` is the share of each curve in each interval, as in `_OpenCord.sizes`; one trial can be
-    combined with any number of them.  The load of a hose is proportional to that of its cords, so
-    its difference is that of the cords.
-    """
-    numbers = numbers_of(trials).column(slice(None))
-    stretch = 1 + strain / numbers.free_share
-    cord_stretch = cord_stretch_ratio(stretch, np.reshape(trials.wrap_angle, (-1, 1)))
-    of_cord = (cord_stretch - 1) / numbers.strain_scale
-    above = cord.between(of_cord, size)
-    cords = loads_at(numbers, stretch, cord_stretch, numbers.load_scale * above)
-    return cords.cord_axial_load if load == "tension" else cords.fill_pressure
-
-
 def _load_of_intervals(
     hose: HoseDesign,
     strain: Floats,
     cord: _OpenCord,
     where: Sequence[tuple[str, int]],
-    load: _Load,
+    load: Load,
 ) -> Floats:
-    """Effect of each other curve on one trial in its interval alone, (n_where, n_strain)."""
-    size = cord.sizes(where, np.eye(len(where)))
-    return _load_between_points(hose, strain, cord, size, load)
+    """Effect of each other curve on one hose in its interval alone, (n_where, n_strain).
+
+    The load of a hose is proportional to that of its cords, so its difference is that of the cords.
+    """
+    numbers = numbers_of(hose).column(slice(None))
+    stretch = 1 + strain / numbers.free_share
+    cord_stretch = cord_stretch_ratio(stretch, np.reshape(hose.wrap_angle, (-1, 1)))
+    of_cord = (cord_stretch - 1) / numbers.strain_scale
+    # each curve in all its intervals at once, then cut apart: an interval sees its own strains
+    names = [name for name, _ in cord.apart]
+    size = np.zeros((len(names), len(names), cord.point.size + 1))
+    size[np.arange(len(names)), np.arange(len(names)), 1:-1] = 1.0
+    above, _ = cord.between(of_cord, size)
+    cords = loads_at(numbers, stretch, cord_stretch, numbers.load_scale * above)
+    whole = cords.cord_axial_load if load == "tension" else cords.fill_pressure
+    interval = np.searchsorted(cord.point[1:-1], of_cord)
+    own = whole[[names.index(name) for name, _ in where]]
+    return np.where(interval == np.array([[place] for _, place in where]), own, 0.0)
 
 
 def _other_curves(points: CordCurve, strain: Floats) -> dict[str, Floats]:
@@ -617,7 +627,7 @@ class _FitProblem:
     measured: MeasuredCurve
     noise: Floats
     shared: Floats
-    load: _Load
+    load: Load
     between: tuple[tuple[str, int], ...] = ()
 
     @cached_property
@@ -667,21 +677,31 @@ class _FitProblem:
         # a record with low readings has strains just below zero: the curve continues there
         there = np.abs(strain)
         names = (*self.names, *self.held)
-        curve = _trial_load(self.design, names, numbers, there, self.load)
-        if self.between:
-            size = self.open_cord.sizes(self.between, of_cord)
-            hoses = self._hoses_of(numbers)
-            curve += _load_between_points(hoses, there, self.open_cord, size, self.load)
+        size = self.open_cord.sizes(self.between, of_cord)
+
+        def beside(rows: slice, at: Floats) -> Floats:
+            return self.open_cord.between(at, size[rows])[0]
+
+        curve = _trial_load(
+            self.design, names, numbers, there, self.load, beside if self.between else None
+        )
         return np.asarray(np.sign(strain) * curve)
 
     def _numbers_of(self, traced: Floats) -> Floats:
         """Fitted and held parameters of trials, (n_trial, n_numbers + n_held)."""
         p = len(self.names)
-        values = [traced[:, :p] * self.unit]
-        for k, (name, spread) in enumerate(self.held.items()):
-            at = self.held_at[name] + spread * traced[:, p + k]
-            values.append(np.clip(at, *_range_of(name))[:, None])
-        return np.hstack(values)
+        return np.hstack([traced[:, :p] * self.unit, np.clip(self._held(traced), *self._ranges)])
+
+    def _held(self, traced: Floats) -> Floats:
+        """Held parameters of trials, also beyond their ranges, (n_trial, n_held)."""
+        first = len(self.names)
+        at, spread = (np.array([*one.values()]) for one in (self.held_at, self.held))
+        return np.asarray(at + spread * traced[:, first : first + len(self.held)])
+
+    @cached_property
+    def _ranges(self) -> Floats:
+        """Allowed ranges of held parameters, (2, n_held)."""
+        return np.array([_range_of(name) for name in self.held]).reshape(-1, 2).T
 
     def _errors_of(self, traced: Floats) -> tuple[Floats, Floats]:
         """Errors of strain and of the cord between its points, of trials."""
@@ -697,37 +717,36 @@ class _FitProblem:
         """Curves at the nodes, as read in the test where it measured."""
         return np.asarray(self.measured.reading.of(curve)[:, self.used])
 
-    def slopes(self, traced: Floats, is_rough: bool = False) -> Floats:
-        """Derivative of tension by each parameter and traced error, (n_used, n_traced).
-
-        Rough derivatives are one-sided differences.
-        """
-        p, n = len(self.names), len(self.names) + len(self.held)
-        step = _DIFFERENCE * np.eye(n, traced.size)
-        if is_rough:
-            step[:, :p] *= np.where(traced[:p] + _DIFFERENCE > self.high, -1.0, 1.0)
-            tension = self.tension_at(np.vstack([traced, traced + step]))
-            rows = [(tension[1:] - tension[0]) / np.diagonal(step)[:, None]]
-        else:
-            ends = np.vstack([traced - step, traced + step])
-            ends[:, :p] = np.clip(ends[:, :p], self.low, self.high)
-            below, above = np.split(self.tension_at(ends), 2)
-            rows = [(above - below) / np.diagonal(ends[n:] - ends[:n])[:, None]]
+    def slopes(self, traced: Floats) -> Floats:
+        """Derivative of tension by each parameter and traced error, (n_used, n_traced)."""
         at = traced[None, :]
         numbers, (moved, of_cord) = self._numbers_of(at), self._errors_of(at)
         strain = self.measured.reading.node - moved[0] @ self.moved
-        if self.moved.any():
-            # all errors of strain at once: each moves the same curve
-            reach = _DIFFERENCE * float(np.abs(self.moved).max())
-            less, more = (self._curve(numbers, of_cord, strain + way * reach) for way in (-1, 1))
-            rows.append(self._read((less - more) / (2 * reach) * self.moved))
-        else:
-            rows.append(np.zeros((len(self.moved), self.noise.size)))
+        hose, there, sign = self._hoses_of(numbers), np.abs(strain), np.sign(strain)
+        size = self.open_cord.sizes(self.between, of_cord)
+        beside = partial(self.open_cord.between, size=size) if self.between else None
+        rates = curve_sensitivity(hose, there, beside)[self.load == "fill_pressure"]
+        if not np.all(np.isfinite(rates["strain"])):
+            return self._differences(traced)
+        held, (least, most) = self._held(at)[0], self._ranges
+        units = [*self.unit, *np.where((held < least) | (held > most), 0.0, [*self.held.values()])]
+        of_numbers = np.zeros((len(units), strain.size))
+        for row, name, unit in zip(of_numbers, (*self.names, *self.held), units, strict=True):
+            row[:] = unit * rates.get(name, 0.0) * sign
+        rows = [of_numbers, -rates["strain"] * self.moved]
         if self.between:
-            hose, where = self._hoses_of(numbers), np.abs(strain)
-            of_interval = _load_of_intervals(hose, where, self.open_cord, self.between, self.load)
-            rows.append(self._read(np.sign(strain) * of_interval))
-        return np.vstack(rows).T
+            rows.append(
+                sign * _load_of_intervals(hose, there, self.open_cord, self.between, self.load)
+            )
+        return self._read(np.vstack(rows)).T
+
+    def _differences(self, traced: Floats) -> Floats:
+        """The same where cords would break within the test, which has no closed form."""
+        p = len(self.names)
+        ends = traced + _DIFFERENCE * np.eye(traced.size) * np.array([[[-1.0]], [[1.0]]])
+        ends[..., :p] = np.clip(ends[..., :p], self.low, self.high)
+        below, above = (self.tension_at(one) for one in ends)
+        return np.asarray(((above - below) / np.diagonal(ends[1] - ends[0])[:, None]).T)
 
     def error_slopes(self, x: Floats) -> Floats:
         """Effect of one standard uncertainty of each error, shape (n_error, n_used). [N]."""
@@ -744,9 +763,9 @@ class _FitProblem:
         """Terms of the sum of squares: every strain, then every error."""
         return np.concatenate([self.remainder(x) / noise, x[len(self.names) :]])
 
-    def jacobian(self, x: Floats, noise: Floats, is_rough: bool = False) -> Floats:
+    def jacobian(self, x: Floats, noise: Floats) -> Floats:
         """Jacobian of `residual`, by the parameters and the errors."""
-        slopes = self.slopes(x[: self.n_traced], is_rough)
+        slopes = self.slopes(x[: self.n_traced])
         data = np.hstack([slopes, self.shared.T]) / noise[:, None]
         p, k = len(self.names), self.n_error
         prior = np.hstack([np.zeros((k, p)), np.eye(k)])
@@ -784,7 +803,7 @@ class _FitProblem:
             found = scipy.optimize.least_squares(
                 partial(self.residual, noise=noise),
                 np.concatenate([inside, errors]),
-                jac=partial(self.jacobian, noise=noise, is_rough=is_rough),
+                jac=partial(self.jacobian, noise=noise),
                 method=method,
                 bounds=(
                     np.concatenate([self.low, np.full(k, -np.inf)]),
@@ -907,7 +926,7 @@ def _calibrate_hose(
     *,
     standard_uncertainty: Mapping[str, float] | None = None,
     bounds: Mapping[str, tuple[float, float]] | None = None,
-    load: _Load = "tension",
+    load: Load = "tension",
 ) -> HoseCalibration:
     r"""Fit parameters of a hose to the judged curve of a test, with reliable intervals.
 
@@ -1036,7 +1055,7 @@ def _pose(
     names: tuple[str, ...],
     bounds: Mapping[str, tuple[float, float]],
     held: Mapping[str, float],
-    load: _Load,
+    load: Load,
 ) -> tuple[_FitProblem, tuple[str, ...]]:
     """The fit problem, and the names of the errors fitted together with the parameters."""
     if not names or len(set(names)) < len(names):
@@ -1276,7 +1295,7 @@ def _compare_pressure(
 
 
 def _as_read(
-    design: HoseDesign, measured: MeasuredCurve, prediction: Floats, load: _Load = "tension"
+    design: HoseDesign, measured: MeasuredCurve, prediction: Floats, load: Load = "tension"
 ) -> Floats:
     """Prediction as the test would show it; without smoothing where it is broken nearby."""
     node = measured.reading.node

@@ -26,7 +26,7 @@ References
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import pi
 
@@ -124,7 +124,11 @@ def _as_number(value: ArrayLike, *, columns: bool) -> Floats:
     return array[..., None] if columns else array
 
 
-def _on_the_curve(design: HoseDesign, strain: Floats) -> _HoseState:
+Beside = Callable[[Floats], tuple[Floats, Floats]]
+"""Load and stiffness to be added to those of one cord, at strains on its curve."""
+
+
+def _on_the_curve(design: HoseDesign, strain: Floats, beside: Beside | None = None) -> _HoseState:
     """State of hoses at strains of their whole length."""
     angle, dead, load_scale, strain_scale = (
         _as_number(one, columns=True)
@@ -138,8 +142,11 @@ def _on_the_curve(design: HoseDesign, strain: Floats) -> _HoseState:
     stretch = 1 + strain / (1 - dead)
     cord = cord_stretch_ratio(stretch, angle)
     at = (cord - 1) / strain_scale
-    load = load_scale * cord_load(design.cord, at)
-    stiffness = load_scale / strain_scale * cord_stiffness(design.cord, at)
+    one, slope = cord_load(design.cord, at), cord_stiffness(design.cord, at)
+    if beside is not None:
+        added, added_slope = beside(at)
+        one, slope = one + added, slope + added_slope
+    load, stiffness = load_scale * one, load_scale / strain_scale * slope
     cosine, sine = np.cos(angle), np.sin(angle)
     by_stretch = _rise_of_cord(stretch, cosine**2, sine**2) / cord
     per_strain = 1 / (1 - dead)
@@ -239,6 +246,27 @@ class _HoseSensitivity:
     pick_up: EventSensitivity
     working: EventSensitivity
     cord_break: EventSensitivity
+
+
+def curve_sensitivity(
+    design: HoseDesign, strain: Floats, beside: Beside | None = None
+) -> tuple[Rates, Rates]:
+    """Derivatives of tension and of fill pressure along the curve alone, by name.
+
+    Notes
+    -----
+    As `hose_sensitivity`, and by ``strain``; a parameter without effect is left out.
+
+    Examples
+    --------
+    >>> from reduction.prediction.cord_curve import CordCurve
+    >>> design = HoseDesign(1.1, (0.08, 0.09), 0.06, 0.12, 1300.0, 5e-4, 1.4e6,
+    ...     CordCurve(np.array([0.0, 0.2]), np.array([0.0, 130.0])))
+    >>> tension, pressure = curve_sensitivity(design, np.array([0.5]))
+    >>> print(sorted(set(tension) - set(pressure)))
+    ['inner_diameter', 'outer_diameter', 'rubber_modulus']
+    """
+    return _chain(design, _on_the_curve(design, strain, beside))
 
 
 def hose_sensitivity(design: HoseDesign, strain: ArrayLike) -> _HoseSensitivity:

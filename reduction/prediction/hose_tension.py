@@ -35,13 +35,15 @@ References
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
+from functools import partial
 from math import pi, prod
-from typing import Any
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 import scipy
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from reduction.prediction.cord_curve import (
     CordPieces,
@@ -58,7 +60,13 @@ from reduction.prediction.hose_geometry import (
     slackest_stretch_ratio,
     wrap_angle_for,
 )
-from reduction.prediction.hose_product import HoseDesign, HoseEvent, HoseEvents, HosePrediction
+from reduction.prediction.hose_product import (
+    HoseDesign,
+    HoseEvent,
+    HoseEvents,
+    HosePrediction,
+    RubberLaw,
+)
 from reduction.prediction.rubber_wall import rubber_energy, rubber_tension, tension_into
 from reduction.record.arrays import as_finite, run_blocks
 from reduction.record.errors import DataError
@@ -312,14 +320,74 @@ def predict_hose(design: HoseDesign, strain: ArrayLike) -> HosePrediction:
     )
 
 
-def _respond(
+Load = Literal["tension", "fill_pressure"]
+
+_NEEDED = (
+    "free_strain",
+    "cord_strain",
+    "cord_tension",
+    "end_cap_load",
+    "tension",
+    "fill_pressure",
+)
+
+
+def hose_load(
+    design: HoseDesign,
+    strain: Floats,
+    load: Load = "tension",
+    *,
+    beside: Callable[[slice, Floats], Floats] | None = None,
+) -> Floats:
+    """Tension or fill pressure alone, as `predict_hose` computes it, shape (..., n_strain).
+
+    Notes
+    -----
+    For fits, which need thousands of curves.  ``beside`` gives a load of one cord to be added to
+    its curve at strains on that curve, for the designs in ``rows``.
+
+    Examples
+    --------
+    >>> from reduction.prediction.cord_curve import CordCurve
+    >>> design = HoseDesign(1.1, (0.08, 0.09), 0.06, 0.12, 1300.0, 5e-4, 1.4e6,
+    ...     CordCurve(np.array([0.0, 0.2]), np.array([0.0, 130.0])))
+    >>> at = np.array([0.5, 1.2])
+    >>> print(bool(np.all(hose_load(design, at) == predict_hose(design, at).tension)))
+    True
+    """
+    numbers, pieces = numbers_of(design), pieces_of(design.cord)
+    found = np.empty((prod(design.shape), strain.size))
+    n_rows = max(1, BLOCK // max(strain.size, 1))
+
+    def fill(rows: slice) -> None:
+        arrays = np.empty((len(_NEEDED), *found[rows].shape))
+        out = {**dict(zip(_NEEDED, arrays, strict=True)), load: found[rows]}
+        added = None if beside is None else partial(beside, rows)
+        _loads_into(out, numbers.column(rows), pieces, strain, design.rubber_law, added)
+
+    run_blocks(fill, [slice(row, row + n_rows) for row in range(0, len(found), n_rows)])
+    return found.reshape(*design.shape, strain.size)
+
+
+class _State(NamedTuple):
+    """What the loads leave for other responses of a hose."""
+
+    stretch: Floats
+    inverse: Floats
+    cord_stretch: Floats
+    cord_axial_load: Floats
+    piece: NDArray[np.intp]
+
+
+def _loads_into(
+    out: dict[str, Any],
     numbers: _HoseNumbers,
     pieces: CordPieces,
     strain: Floats,
-    design: HoseDesign,
-    out: dict[str, Any],
-) -> None:
-    """Fill a block of each array, with operations in place to avoid allocations."""
+    law: RubberLaw,
+    beside: Callable[[Floats], Floats] | None = None,
+) -> _State:
+    """Fill a block of strains and loads, with operations in place to avoid allocations."""
     stretch, inverse, cord_stretch, spare, other = np.empty((5, *out["tension"].shape))
     free = np.divide(strain, numbers.free_share, out=out["free_strain"])
     np.add(free, 1, out=stretch)
@@ -337,18 +405,32 @@ def _respond(
     np.divide(square, cord_strain, out=cord_strain)
     curve_strain = np.divide(cord_strain, numbers.strain_scale, out=other)
     piece = piece_of(pieces, curve_strain)
-    np.equal(piece, 0, out=out["is_slack"])
-    np.equal(piece, len(pieces.knot), out=out["is_broken"])
+    added = None if beside is None else beside(curve_strain)
     cord_tension = evaluate_into(out["cord_tension"], spare, pieces, curve_strain, piece)
+    if added is not None:
+        cord_tension += added
     cord_tension *= numbers.load_scale
     cords = _HoseLoads(out["fill_pressure"], out["end_cap_load"], spare)
     loads_at(numbers, stretch, cord_stretch, cord_tension, out=cords)
-    tension = tension_into(
-        out["tension"], stretch, numbers.area * numbers.modulus, design.rubber_law
-    )
+    tension = tension_into(out["tension"], stretch, numbers.area * numbers.modulus, law)
     tension += cords.cord_axial_load
-    share = np.maximum(tension, np.finfo(np.float64).tiny, out=out["cord_share"])
-    np.divide(cords.cord_axial_load, share, out=share)
+    return _State(stretch, inverse, cord_stretch, spare, piece)
+
+
+def _respond(
+    numbers: _HoseNumbers,
+    pieces: CordPieces,
+    strain: Floats,
+    design: HoseDesign,
+    out: dict[str, Any],
+) -> None:
+    """Fill a block of each array."""
+    state = _loads_into(out, numbers, pieces, strain, design.rubber_law)
+    stretch, inverse, spare = state.stretch, state.inverse, state.cord_axial_load
+    np.equal(state.piece, 0, out=out["is_slack"])
+    np.equal(state.piece, len(pieces.knot), out=out["is_broken"])
+    share = np.maximum(out["tension"], np.finfo(np.float64).tiny, out=out["cord_share"])
+    np.divide(state.cord_axial_load, share, out=share)
     np.subtract(1, share, out=out["rubber_share"])
     thinning = np.sqrt(inverse, out=spare)
     bore = np.multiply(thinning, numbers.inner_diameter, out=out["current_inner_diameter"])
@@ -357,7 +439,7 @@ def _respond(
     inverse *= numbers.tangent
     np.arctan(inverse, out=out["current_wrap_angle"])
     stretch *= thinning
-    stretch /= cord_stretch
+    stretch /= state.cord_stretch
     spacing = np.multiply(stretch, numbers.cord_spacing, out=out["cord_spacing"])
     np.less(spacing, numbers.cord_diameter, out=out["is_jammed"])
 

@@ -512,3 +512,24 @@ def test_a_cord_of_another_law_between_its_points_is_no_error_of_the_hose(names)
         # nothing that is held leaves what is stated of it
         assert np.all(np.abs(found.shared_error_value) < 3.5)
     assert np.mean(held) >= 0.8
+
+
+@pytest.mark.parametrize("load", ["tension", "fill_pressure"])
+def test_slopes_in_closed_form_are_those_of_differences(load):
+    test = pull(TRUTH, noise=5, seed=3, strain_offset=2e-3, tension_offset=20.0)
+    held = {"cord_strain_scale": 0.05, "layer_diameter": 1e-4, "outer_diameter": 5e-4}
+    names = ("wrap_angle", "cord_load_scale", "dead_length_share")
+    problem, _ = fitproblem._pose(TRUTH.design(), test, names, {}, held, load)
+    assert len(problem.between) and len(problem.moved)
+    rng = np.random.default_rng(4)
+    at = np.concatenate(
+        [
+            problem.start(np.array([TRUTH.wrap_angle, 1.05, 0.05]) / problem.unit),
+            0.7 * rng.standard_normal(problem.n_traced - len(names)),
+        ]
+    )
+    closed, apart = problem.slopes(at), problem._differences(at)
+    # a difference steps across the pick-up of the cords and over the corners of other cord curves
+    size, off = np.abs(apart).max(axis=0), np.abs(closed - apart)
+    assert np.all(off.mean(axis=0) <= 3e-4 * size) and np.all(off <= 0.02 * size)
+    assert np.all(size[: len(names)] > 0)
