@@ -7,9 +7,11 @@ import hashlib
 import os
 import platform
 import re
+import shutil
 import uuid
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from functools import partial
 from pathlib import Path
 
 from reduction.record.errors import ArchiveError
@@ -97,3 +99,49 @@ def _flush_folder(path: Path) -> None:
             found=error.strerror or str(error),
             hint="Check the disk, and run again.",
         ) from error
+
+
+def write_text_atomically(path: Path, *pieces: str | bytes) -> None:
+    """Write a UTF-8 text file completely or not at all, with line ends unchanged."""
+    with append_atomically(path) as append:
+        for one in pieces:
+            append(one)
+
+
+@contextmanager
+def append_atomically(path: Path) -> Iterator[Callable[[str | bytes], None]]:
+    """Yield a function that appends to a file, which appears only if the block succeeds."""
+    is_in_block = False
+    remove_abandoned(path)
+    try:
+        with atomic_file(path) as part:
+            is_in_block = True
+            yield partial(_append, part, path)
+            is_in_block = False
+    except OSError as error:
+        if is_in_block or isinstance(error, ArchiveError):  # of another file, or complete
+            raise
+        raise not_written(path, error) from error
+
+
+def _append(part: Path, path: Path, text: str | bytes) -> None:
+    try:
+        with part.open("ab") as file:
+            file.write(text.encode("utf-8") if isinstance(text, str) else text)
+    except OSError as error:
+        raise not_written(path, error) from error
+
+
+def not_written(path: Path, error: Exception) -> ArchiveError:
+    """The error of a file that the system or a library could not write."""
+    found = getattr(error, "strerror", None)
+    if not isinstance(found, str) or (getattr(error, "errno", None) or 0) < 0:
+        # netCDF library error numbers, which hide the system's message
+        with suppress(OSError):
+            free = shutil.disk_usage(path.parent).free
+            found = f"{error}, with {free / 1e6:.0f} MB free on the disk"
+    return ArchiveError(
+        f"{path} cannot be written",
+        found=found or str(error),
+        hint="What was there before is kept. Check the folder and the space on the disk.",
+    )

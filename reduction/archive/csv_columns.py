@@ -18,8 +18,8 @@ import pandas as pd
 import xarray as xr
 from numpy.typing import NDArray
 
+from reduction.archive.atomic_write import append_atomically
 from reduction.archive.campaign_products import outcomes_of_dataset
-from reduction.archive.write import append_atomically
 from reduction.experiments.outcome_groups import (
     EXPOSURE_COLUMNS,
     FATIGUE_COLUMNS,

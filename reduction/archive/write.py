@@ -1,43 +1,21 @@
-"""Writes archives: a netCDF file is written completely or not at all.
-
-Statements on persons, dates, instruments and limits are separate from the archives. They affect no
-number, so that a report can be amended without changing any archive.  An empty text was not stated;
-a report shows it as such and never omits it.
-
-References
-----------
-.. [1] ISO/IEC 17025:2017, 7.8 (what a report of tests holds).
-"""
+"""Writes archives: a netCDF file is written completely or not at all."""
 
 from __future__ import annotations
 
-import datetime
 import hashlib
-import shutil
-from collections.abc import Callable, Hashable, Iterator
-from contextlib import contextmanager, suppress
-from functools import partial
+from collections.abc import Hashable, Iterator
 from pathlib import Path
-from typing import Annotated, Any, Generic, Literal, TypeVar
+from typing import Any
 
 import netCDF4
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
-from pydantic import (
-    BaseModel,
-    BeforeValidator,
-    ConfigDict,
-    Field,
-    StringConstraints,
-    ValidationError,
-)
 
-from reduction.archive.atomic_write import atomic_file, remove_abandoned, take_away
+from reduction.archive.atomic_write import atomic_file, not_written
 from reduction.quantities.row import GROUPS
 from reduction.record.errors import ArchiveError
 from reduction.record.samples import release_pages, sample_blocks
-from reduction.uncertainty.budget import DecisionRule
 
 _BLOCK = 1 << 20  # values along the last dimension written together: whole chunks
 
@@ -167,207 +145,4 @@ def write_archive(dataset: xr.Dataset, path: Path) -> xr.Dataset:
     except ArchiveError:
         raise
     except (OSError, RuntimeError) as error:
-        raise _not_written(path, error) from error
-
-
-def write_text_atomically(path: Path, *pieces: str | bytes) -> None:
-    """Write a UTF-8 text file completely or not at all, with line ends unchanged."""
-    with append_atomically(path) as append:
-        for one in pieces:
-            append(one)
-
-
-@contextmanager
-def append_atomically(path: Path) -> Iterator[Callable[[str | bytes], None]]:
-    """Yield a function that appends to a file, which appears only if the block succeeds."""
-    is_in_block = False
-    remove_abandoned(path)
-    try:
-        with atomic_file(path) as part:
-            is_in_block = True
-            yield partial(_append, part, path)
-            is_in_block = False
-    except OSError as error:
-        if is_in_block or isinstance(error, ArchiveError):  # of another file, or complete
-            raise
-        raise _not_written(path, error) from error
-
-
-def _append(part: Path, path: Path, text: str | bytes) -> None:
-    try:
-        with part.open("ab") as file:
-            file.write(text.encode("utf-8") if isinstance(text, str) else text)
-    except OSError as error:
-        raise _not_written(path, error) from error
-
-
-def _not_written(path: Path, error: Exception) -> ArchiveError:
-    found = getattr(error, "strerror", None)
-    if not isinstance(found, str) or (getattr(error, "errno", None) or 0) < 0:
-        # netCDF library error numbers, which hide the system's message
-        with suppress(OSError):
-            free = shutil.disk_usage(path.parent).free
-            found = f"{error}, with {free / 1e6:.0f} MB free on the disk"
-    return ArchiveError(
-        f"{path} cannot be written",
-        found=found or str(error),
-        hint="What was there before is kept. Check the folder and the space on the disk.",
-    )
-
-
-FILE_NAME = "report.json"
-
-Paper = Literal["A4", "Letter"]
-
-ReportText = Annotated[str, StringConstraints(max_length=4000, strip_whitespace=True)]
-
-
-def _as_text(value: object) -> object:
-    """A date of TOML as text, unchanged."""
-    return value.isoformat() if isinstance(value, datetime.date) else value
-
-
-Date = Annotated[ReportText, BeforeValidator(_as_text)]
-"""A TOML date, or text: ``2026-03-05``, ``"2 to 5 March 2026"``."""
-
-
-class ReportSection(BaseModel):
-    """A table of ``[report]``."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-
-class Laboratory(ReportSection):
-    """``[report.laboratory]``."""
-
-    name: ReportText = ""
-    address: ReportText = ""
-    contact: ReportText = ""
-    location: ReportText = ""
-    """Place of the tests, if it is not the address."""
-    accreditation: ReportText = ""
-
-
-class Client(ReportSection):
-    """``[report.client]``."""
-
-    name: ReportText = ""
-    address: ReportText = ""
-    contact: ReportText = ""
-    order: ReportText = ""
-
-
-class ReportItem(ReportSection):
-    """``[report.items.SPECIMEN]``: an item received."""
-
-    identification: ReportText = ""
-    """Marking on it: a serial number, a tag."""
-    description: ReportText = ""
-    condition: ReportText = ""
-    """Condition on receipt."""
-    received: Date = ""
-
-
-class _Authorised(ReportSection):
-    """``[report.authorised]``."""
-
-    by: ReportText = ""
-    function: ReportText = ""
-    on: Date = ""
-
-
-class Instrument(ReportSection):
-    """``[[report.instruments]]``: one instrument with its last calibration."""
-
-    name: ReportText
-    identification: ReportText = ""
-    certificate: ReportText = ""
-    traceable_to: ReportText = ""
-    calibrated: Date = ""
-    due: Date = ""
-
-
-class ReportLimit(ReportSection):
-    """A limit for a number of a test, with at least one end.
-
-    Parameters
-    ----------
-    quantity : str
-        Name in the vocabulary.
-    test : str
-        Id of the product of a test or a step.
-    at : dict of str to str
-        Place of the number along each dimension, as for `reduction budget`.
-    lower, upper : float or None
-        Ends in SI. [unit of the quantity]
-    source : str
-        Source of the limit.
-    """
-
-    quantity: str
-    test: str
-    at: dict[str, str] = Field(default_factory=dict)
-    lower: float | None = None
-    upper: float | None = None
-    source: str = ""
-
-
-AnyLimit = TypeVar("AnyLimit")
-
-
-class Statement(ReportSection, Generic[AnyLimit]):
-    """``[report]``: all keys are optional; the report says which are not stated."""
-
-    number: ReportText = ""
-    revision: int = Field(default=0, ge=0)
-    amendment: ReportText = ""
-    """Changes in this revision, and the report it replaces."""
-    issued: Date = ""
-    received: Date = ""
-    """Date of receipt, if the items arrived together."""
-    tested: Date = ""
-    method: ReportText = ""
-    deviations: ReportText = ""
-    """Deviations from the method: ``"none"`` if there were none."""
-    sampling: ReportText = ""
-    environment: ReportText = ""
-    opinions: ReportText = ""
-    """Opinions and interpretations, marked as such in the report."""
-    decision_rule: DecisionRule | None = None
-    """Required if a limit is given."""
-    paper: Paper = "A4"
-    laboratory: Laboratory = Laboratory()
-    client: Client = Client()
-    authorised: _Authorised = _Authorised()
-    items: dict[str, ReportItem] = Field(default_factory=dict)
-    instruments: tuple[Instrument, ...] = ()
-    limits: tuple[AnyLimit, ...] = ()
-
-
-class ReportDetails(Statement[ReportLimit]):
-    """Statements of the laboratory, with limits in SI."""
-
-
-def keep_details(folder: Path, details: ReportDetails | None) -> None:
-    """Write the statements of the laboratory, or remove those of an earlier run."""
-    path = folder / FILE_NAME
-    if details is None:
-        take_away(path)
-        return
-    write_text_atomically(path, details.model_dump_json(indent=1) + "\n")
-
-
-def read_details(folder: Path) -> ReportDetails | None:
-    """Read the statements of the laboratory."""
-    path = folder / FILE_NAME
-    if not path.is_file():
-        return None
-    try:
-        return ReportDetails.model_validate_json(path.read_bytes())
-    except (OSError, ValidationError) as error:
-        raise ArchiveError(
-            f"{path} cannot be read",
-            found=str(error).splitlines()[0],
-            needed="what a run keeps of [report]",
-            hint="Run the campaign again.",
-        ) from error
+        raise not_written(path, error) from error

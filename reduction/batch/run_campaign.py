@@ -15,6 +15,7 @@ import numpy as np
 import xarray as xr
 
 from reduction import __version__
+from reduction.archive.atomic_write import write_text_atomically
 from reduction.archive.campaign_products import outcomes_to_dataset
 from reduction.archive.csv_tables import write_tables
 from reduction.archive.open import Opener, ReadOnce, as_kept, keep_written, reading
@@ -24,8 +25,9 @@ from reduction.archive.product_files import (
     archives_of_tests,
     record_campaign,
 )
+from reduction.archive.report_details import keep_details
 from reduction.archive.rope_properties import CHANGES_LENGTH, properties_to_dataset, step_of_archive
-from reduction.archive.write import keep_details, write_archive, write_text_atomically
+from reduction.archive.write import write_archive
 from reduction.batch.campaign_status import (
     CampaignResult,
     PartStatus,

@@ -22,8 +22,7 @@ from pydantic import (
     field_validator,
 )
 
-from reduction.archive.uncertainty_budget import parse_place
-from reduction.archive.write import (
+from reduction.archive.report_details import (
     Date,
     ReportDetails,
     ReportLimit,
@@ -31,6 +30,7 @@ from reduction.archive.write import (
     ReportText,
     Statement,
 )
+from reduction.archive.uncertainty_budget import parse_place
 from reduction.campaign.hose_spec import ComparisonSection, HoseSection
 from reduction.campaign.plan import TestPlan, product_of
 from reduction.campaign.toml_file import at_place, in_toml

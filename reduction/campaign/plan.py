@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Literal
 
-from reduction.archive.write import ReportDetails
+from reduction.archive.report_details import ReportDetails
 from reduction.experiments.designs import FactorLevels
 from reduction.experiments.outcomes import Outcome
 from reduction.prediction.hose_prediction import HosePlan

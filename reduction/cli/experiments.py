@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from rich.markup import escape
 
+from reduction.archive.atomic_write import write_text_atomically
 from reduction.archive.csv_columns import csv_text
-from reduction.archive.write import write_text_atomically
 from reduction.campaign.experiment_plans import ExperimentSpec, RunSeries, load_spec, read_runs
 from reduction.campaign.toml_file import at_place
 from reduction.cli.output import CommandOutput

@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from reduction.archive.atomic_write import write_text_atomically
 from reduction.archive.campaign_products import NamedComparison
 from reduction.archive.csv_columns import Cell, csv_text
 from reduction.archive.csv_tables import write_tables
-from reduction.archive.write import write_text_atomically
 from reduction.batch.prediction_product import compare_archive, write_hoses, write_named
 from reduction.campaign.armour_spec import load_armour_case
 from reduction.campaign.hose_spec import load_hose

@@ -8,7 +8,7 @@ from typing import Any
 
 from rich.markup import escape
 
-from reduction.archive.write import write_text_atomically
+from reduction.archive.atomic_write import write_text_atomically
 from reduction.cli.output import CommandOutput
 from reduction.cli.printed_numbers import plain, table_of
 from reduction.published.printed_cells import REPORTS, ReportId

@@ -13,8 +13,8 @@ from typing import Literal, get_args
 import numpy as np
 import scipy
 
+from reduction.archive.atomic_write import write_text_atomically
 from reduction.archive.workbook import write_workbook
-from reduction.archive.write import write_text_atomically
 from reduction.lines.deck_moordyn import (
     TABLE_POINTS,
     OpenFastForm,

@@ -18,9 +18,9 @@ from jinja2 import Environment, StrictUndefined
 from numpy.typing import ArrayLike
 
 from reduction import __version__
+from reduction.archive.atomic_write import write_text_atomically
 from reduction.archive.open import Opener, reading
 from reduction.archive.product_files import DESIGN_PAGE_NAME, STATUS_NAME
-from reduction.archive.write import write_text_atomically
 from reduction.experiments.surface_points import ABOVE_LEVERAGE
 from reduction.lines.archive_source import archives_of_lines, lines_of_open_archive, unique_names
 from reduction.lines.deck_formats import FORMS

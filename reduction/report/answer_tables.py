@@ -8,6 +8,7 @@ from math import hypot
 
 import numpy as np
 
+from reduction.archive.report_details import ReportDetails, ReportLimit
 from reduction.archive.uncertainty_budget import (
     all_budgets,
     break_in_cycles,
@@ -15,7 +16,6 @@ from reduction.archive.uncertainty_budget import (
     cycles_averaged,
     place_name,
 )
-from reduction.archive.write import ReportDetails, ReportLimit
 from reduction.quantities.names import BRANCH_NAMES, quantity
 from reduction.quantities.units import UnitSystem, display_unit
 from reduction.record.errors import ReductionError

@@ -10,10 +10,10 @@ from pathlib import Path
 
 import xarray as xr
 
-from reduction.archive.atomic_write import take_away
+from reduction.archive.atomic_write import take_away, write_text_atomically
 from reduction.archive.open import Opener, reading
 from reduction.archive.product_files import CLIENT_PAGE_NAME, archives_of_tests
-from reduction.archive.write import read_details, write_text_atomically
+from reduction.archive.report_details import read_details
 from reduction.quantities.units import UnitSystem
 from reduction.record.errors import ArchiveError
 from reduction.record.plain_text import bare_cell

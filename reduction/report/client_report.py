@@ -19,7 +19,13 @@ from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup
 
 from reduction import __version__
-from reduction.archive.write import Client, Instrument, Laboratory, ReportDetails, ReportItem
+from reduction.archive.report_details import (
+    Client,
+    Instrument,
+    Laboratory,
+    ReportDetails,
+    ReportItem,
+)
 from reduction.quantities.units import UnitSystem
 from reduction.report.answer_tables import (
     AnswerBudget,

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from reduction.archive.write import write_text_atomically
+from reduction.archive.atomic_write import write_text_atomically
 from reduction.lines.assembly import DeployedLine
 from reduction.lines.composite import CompositeCurve, PieceSource
 from reduction.prediction.armour import PredictedArmour

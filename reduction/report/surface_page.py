@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
+from reduction.archive.atomic_write import write_text_atomically
 from reduction.archive.csv_columns import Cell, csv_text
-from reduction.archive.write import write_text_atomically
 from reduction.campaign.experiment_plans import RunSeries
 from reduction.experiments.fit_results import ResponseSurfaces
 from reduction.experiments.response_transform import fitted_unit

@@ -9,7 +9,7 @@ import pytest
 from commandruns import reduction
 
 from reduction.archive.open import open_archive
-from reduction.archive.write import Laboratory, ReportDetails, keep_details, read_details
+from reduction.archive.report_details import Laboratory, ReportDetails, keep_details, read_details
 
 TMT = "tmt-synthetic"
 A4, LETTER = (595, 842), (612, 792)

@@ -4,7 +4,7 @@ import re
 import tomllib
 from pathlib import Path
 
-from reduction.archive import write as laboratory
+from reduction.archive import report_details as laboratory
 from reduction.campaign.model import _ReportSection
 
 PAGE = (Path(__file__).parents[2] / "docs" / "client-report.md").read_text(encoding="utf-8")

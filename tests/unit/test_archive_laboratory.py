@@ -2,7 +2,7 @@
 
 import pytest
 
-from reduction.archive.write import (
+from reduction.archive.report_details import (
     FILE_NAME,
     Client,
     Instrument,

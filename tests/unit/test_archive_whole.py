@@ -9,8 +9,12 @@ from pathlib import Path
 
 import pytest
 
-from reduction.archive.atomic_write import atomic_file, remove_abandoned, take_away
-from reduction.archive.write import write_text_atomically
+from reduction.archive.atomic_write import (
+    atomic_file,
+    remove_abandoned,
+    take_away,
+    write_text_atomically,
+)
 from reduction.record.errors import ArchiveError
 
 

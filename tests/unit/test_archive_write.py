@@ -10,8 +10,9 @@ import netCDF4
 import pytest
 from rulesofcf import held_against_cf
 
+from reduction.archive.atomic_write import append_atomically, write_text_atomically
 from reduction.archive.test_dataset import to_dataset
-from reduction.archive.write import append_atomically, write_archive, write_text_atomically
+from reduction.archive.write import write_archive
 from reduction.record.errors import ArchiveError
 
 AGAIN = """

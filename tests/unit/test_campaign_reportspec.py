@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from reduction.archive.write import Instrument, ReportItem
+from reduction.archive.report_details import Instrument, ReportItem
 from reduction.campaign.model import _ReportSection, report_details
 from reduction.record.errors import SettingsError
 

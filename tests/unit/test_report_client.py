@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from reduction.archive.open import open_archive
-from reduction.archive.write import (
+from reduction.archive.report_details import (
     Client,
     Instrument,
     Laboratory,
