@@ -15,7 +15,6 @@ from reduction.experiments.stiffness_forms import (
     fit_mean_load_stiffness,
 )
 from reduction.experiments.surface_discrepancy import SurfaceDiscrepancy
-from reduction.experiments.term_selection import reduce_terms
 from reduction.quantities.names import RESPONSES
 from reduction.record.contributions import Component, Contributions
 from reduction.record.measurement import Origin, Source, Step
@@ -153,7 +152,6 @@ def surface_experiment(
         single_time=single,
         derived_dissipation_spring_constant=np.linspace(1e4, 2e4, len(coded)),
         derived_relaxation_time=np.linspace(1.0, 2.0, len(coded)),
-        reduced=None if treatment == "random" else reduce_terms(surfaces),
         cautions=(
             Caution("slack", "the minimum tension of run 2 reaches zero", "Raise it.", (2,)),
             Caution("no-repeats", "no run is repeated", "Add centre runs."),

@@ -403,21 +403,6 @@ EXPERIMENT_TABLES = (
         product="experiments",
     ),
     CsvTable(
-        "ridge",
-        ("experiment", "response", "ridge_direction", "ridge_radius", "factor"),
-        ("response_ridge_coded_level",),
-        first=("factor_name",),
-        last=(
-            "factor_unit",
-            "response_unit",
-            "response_ridge_value",
-            "response_ridge_simultaneous_low",
-            "response_ridge_simultaneous_high",
-            "interval_confidence",
-        ),
-        product="experiments",
-    ),
-    CsvTable(
         "blocks",
         ("experiment", "response", "block"),
         ("response_block_effect",),

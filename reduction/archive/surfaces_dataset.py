@@ -29,11 +29,10 @@ from reduction.experiments.fit_results import (
     ResponseSurfaces,
 )
 from reduction.experiments.run_sheet import SIGNIFICANCE
-from reduction.experiments.screening import ScreeningEffects, alias_matrix, half_normal_coordinates
-from reduction.experiments.stationary_point import canonical_slopes, ridge_path
+from reduction.experiments.screening import ScreeningEffects, alias_matrix
+from reduction.experiments.stationary_point import canonical_slopes
 from reduction.experiments.stiffness_forms import FormQuality, StiffnessForm
 from reduction.experiments.surface_points import evaluate_surfaces, plan_points
-from reduction.experiments.term_selection import ReducedSurfaces
 from reduction.quantities.names import RESPONSES, SURFACE_NAMES, SURFACE_SCHEMA
 from reduction.quantities.units import combined_unit
 from reduction.record.contributions import CONFIDENCE, combined_standard_uncertainty
@@ -66,7 +65,6 @@ def effect_values(effects: ScreeningEffects, response_names: Sequence[str]) -> V
     }
     untested = np.full(effects.dummy_effect.shape[-1], np.nan)
     every = np.concatenate([effects.effect, effects.dummy_effect], axis=-1)
-    quantile = _half_normal_quantile(every)
     for index, name in enumerate(response_names):
         values |= {
             f"{name}_effect": every[index],
@@ -77,22 +75,11 @@ def effect_values(effects: ScreeningEffects, response_names: Sequence[str]) -> V
                 effects.is_significant[index], np.zeros(untested.size, dtype=bool)
             ),
             f"{name}_effect_refusal": np.array(str(effects.reason[index])),
-            f"{name}_effect_size": np.abs(every[index]),
-            f"{name}_effect_half_normal_quantile": quantile[index],
             f"{name}_mean": effects.mean[index],
             f"{name}_minimum_significant_effect": effects.minimum_significant_effect[index],
             f"{name}_simultaneous_minimum_effect": effects.simultaneous_minimum_effect[index],
         }
     return values
-
-
-def _half_normal_quantile(effects: Floats) -> Floats:
-    """Half-normal quantile of each effect in its own column; NaN if a response has none."""
-    points = half_normal_coordinates(effects)
-    quantile = np.empty(effects.shape)
-    along = np.broadcast_to(points.quantile, effects.shape)
-    np.put_along_axis(quantile, points.order, along, axis=-1)
-    return np.where(np.isfinite(effects), quantile, np.nan)
 
 
 def alias_values(plan: Floats, factor_names: Sequence[str]) -> Values:
@@ -210,9 +197,6 @@ def _stiffness_values(forms: Sequence[StiffnessForm], quality: FormQuality) -> V
     return values | {"stiffness_equation": texts([*(form.equation for form in forms), *nothing])}
 
 
-_RADIUS = np.linspace(0.0, 1.0, 11)
-
-
 def point_values(
     surfaces: ResponseSurfaces, plan: Floats, shared: SharedSurfaces | None = None
 ) -> Values:
@@ -297,58 +281,6 @@ def _rows(surfaces: ResponseSurfaces, shared: SharedSurfaces | None) -> tuple[Fl
     return shared.coefficient, np.array([one.degrees_of_freedom for one in shared.component])
 
 
-def ridge_values(surfaces: ResponseSurfaces, shared: SharedSurfaces | None = None) -> Values:
-    """Return the maximum and minimum of every surface at each distance from the centre.
-
-    Parameters
-    ----------
-    surfaces : ResponseSurfaces
-        Fitted surfaces.
-    shared : SharedSurfaces, optional
-        Errors shared by the runs; none if omitted.
-
-    Returns
-    -------
-    values : dict of str to ndarray
-        Values by names of `reduction.quantities.names`; NaN for a response without a surface.
-
-    Notes
-    -----
-    The points are found on the scale of the fit, which rises with the response. Since the same runs
-    determine the points, only the simultaneous intervals are valid there.
-    """
-    limits = {"low": surfaces.low, "high": surfaces.high}
-    paths = [
-        ridge_path(
-            surfaces.coefficient, surfaces.exponents, radius=_RADIUS, direction=direction, **limits
-        )
-        for direction in ("ascent", "descent")
-    ]
-    coded = np.stack([path.coded for path in paths], axis=1)
-    engineering = np.stack([path.engineering for path in paths], axis=1)
-    n_responses, n_points = len(coded), 2 * _RADIUS.size
-    found = evaluate_surfaces(
-        surfaces,
-        np.nan_to_num(coded).reshape(n_responses * n_points, -1),
-        units="coded",
-        outside="flag",
-    )
-    both = with_shared_at_points(surfaces, found, *_rows(surfaces, shared))
-    values: Values = {"ridge_direction": texts(("ascent", "descent")), "ridge_radius": _RADIUS}
-    for index, name in enumerate(surfaces.response_names):
-        # each surface at the points on its own ridge
-        own = (index, slice(index * n_points, (index + 1) * n_points))
-        ends = both.simultaneous_interval[own].reshape(2, _RADIUS.size, 2)
-        values |= {
-            f"{name}_ridge_coded_level": coded[index],
-            f"{name}_ridge_level": engineering[index],
-            f"{name}_ridge_value": found.value[own].reshape(2, _RADIUS.size),
-            f"{name}_ridge_simultaneous_low": ends[..., 0],
-            f"{name}_ridge_simultaneous_high": ends[..., 1],
-        }
-    return values
-
-
 _RUN_COLUMNS = (
     "frequency",
     "mean_tension",
@@ -430,11 +362,8 @@ def _experiment_values(result: ExperimentResult) -> Values:
             values |= _surface_values(result.surfaces, index, name)
             if result.shared is not None:
                 values |= _with_shared(values, result.surfaces, result.shared, index, name)
-            if result.reduced is not None:
-                values |= _reduced_values(result.reduced, index, name)
         plan = result.runs.coded_plan[:, : len(result.factor_names)]
         values |= point_values(result.surfaces, plan, result.shared)
-        values |= ridge_values(result.surfaces, result.shared)
     if result.screening is not None:
         values |= effect_values(result.screening, result.response_names)
         values |= alias_values(result.runs.coded_plan, result.factor_names)
@@ -584,23 +513,6 @@ def _surface_values(surfaces: ResponseSurfaces, index: int, name: str) -> Values
         f"{name}_refusal": np.array(FIT_REASONS[int(surfaces.reason[index])]),
         f"{name}_lack_of_fit_refusal": np.array(LACK_OF_FIT_REASONS[int(lack.reason[index])]),
         f"{name}_stationary_refusal": np.array(STATIONARY_REASONS[int(canonical.reason[index])]),
-    }
-
-
-def _reduced_values(reduced: ReducedSurfaces, index: int, name: str) -> Values:
-    """Terms kept in one surface."""
-    infinite = np.isinf(reduced.full_criterion[index])
-    return {
-        f"{name}_reduced_coefficient": reduced.coefficient[index],
-        f"{name}_reduced_coefficient_standard_uncertainty": (
-            reduced.coefficient_standard_uncertainty[index]
-        ),
-        f"{name}_reduced_coefficient_engineering": reduced.coefficient_engineering[index],
-        f"{name}_reduced_is_kept": reduced.is_kept[index],
-        f"{name}_reduced_sigma": reduced.sigma[index],
-        f"{name}_reduced_aicc": reduced.criterion[index],
-        # infinity means too few runs for the correction
-        f"{name}_full_aicc": np.array(np.nan if infinite else reduced.full_criterion[index]),
     }
 
 

@@ -434,7 +434,6 @@ def _fit_rows(plan: ExperimentPlan, rows: list[Row]) -> ExperimentResult:
         response_names=plan.responses,
         transform=plan.transform,
         specimens_as=plan.specimens_as,
-        term_reduction=plan.term_reduction,
         run_order=_column(rows, "order"),
     )
     return with_shared_surfaces(result)

@@ -166,7 +166,6 @@ def plan_experiment(
         responses=section.responses,
         transform={str(key): value for key, value in section.transform.items()},
         specimens_as=section.specimens_as,
-        term_reduction=section.term_reduction,
     )
 
 

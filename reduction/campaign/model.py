@@ -764,7 +764,6 @@ class ExperimentSection(_SpecSection):
     )
     specimens_as: Literal["blocks", "random"] = "blocks"
     """Treatment of several specimens of one line: a mean of each, or draws from a population."""
-    term_reduction: Literal["none", "aicc"] = "none"
     """Also fit surfaces with only the terms kept by AICc."""
 
 

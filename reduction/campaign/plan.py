@@ -101,7 +101,6 @@ class ExperimentPlan:
     responses: tuple[str, ...]
     transform: dict[str, str]
     specimens_as: Literal["blocks", "random"]
-    term_reduction: Literal["none", "aicc"] = "none"
 
 
 @dataclass(frozen=True)

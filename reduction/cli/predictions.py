@@ -335,7 +335,7 @@ def _wires_csv(found: PredictedArmour) -> str:
 
 def _layers_csv(found: PredictedArmour) -> str:
     header = [
-        "layer", "fill_factor [1]", "wire_gap [m]", "thinning_loss [1]",
+        "layer", "wire_gap [m]", "thinning_loss [1]",
         *(f"{name} [{unit}]" for name, unit in _OF_LAYER.items()),
     ]  # fmt: skip
     return csv_text(
@@ -343,7 +343,6 @@ def _layers_csv(found: PredictedArmour) -> str:
         (
             [
                 name,
-                float(found.fill[place]),
                 float(found.gap[place]),
                 float(found.thinning_loss[place]),
                 *(float(getattr(found.together, one)[place, 0]) for one in _OF_LAYER),
@@ -373,7 +372,7 @@ def _show_armour(found: PredictedArmour, output: CommandOutput) -> None:
     output.show(table)
     table = table_of(
         "layer", f"tension [{force}]", "torque [N m]", f"pressure [{stress}]",
-        f"von Mises [{stress}]", "filled [%]", "gap [mm]", "thinning [%]",
+        f"von Mises [{stress}]", "gap [mm]", "thinning [%]",
         title="Layers, theory conjugate",
     )  # fmt: skip
     for place, name in enumerate(found.layer_names):
@@ -384,7 +383,6 @@ def _show_armour(found: PredictedArmour, output: CommandOutput) -> None:
             short(float(together.layer_torque[place, 0])),
             short(per_pascal * float(together.core_pressure[place, 0])),
             short(per_pascal * float(together.wire_stress[place, 0])),
-            short(100 * float(found.fill[place]), 4),
             short(1e3 * float(found.gap[place]), 4),
             short(100 * float(found.thinning_loss[place]), 2),
         )
@@ -428,7 +426,6 @@ def _armour_document(found: PredictedArmour) -> dict[str, Any]:
         "layers": [
             {
                 "name": name,
-                "fill_factor": plain(found.fill[place]),
                 "wire_gap": plain(found.gap[place]),
                 "thinning_loss": plain(found.thinning_loss[place]),
                 **{one: plain(getattr(found.together, one)[place, 0]) for one in _OF_LAYER},

@@ -13,7 +13,6 @@ from reduction.experiments.fit_results import ResponseSurfaces
 from reduction.experiments.run_sheet import Caution
 from reduction.experiments.screening import ScreeningEffects
 from reduction.experiments.stiffness_forms import FormQuality, StiffnessForm
-from reduction.experiments.term_selection import ReducedSurfaces
 from reduction.record.contributions import Component, Contributions
 from reduction.record.errors import DataError
 from reduction.record.measurement import Floats, read_only_arrays
@@ -147,8 +146,6 @@ class ExperimentResult:
     derived_dissipation_spring_constant, derived_relaxation_time : ndarray, shape (n_runs,)
         K_1 and tau from surfaces of E' and E'' at the levels of each run, for comparison with
         those of its own loops; NaN where refused. [N], [s]
-    reduced : ReducedSurfaces or None
-        Subsets of the terms of ``surfaces``, where requested.
     cautions : tuple of Caution
         Of the runs as reached.
     notes : tuple of Note
@@ -175,7 +172,6 @@ class ExperimentResult:
     single_time: SingleTimeCheck | None
     derived_dissipation_spring_constant: Floats
     derived_relaxation_time: Floats
-    reduced: ReducedSurfaces | None = None
     cautions: tuple[Caution, ...] = ()
     notes: tuple[Note, ...] = ()
     refusal_status: int = 0

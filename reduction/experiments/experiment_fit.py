@@ -39,7 +39,6 @@ from reduction.experiments.surface_warnings import (
     negative_surfaces,
     stray_runs,
 )
-from reduction.experiments.term_selection import ReducedSurfaces, reduce_terms
 from reduction.record.errors import DataError, FitError, SettingsError
 from reduction.record.measurement import Bools, Floats, Integers
 from reduction.record.notes import Note, note
@@ -321,7 +320,6 @@ def fit_experiment(
     response_names: tuple[str, ...],
     transform: Mapping[str, str],
     specimens_as: Literal["blocks", "random"],
-    term_reduction: Literal["none", "aicc"] = "none",
     run_order: ArrayLike | None = None,
 ) -> ExperimentResult:
     """All results from the runs of one experiment."""
@@ -333,7 +331,6 @@ def fit_experiment(
     forms: tuple[StiffnessForm, ...] = ()
     quality: FormQuality | None = None
     single: SingleTimeCheck | None = None
-    reduced: ReducedSurfaces | None = None
     derived = (np.full(len(runs.run), np.nan),) * 2
     names = tuple(one.name for one in factors)
     refusal_status = 0
@@ -361,9 +358,6 @@ def fit_experiment(
         notes += drifting_responses(surfaces, drift)
         if _FROM_SLOW_PULL & set(response_names):
             notes.append(note("slow-pull-error-shared"))
-        if term_reduction == "aicc":
-            reduced, remarks = _reduced(surfaces)
-            notes += remarks
         forms, quality, remarks = _stiffness_of_runs(runs, surfaces, response_names)
         notes += remarks
         derived, remarks = _derived_line(runs, line, names, low, high)
@@ -389,7 +383,6 @@ def fit_experiment(
         single_time=single,
         derived_dissipation_spring_constant=derived[0],
         derived_relaxation_time=derived[1],
-        reduced=reduced,
         cautions=_cautions_of_runs(runs, factors, run_order),
         notes=tuple(dict.fromkeys(notes)),
         refusal_status=refusal_status,
@@ -547,11 +540,3 @@ def _surfaces(
         block_treatment="fixed" if specimens_as == "blocks" else "random",
         transforms=scales,
     )
-
-
-def _reduced(surfaces: ResponseSurfaces) -> tuple[ReducedSurfaces | None, list[Note]]:
-    try:
-        reduced = reduce_terms(surfaces)
-    except REFUSALS as error:
-        return None, [note("no-reduction-of-terms", reason=str(error))]
-    return reduced, list(reduced.notes)

@@ -10,13 +10,11 @@ References
 ----------
 .. [1] R. L. Plackett and J. P. Burman, "The design of optimum multifactorial experiments,"
    Biometrika 33(4), 1946.
-.. [2] C. Daniel, "Use of half-normal plots in interpreting factorial two-level experiments,"
-   Technometrics 1(4), 1959.
-.. [3] CG-D-39-80, Appendix A, Table A-2: five factors in twelve runs, effects, and the smallest
+.. [2] CG-D-39-80, Appendix A, Table A-2: five factors in twelve runs, effects, and the smallest
    significant effect at 90 %.
-.. [4] R. V. Lenth, "Quick and easy analysis of unreplicated factorials," Technometrics 31(4),
+.. [3] R. V. Lenth, "Quick and easy analysis of unreplicated factorials," Technometrics 31(4),
    1989.
-.. [5] G. E. P. Box and R. D. Meyer, "Finding the active factors in fractionated screening
+.. [4] G. E. P. Box and R. D. Meyer, "Finding the active factors in fractionated screening
    experiments," Journal of Quality Technology 25(2), 1993 (cast fatigue).
 """
 
@@ -29,25 +27,15 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import ndtri, stdtrit
+from scipy.special import stdtrit
 
 from reduction.experiments.designs import Design
 from reduction.experiments.least_squares_fit import two_sided_p
 from reduction.experiments.run_sheet import SIGNIFICANCE
 from reduction.record.arrays import as_finite
 from reduction.record.errors import DataError, SettingsError
-from reduction.record.measurement import Bools, Floats, Integers, read_only_arrays
+from reduction.record.measurement import Bools, Floats, read_only_arrays
 from reduction.record.notes import Note, note
-
-
-@dataclass(frozen=True)
-@read_only_arrays
-class _HalfNormal:
-    """Points of a half-normal plot, smallest first."""
-
-    order: Integers
-    quantile: Floats
-    size: Floats
 
 
 def _two_level_columns(name: str, columns: ArrayLike) -> Floats:
@@ -66,45 +54,6 @@ def _two_level_columns(name: str, columns: ArrayLike) -> Floats:
             needed="-1 and +1, one row a run",
         )
     return levels
-
-
-def half_normal_coordinates(effects: ArrayLike) -> _HalfNormal:
-    r"""Coordinates of a half-normal plot: effects due to noise alone lie on a line from zero.
-
-    .. math:: q_i = \Phi^{-1}\!\left(\tfrac12 + \tfrac12 \frac{i - \tfrac12}{m}\right)
-
-    Parameters
-    ----------
-    effects : array_like, shape (..., n_effects)
-        Effects of factors and dummies together. [unit of the response]
-
-    Returns
-    -------
-    points : HalfNormal
-        Absolute effects in rising order with their quantiles.
-
-    Raises
-    ------
-    DataError
-        If there is no effect.
-
-    Notes
-    -----
-    Source: [2]_.
-
-    Examples
-    --------
-    >>> points = half_normal_coordinates([0.3, -2.0, 0.1])
-    >>> print(points.size, points.order, points.quantile.round(3))
-    [0.1 0.3 2. ] [2 0 1] [0.21  0.674 1.383]
-    """
-    size = np.abs(np.asarray(effects, dtype=np.float64))
-    if size.ndim == 0 or size.shape[-1] == 0:
-        raise DataError("there is no effect to plot", found=f"shape {size.shape}", needed="one")
-    order = np.argsort(size, axis=-1, kind="stable")
-    m = size.shape[-1]
-    quantile = ndtri(0.5 + 0.5 * (np.arange(m) + 0.5) / m)
-    return _HalfNormal(order, quantile, np.take_along_axis(size, order, axis=-1))
 
 
 def alias_matrix(coded: ArrayLike) -> tuple[tuple[tuple[int, int], ...], Floats]:
@@ -211,7 +160,7 @@ class ScreeningEffects:
 
 
 def _pseudo_standard_error(effects: Floats) -> Floats:
-    """Lenth's estimate: 1.5 medians of the effects, repeated without the large ones [4]_."""
+    """Lenth's estimate: 1.5 medians of the effects, repeated without the large ones [3]_."""
     size = np.abs(effects)
     first = 1.5 * np.median(size, axis=-1, keepdims=True)
     # A constant response has zero effects only, and none to leave out.
@@ -285,14 +234,14 @@ def screening_effects(
     Notes
     -----
     With dummy columns the error is their root mean square, with as many degrees of
-    freedom; without, Lenth's pseudo standard error with a third of the effects [4]_.
-    Both include two-factor interactions besides noise (`alias_matrix`).  [3]_
+    freedom; without, Lenth's pseudo standard error with a third of the effects [3]_.
+    Both include two-factor interactions besides noise (`alias_matrix`).  [2]_
     prints neither runs nor formula: this is the published method, with
     ``t(0.10, 6) = 1.943`` for its five factors and six dummies.
 
     Examples
     --------
-    Cast fatigue [5]_; the factor F has the greatest effect, 0.915:
+    Cast fatigue [4]_; the factor F has the greatest effect, 0.915:
 
     >>> rows = ["++-+++-", "+-+++--", "-+++---", "+++---+", "++---+-", "+---+-+",
     ...         "---+-++", "--+-++-", "-+-++-+", "+-++-++", "-++-+++", "-------"]

@@ -1,4 +1,4 @@
-r"""Stationary point, principal curvatures and ridge path of quadratic surfaces.
+r"""Stationary point and principal curvatures of quadratic surfaces.
 
 **How stationary points and principal curvatures follow from the coefficients of a surface**:
 
@@ -13,13 +13,9 @@ References
    2002, ch. 6.
 .. [2] S. Bisgaard and B. Ankenman, "Standard Errors for the Eigenvalues in Second-Order
    Response Surface Models," Technometrics, vol. 38, no. 3, pp. 238-246, 1996.
-.. [3] N. R. Draper, "'Ridge Analysis' of Response Surfaces," Technometrics, vol. 5, no. 4, pp.
-   469-479, 1963.
 """
 
 from __future__ import annotations
-
-from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -27,7 +23,6 @@ from numpy.typing import ArrayLike
 from reduction.experiments.designs import engineering_from_coded, gradient_matrix, model_matrix
 from reduction.experiments.fit_results import Canonical
 from reduction.experiments.run_sheet import variance_factor
-from reduction.record.arrays import as_finite
 from reduction.record.measurement import Floats, Integers
 
 
@@ -68,18 +63,6 @@ def canonical_slopes(
 
 _FLAT = 1e-10
 """Ratio of smallest to largest curvature below which a direction counts as flat."""
-
-_HALVINGS = 100
-"""Bisection steps for the multiplier: enough to reach the last digit of a double."""
-
-
-class _RidgePath(NamedTuple):
-    """Best point at each distance from the centre; coded, engineering, value, multiplier."""
-
-    coded: Floats
-    engineering: Floats
-    value: Floats
-    multiplier: Floats
 
 
 def _curvature(coefficient: ArrayLike, exponents: Integers) -> tuple[Floats, Floats]:
@@ -181,80 +164,3 @@ def canonical_analysis(
         (np.abs(point) <= 1).all(axis=1),
         np.select([~known, flat], [1, 2], 0).astype(np.int8),
     )
-
-
-def ridge_path(
-    coefficient: ArrayLike,
-    exponents: Integers,
-    *,
-    radius: ArrayLike,
-    low: ArrayLike,
-    high: ArrayLike,
-    direction: Literal["ascent", "descent"] = "ascent",
-) -> _RidgePath:
-    r"""Highest (or lowest) point of each surface on spheres about the centre of the design.
-
-    .. math:: (B - \mu I) x = -\tfrac{1}{2} b, \qquad \lVert x \rVert = R, \qquad
-              \mu > \lambda_{max}
-
-    Notes
-    -----
-    Source: [3]_.  The multiplier is found by bisection: beyond the largest eigenvalue the length
-    of x falls as it grows.  Where b has no component along that eigenvector, the path ends on
-    the axis with either sign; the positive one is given.  A Box-Behnken design has no runs at
-    the corners of the cube; a radius above sqrt(2) leaves the runs behind.
-
-    Examples
-    --------
-    On a plane the path is straight.
-
-    >>> from reduction.experiments.designs import quadratic_exponents
-    >>> path = ridge_path([[0.0, 0.0, 0.0, 3.0, 4.0, 0.0]], quadratic_exponents(2),
-    ...     radius=[0.0, 1.0], low=[0.0, 0.0], high=[1.0, 1.0])
-    >>> print(path.coded[0].round(6), path.value[0].round(6))
-    [[0.  0. ]
-     [0.6 0.8]] [0. 5.]
-    """
-    length = as_finite("radius", radius)
-    values = np.asarray(coefficient, dtype=np.float64)
-    sign = 1.0 if direction == "ascent" else -1.0
-    known = np.atleast_1d(np.isfinite(values).all(axis=1))
-    slope, form = _curvature(sign * np.where(known[:, None], values, 0.0), exponents)
-    eigenvalue, eigenvector = np.linalg.eigh(form)
-    half = np.einsum("rij,ri->rj", eigenvector, slope)[:, None, :] / 2
-    # x = V half / (mu - lambda), in terms of the excess of mu over the largest eigenvalue
-    gap = (eigenvalue[:, -1:] - eigenvalue)[:, None, :]
-    reach = np.where(length > 0, length, 1.0)
-    least = np.abs(half[..., -1]) / reach
-    most = np.linalg.norm(half, axis=2) / reach
-    for _ in range(_HALVINGS):
-        middle = (least + most) / 2
-        far = _squared_length(half, gap + middle[..., None]) > reach**2
-        least, most = np.where(far, middle, least), np.where(far, most, middle)
-    excess = (least + most)[..., None] / 2
-    turned = _quotient(half, gap + excess)
-    short = np.maximum(reach**2 - np.sum(turned**2, axis=2), 0.0)
-    # what bisection cannot reach lies along the largest eigenvector
-    turned[..., -1] = np.copysign(np.sqrt(turned[..., -1] ** 2 + short), turned[..., -1])
-    turned *= (length > 0)[:, None]
-    coded = np.where(known[:, None, None], np.einsum("rij,rmj->rmi", eigenvector, turned), np.nan)
-    terms = model_matrix(np.nan_to_num(coded), exponents)
-    value = np.einsum("rmt,rt->rm", terms, values)
-    multiplier = sign * (eigenvalue[:, -1:] + excess[..., 0])
-    return _RidgePath(
-        coded,
-        engineering_from_coded(coded, low=low, high=high),
-        value,
-        np.where(known[:, None] & (length > 0), multiplier, np.nan),
-    )
-
-
-def _quotient(half: Floats, above: Floats) -> Floats:
-    shape = np.broadcast_shapes(half.shape, above.shape)
-    full = np.broadcast_to(half, shape)
-    return np.divide(full, above, out=np.zeros(shape), where=above > 0)
-
-
-def _squared_length(half: Floats, above: Floats) -> Floats:
-    length: Floats = np.sum(_quotient(half, above) ** 2, axis=2)
-    return length

@@ -288,25 +288,6 @@ def _respond(
 _STEPS = 40  # each doubles the digits near the solution; the slowest start needs about ten
 
 
-def _fill_factor(design: ArmourDesign) -> Floats:
-    r"""Share of the circumference filled by the wires, on the unrolled cylinder of their centres.
-
-    .. math:: n R_2 / (\pi r \cos\alpha)
-
-    Notes
-    -----
-    Geometry of [1]_, Figure 2.
-
-    Examples
-    --------
-    >>> design = ArmourDesign(np.radians(20.0), 2.5e-3, 25e-3, 210e9, n_wires=30)
-    >>> print(_fill_factor(design).round(3))
-    0.924
-    """
-    across = np.asarray(design.n_wires) * np.asarray(design.wire_radius)
-    return np.asarray(across / (pi * design.helix_radius * np.cos(design.winding_angle)))
-
-
 def _wire_gap(design: ArmourDesign) -> Floats:
     r"""Gap between neighbouring wires at rest, from the least distance of their centre lines.
 
@@ -1138,7 +1119,7 @@ class PredictedArmour:
 
     ``responses`` are those of one wire of each layer by theory, shape (n_layers, 1); ``use`` holds
     the angles of use of each layer, at the ``tolerance`` [1]; ``axial_stiffness`` is that of the
-    cable held against turning, and free to turn [N]; ``_thinning_loss`` is the share of its strain
+    cable held against turning, and free to turn [N]; ``thinning_loss`` is the share of its strain
     that a wire of each layer loses as it thins, which no theory includes [1].
     """
 
@@ -1152,7 +1133,6 @@ class PredictedArmour:
     together: _LayersResponse
     axial_stiffness: tuple[float, float]
     strength: _CableStrength | None
-    fill: Floats
     gap: Floats
     thinning_loss: Floats
     notes: tuple[str, ...]
@@ -1195,7 +1175,6 @@ def predict_armour_case(
         together=together,
         axial_stiffness=_cable_stiffness(layers),
         strength=_cable_strength(layers) if known.all() else None,
-        fill=_fill_factor(design),
         gap=_wire_gap(design),
         thinning_loss=_thinning_loss(design),
         notes=tuple(notes),

@@ -323,7 +323,6 @@ class _FlowRegime:
     greatest_velocity: float
     keulegan_carpenter_number: Floats
     reynolds_number: Floats
-    frequency_parameter: Floats
     drag_to_inertia: Floats
     diameter_to_length: Floats
 
@@ -349,12 +348,7 @@ def _keulegan_carpenter_number(
     return np.asarray(speed * period / as_positive("outer_diameter", outer_diameter))
 
 
-def _reynolds_number(
-    greatest_velocity: ArrayLike,
-    outer_diameter: ArrayLike,
-    *,
-    kinematic_viscosity: float = SEAWATER_VISCOSITY,
-) -> Floats:
+def _reynolds_number(greatest_velocity: ArrayLike, outer_diameter: ArrayLike) -> Floats:
     """Ratio of inertia to friction in the flow.
 
     Notes
@@ -367,8 +361,7 @@ def _reynolds_number(
     110000.0
     """
     speed = np.abs(as_finite("greatest_velocity", greatest_velocity))
-    viscosity = as_positive("kinematic_viscosity", kinematic_viscosity)
-    return np.asarray(speed * as_positive("outer_diameter", outer_diameter) / viscosity)
+    return np.asarray(speed * as_positive("outer_diameter", outer_diameter) / SEAWATER_VISCOSITY)
 
 
 def _drag_to_inertia(
@@ -402,7 +395,6 @@ def _flow_regime(
     current_velocity: float = 0.0,
     drag_coefficient: float = CODE_OF_HYDROLOGY.drag_coefficient[0],
     inertia_coefficient: float = CODE_OF_HYDROLOGY.inertia_coefficient,
-    kinematic_viscosity: float = SEAWATER_VISCOSITY,
 ) -> _FlowRegime:
     """Numbers by which coefficients are chosen, for hoses in one wave.
 
@@ -423,14 +415,10 @@ def _flow_regime(
     velocity = cosine_series(wave.horizontal_velocity, current_velocity)
     speed = float(np.max(np.abs(sum_at(velocity, root_phases(phase_derivative(velocity))))))
     number = _keulegan_carpenter_number(speed, period, outer_diameter)
-    reynolds = _reynolds_number(speed, outer_diameter, kinematic_viscosity=kinematic_viscosity)
     return _FlowRegime(
         greatest_velocity=speed,
         keulegan_carpenter_number=number,
-        reynolds_number=reynolds,
-        # Re / KC, which does not contain the velocity
-        frequency_parameter=as_positive("outer_diameter", outer_diameter) ** 2
-        / (kinematic_viscosity * period),
+        reynolds_number=_reynolds_number(speed, outer_diameter),
         drag_to_inertia=_drag_to_inertia(
             number, drag_coefficient=drag_coefficient, inertia_coefficient=inertia_coefficient
         ),

@@ -43,7 +43,6 @@ _FORM_TERM = ("experiment", "stiffness_form", "stiffness_term")
 
 _NOTE = ("note",)
 
-_RIDGE = ("experiment", "ridge_direction", "ridge_radius")
 
 _RUN = ("experiment", "run")
 
@@ -268,21 +267,11 @@ OF_EXPERIMENTS: tuple[Quantity, ...] = (
         group="points",
     ),
     *along(
-        ("ridge_direction",),
-        label("ridge_direction", "direction from the centre: up or down"),
-        group="points",
-    ),
-    *along(
-        ("ridge_radius",),
-        stated("ridge_radius", "1", "coded distance from the centre", "exact"),
-        group="points",
-    ),
-    *along(
         _EXPERIMENT,
         stated(
             "interval_confidence",
             "1",
-            "confidence level of the intervals at points and along ridges",
+            "confidence level of the intervals at points",
             SETTING,
         ),
         group="points",
@@ -700,29 +689,6 @@ OF_EVERY_SURFACE: tuple[Quantity, ...] = (
             shares_errors=True,
             tables=("surfaces",),
         ),
-        flag(
-            "<response>_reduced_is_kept",
-            "whether AICc keeps the term",
-            NO_YES,
-            tables=("surfaces",),
-        ),
-        measured(
-            "<response>_reduced_coefficient",
-            "<unit>",
-            "coefficient of the reduced model, coded units; 0 for dropped terms",
-            uncertainty_is=(
-                "standard uncertainty (k=1) of the coefficient, from run scatter "
-                "alone, without shared errors"
-            ),
-            tables=("surfaces",),
-        ),
-        stated(
-            "<response>_reduced_coefficient_engineering",
-            "<unit>",
-            "coefficient of the reduced model, factors in SI units",
-            "see the coded coefficient",
-            tables=("surfaces",),
-        ),
         group="coefficients",
     ),
     *along(
@@ -732,31 +698,6 @@ OF_EVERY_SURFACE: tuple[Quantity, ...] = (
             "1",
             "covariance of two coded coefficients divided by sigma**2",
             PART,
-        ),
-        group="coefficients",
-    ),
-    *along(
-        _EXPERIMENT,
-        stated(
-            "<response>_full_aicc",
-            "1",
-            "corrected Akaike criterion of the full model",
-            CRITERION,
-            tables=("surface_quality",),
-        ),
-        stated(
-            "<response>_reduced_aicc",
-            "1",
-            "corrected Akaike criterion of the reduced model",
-            CRITERION,
-            tables=("surface_quality",),
-        ),
-        stated(
-            "<response>_reduced_sigma",
-            "<unit>",
-            "residual standard deviation of the reduced model",
-            SPREAD,
-            tables=("surface_quality",),
         ),
         group="coefficients",
     ),
@@ -1127,47 +1068,6 @@ OF_EVERY_SURFACE: tuple[Quantity, ...] = (
         group="points",
     ),
     *along(
-        ("experiment", "ridge_direction", "ridge_radius", "factor"),
-        stated(
-            "<response>_ridge_coded_level",
-            "1",
-            "coded level of the factor at the ridge: maximum or minimum of the "
-            "surface at that distance",
-            "not evaluated by this version",
-            tables=("ridge",),
-        ),
-        stated(
-            "<response>_ridge_level",
-            "1",
-            "level at the ridge, in the unit of the factor",
-            "not evaluated by this version",
-            tables=("ridge",),
-        ),
-        group="points",
-    ),
-    *along(
-        _RIDGE,
-        stated(
-            "<response>_ridge_value",
-            "<response unit>",
-            "maximum or minimum of the surface at that distance",
-            "see its simultaneous interval",
-        ),
-        stated(
-            "<response>_ridge_simultaneous_low",
-            "<response unit>",
-            "lower limit of the simultaneous interval of the surface",
-            BOUND,
-        ),
-        stated(
-            "<response>_ridge_simultaneous_high",
-            "<response unit>",
-            "upper limit of the simultaneous interval of the surface",
-            BOUND,
-        ),
-        group="points",
-    ),
-    *along(
         ("experiment", "block"),
         stated(
             "<response>_block_effect",
@@ -1240,20 +1140,6 @@ OF_RESPONSES: tuple[Quantity, ...] = (
             "<response>_effect_is_significant",
             "whether the effect exceeds the minimum significant effect",
             NO_YES,
-            tables=("screening",),
-        ),
-        stated(
-            "<response>_effect_size",
-            "<unit>",
-            "absolute value of the effect",
-            "that of the effect",
-            tables=("screening",),
-        ),
-        stated(
-            "<response>_effect_half_normal_quantile",
-            "1",
-            "half-normal quantile of the effect size among all columns",
-            "follows from the ranking",
             tables=("screening",),
         ),
         group="screening",

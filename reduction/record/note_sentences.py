@@ -1405,11 +1405,6 @@ _OF_EXPERIMENTS: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "t and p of the surfaces of K_1 and tau reflect only the scatter of the runs; the error of"
         " K_0, common to all runs of one slow pull, is in the uncertainty of the coefficients",
     ),
-    "no-reduction-of-terms": ("refusal", "reduced model not given: {reason}"),
-    "terms-chosen-by-runs": (
-        "note",
-        "the terms were selected with the same runs: p-values are too low, intervals too narrow",
-    ),
     "no-stiffness-forms": (
         "refusal", "stiffness forms of mooring codes not given: {reason}",
     ),

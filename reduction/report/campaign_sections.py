@@ -29,7 +29,6 @@ from reduction.report.experiment_report import (
     draw_contours,
     draw_effects,
     draw_forms,
-    draw_pareto,
     draw_single_time,
     draw_surface,
     effect_table,
@@ -174,7 +173,7 @@ def _surface_parts(
         parts.append(
             make_part(
                 _capital(heading),
-                [*on_planes, *draw_pareto(view, surfaces, index)],
+                on_planes,
                 (),
                 [
                     quality_words(view, surfaces, index),

@@ -15,7 +15,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import stdtrit
 
 from reduction.archive.shared_errors import FREEDOM
 from reduction.archive.uncertainty_budget import all_budgets
@@ -25,7 +24,7 @@ from reduction.experiments.fit_results import (
     STATIONARY_REASONS,
     ResponseSurfaces,
 )
-from reduction.experiments.screening import alias_matrix, half_normal_coordinates
+from reduction.experiments.screening import alias_matrix
 from reduction.experiments.surface_points import (
     ABOVE_LEVERAGE,
     SurfaceValues,
@@ -488,64 +487,6 @@ def _term_words(powers: Integers, factors: tuple[str, ...]) -> str:
     return " by ".join(parts) or "mean"
 
 
-def draw_pareto(view: ExperimentView, surfaces: ResponseSurfaces, index: int) -> list[Figure]:
-    """Draw each term over its scatter, the largest on top, and the significance limit."""
-    name = surfaces.response_names[index]
-    size = np.abs(surfaces.t[index])
-    chosen = np.flatnonzero(np.isfinite(size) & (surfaces.exponents.sum(axis=1) > 0))
-    if chosen.size == 0:
-        return []
-    chosen = chosen[np.argsort(size[chosen], kind="stable")]
-    freedom = surfaces.term_degrees_of_freedom[index, chosen]
-    critical = np.asarray(stdtrit(freedom, (1 + CONFIDENCE) / 2))
-    counts = size[chosen] > critical
-    height = np.arange(chosen.size, dtype=np.float64)
-    data: list[Trace] = [
-        {
-            "type": "bar", "orientation": "h", "name": words, "width": 0.7,
-            "x": plain_numbers(size[chosen][own], 4), "y": plain_numbers(height[own]),
-            "marker": {"color": tint},
-        }
-        for own, tint, words in (
-            (counts, COLOURS[0], "differs from zero"),
-            (~counts, _CHECK_GREY, "not significant"),
-        )
-        if own.any()
-    ]  # fmt: skip
-    # a term with an error term of its own has its own limit
-    ends = np.stack([height - 0.5, height + 0.5, np.full(height.size, np.nan)], axis=1)
-    data.append(
-        line(
-            np.repeat(critical, 3), ends.ravel(), name=f"least |t| at {100 * CONFIDENCE:g} %",
-            colour=COLOURS[1], dash="dash", width=2.2,
-        )
-    )  # fmt: skip
-    is_wide = bool(size[chosen].max() > _WIDE * critical.min())
-    labels = [
-        f"{_term_words(surfaces.exponents[k], view.factors)} {surfaces.labels[k]}".replace(
-            " by ", "\nby "
-        )
-        for k in chosen
-    ]
-    scale = {"type": "log"} if is_wide else {"rangemode": "tozero"}
-    return [
-        make_figure(
-            f"{view.key}-{name}-pareto", f"{view.name}: terms of {in_words(name)} by size",
-            "Each coefficient of the coded factors over its standard uncertainty, |t|. Beyond the"
-            f" dashed line a term differs from zero at {100 * CONFIDENCE:g} %, judged alone"
-            f"{'; the axis is logarithmic' if is_wide else ''}.",
-            data, synthetic=view.is_synthetic, height=120 + 34 * len(labels), barmode="overlay",
-            xaxis=axis("|t| [1]", **scale),
-            yaxis=named_axis("term [B]", labels),
-        )
-    ]  # fmt: skip
-
-
-_WIDE = 50.0
-
-"""Ratio of largest to critical |t| above which small terms need a logarithmic axis."""
-
-
 def draw_checks(
     view: ExperimentView, surfaces: ResponseSurfaces, index: int, order: Mapping[str, int]
 ) -> list[Figure]:
@@ -633,7 +574,7 @@ _OF_DUMMIES, _OF_FACTORS, _SEEN = _SCREENING_GREY, COLOURS[5], COLOURS[0]
 
 
 def draw_effects(view: ExperimentView, name: str) -> list[Figure]:
-    """Draw the effects by size with the significance limit, and their half-normal plot."""
+    """Draw the effects by size with the significance limit."""
     effect = view.array(f"{name}_effect")
     if effect.size == 0 or not np.isfinite(effect).any():
         return []
@@ -641,7 +582,7 @@ def draw_effects(view: ExperimentView, name: str) -> list[Figure]:
     size = np.abs(effect) * unit.factor
     kinds = _kinds(view, name)
     labels = [in_words(column) for column in view.texts("plan_column_name")]
-    return [_bars(view, name, size, kinds, labels), _half_normal(view, name, size, kinds, labels)]
+    return [_bars(view, name, size, kinds, labels)]
 
 
 def confounding_words(view: ExperimentView) -> list[str]:
@@ -701,42 +642,7 @@ def _bars(
     )  # fmt: skip
 
 
-def _half_normal(
-    view: ExperimentView, name: str, size: Floats, kinds: list[str], labels: list[str]
-) -> Figure:
-    unit = response_unit(name, view.units)
-    points = half_normal_coordinates(size)
-    spread = view.scalar(f"{name}_effect_standard_uncertainty") * unit.factor
-    reach = np.array([0.0, float(points.quantile[-1])])
-    data: list[Trace] = [
-        line(reach, reach * spread, name="scatter alone", colour=_SCREENING_GREY, dash="dot")
-    ]
-    for kind, tint in _TINTS.items():
-        own = [k for k in range(size.size) if kinds[points.order[k]] == kind]
-        if own:
-            is_named = kind == "significant"
-            data.append(
-                {
-                    "type": "scatter", "mode": "markers+text" if is_named else "markers",
-                    "name": kind, "x": plain_numbers(points.quantile[own]),
-                    "y": plain_numbers(points.size[own]),
-                    "text": [plot_text(labels[points.order[k]]) for k in own],
-                    "textposition": "middle left", "textfont": {"size": 10},
-                    "marker": {"size": 9, "color": tint, "symbol": _MARKS[kind]},
-                }
-            )  # fmt: skip
-    return make_figure(
-        f"{view.key}-{name}-half-normal", f"{view.name}: {in_words(name)}, half-normal plot",
-        "Size of each effect against its half-normal quantile. Scatter alone follows the dotted"
-        " line; active factors lie above it, at the right.",
-        data, synthetic=view.is_synthetic, height=400,
-        xaxis=axis("half-normal quantile [1]"), yaxis=axis(unit.label("size of the effect")),
-    )  # fmt: skip
-
-
 _TINTS = {"significant": _SEEN, "not significant": _OF_FACTORS, "dummy": _OF_DUMMIES}
-
-_MARKS = {"significant": "circle", "not significant": "circle-open", "dummy": "x"}
 
 
 def _kinds(view: ExperimentView, name: str) -> list[str]:

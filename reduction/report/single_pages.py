@@ -551,7 +551,6 @@ def layers_table(found: PredictedArmour, units: UnitSystem) -> PageTable | None:
         .numbers("von Mises stress", together.wire_stress[:, 0], "stress")
         .numbers("yield stress", limit, "stress")
         .texts("yields", np.where(np.isfinite(limit), yields, ""))
-        .numbers("circumference filled", found.fill, PERCENT)
         .numbers("room between wires", found.gap, "small length", 3)
         .numbers("lost by thinning", found.thinning_loss, PERCENT, 2)
         .table(
@@ -704,7 +703,6 @@ def regime_table(found: PredictedWaveLoad, units: UnitSystem) -> PageTable:
         .numbers("maximum velocity of the water", [regime.greatest_velocity], _velocity(units))
         .numbers("Keulegan-Carpenter number", [regime.keulegan_carpenter_number], "number")
         .numbers("Reynolds number", [regime.reynolds_number], "number")
-        .numbers("Reynolds over Keulegan-Carpenter", [regime.frequency_parameter], "number")
         .numbers("maximum drag over maximum inertia", [regime.drag_to_inertia], "number")
         .numbers("diameter over wave length", [regime.diameter_to_length], "number")
         .turned(

@@ -9,9 +9,7 @@ from wire_energy import wire_energy
 from reduction.prediction.armour import (
     ARMOUR_THEORIES,
     ArmourDesign,
-    _fill_factor,
     _layer_stiffness,
-    _wire_gap,
     _wire_stress,
     _yield_strain,
     predict_armour,
@@ -109,10 +107,3 @@ def test_stress_at_the_yield_strain_is_the_yield_stress(design, share):
     strain = _yield_strain(design, limit)
     wire = predict_armour(design, strain, theory="conjugate")
     assert _wire_stress(wire)[0] == pytest.approx(limit, rel=1e-9)
-
-
-@given(designs)
-def test_wires_that_fit_take_no_more_than_the_circumference(design):
-    """A chord is shorter than its arc: the gap is at most what the unrolled cylinder leaves."""
-    if _wire_gap(design) >= 0 and design.n_wires > 1:
-        assert _fill_factor(design) <= 1

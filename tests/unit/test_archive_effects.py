@@ -1,12 +1,11 @@
-"""Aliases and half-normal points of a screening stand in the archive, each in its own place."""
+"""Effects and aliases of a screening stand in the archive, each in its own place."""
 
 import numpy as np
 import pytest
 from experiments import ABOUT, screening_experiment
-from scipy import stats
 
 from reduction.archive.surfaces_dataset import alias_values, effect_values, surfaces_to_dataset
-from reduction.experiments.designs import Design, plackett_burman
+from reduction.experiments.designs import plackett_burman
 from reduction.experiments.screening import alias_matrix, screening_effects
 
 SCREENING = screening_experiment()
@@ -69,27 +68,8 @@ def test_one_factor_has_no_interaction():
     assert alias_values(np.array([[-1.0, -1, 1], [1, -1, -1], [-1, 1, -1], [1, 1, 1]]), "a") == {}
 
 
-def test_each_effect_has_the_quantile_of_its_own_rank(dataset):
-    size = dataset["hysteresis_energy_effect_size"].values[0]
-    quantile = dataset["hysteresis_energy_effect_half_normal_quantile"].values[0]
-    effects = [*SCREENING.screening.effect[1], *SCREENING.screening.dummy_effect[1]]
-    np.testing.assert_array_equal(size, np.abs(effects))
-    rank = stats.rankdata(size)
-    np.testing.assert_allclose(quantile, stats.halfnorm.ppf((rank - 0.5) / 11), rtol=1e-12)
-
-
-def test_effects_without_dummies_have_quantiles_too():
-    plan = Design("full", np.array([[-1, -1], [1, -1], [-1, 1], [1, 1.0]]), np.empty((4, 0)))
-    found = effect_values(screening_effects(plan, [[1.0, 2.0, 5.0, 6.0]]), ["loss_factor"])
-    np.testing.assert_allclose(found["loss_factor_effect_size"], [1, 4])
-    np.testing.assert_allclose(
-        found["loss_factor_effect_half_normal_quantile"], stats.halfnorm.ppf([0.25, 0.75])
-    )
-
-
 def test_a_screening_that_misses_a_run_has_its_aliases_and_no_points(dataset):
-    for what in ("effect", "effect_size", "effect_half_normal_quantile"):
-        assert np.isnan(dataset[f"hysteresis_energy_{what}"].values[1]).all()
+    assert np.isnan(dataset["hysteresis_energy_effect"].values[1]).all()
     np.testing.assert_array_equal(
         dataset["effect_alias"].values[1], dataset["effect_alias"].values[0]
     )

@@ -1,4 +1,4 @@
-"""Surfaces at named points and along their ridges stand in the archive as they are elsewhere."""
+"""Surfaces at named points stand in the archive as they are elsewhere."""
 
 from dataclasses import replace
 
@@ -8,12 +8,12 @@ import statsmodels.api as sm
 from experiments import ABOUT, FACTORS, HIGH, LOW, nothing_missed, surface_experiment
 from scipy import stats
 
-from reduction.archive.surfaces_dataset import point_values, ridge_values, surfaces_to_dataset
+from reduction.archive.surfaces_dataset import point_values, surfaces_to_dataset
 from reduction.archive.uncertainty_budget import all_budgets
 from reduction.experiments.designs import box_behnken, model_matrix
 from reduction.experiments.experiment import SharedSurfaces
 from reduction.experiments.response_surfaces import fit_surfaces
-from reduction.experiments.stationary_point import canonical_analysis, ridge_path
+from reduction.experiments.stationary_point import canonical_analysis
 from reduction.experiments.surface_points import evaluate_surfaces
 from reduction.lines.archive_source import _line_source_of_experiment
 from reduction.lines.line_lookup import look_up
@@ -144,8 +144,7 @@ def test_a_transformed_response_comes_back_to_its_own_unit(dataset, name):
     assert (found["confidence_low"] < expected).all()
     assert (found["confidence_high"] > expected).all()
     for what in (
-        "point_value", "point_value_standard_uncertainty", "point_prediction_high", "ridge_value",
-        "ridge_simultaneous_low",
+        "point_value", "point_value_standard_uncertainty", "point_prediction_high",
     ):  # fmt: skip
         units = dataset[f"{base}_sigma"].attrs["units"]
         assert dataset[f"{name}_{what}"].attrs["units"] == units
@@ -181,82 +180,7 @@ def test_points_of_random_specimens_foresee_another_specimen(dataset):
     )
 
 
-@pytest.mark.parametrize("direction", [0, 1])
-def test_a_ridge_is_the_best_of_many_points_at_its_distance(dataset, direction):
-    name = "apparent_spring_constant"
-    radius = dataset["ridge_radius"].values
-    np.testing.assert_allclose(radius, np.arange(11) / 10)
-    assert dataset["ridge_direction"].values.tolist() == ["ascent", "descent"]
-    coded = dataset[f"{name}_ridge_coded_level"].values[0, direction]
-    value = dataset[f"{name}_ridge_value"].values[0, direction]
-    np.testing.assert_allclose(np.linalg.norm(coded, axis=1), radius, atol=1e-9)
-    rng = np.random.default_rng(1)
-    ball = rng.standard_normal((20_000, 3))
-    ball /= np.linalg.norm(ball, axis=1)[:, None]
-    sign = (1, -1)[direction]
-    for far, at, best in zip(radius[1:], coded[1:], value[1:], strict=True):
-        terms = model_matrix(np.vstack([at, far * ball]), ONE.surfaces.exponents)
-        there, *others = sign * (terms @ ONE.surfaces.coefficient[0])
-        assert sign * best == pytest.approx(there, rel=1e-12)
-        # twenty thousand points lie 0.01 apart: none is better, one is nearly as good
-        assert max(others) <= there + 1e-9 * abs(there)
-        assert max(others) == pytest.approx(there, rel=1e-3)
-
-
-def test_a_ridge_of_a_plane_is_straight_in_both_directions():
-    plan = box_behnken(3).coded
-    surfaces = fit_surfaces(
-        plan, [7 + plan @ [2.0, 3.0, 6.0]], factor_names=FACTORS,
-        response_names=["loss_factor"], low=LOW, high=HIGH, units="coded",
-    )  # fmt: skip
-    found = ridge_values(surfaces)
-    far = np.arange(11) / 10
-    np.testing.assert_allclose(
-        found["loss_factor_ridge_value"], [7 + 7 * far, 7 - 7 * far], atol=1e-8
-    )
-    np.testing.assert_allclose(
-        found["loss_factor_ridge_coded_level"][1, -1], -np.array([2, 3, 6]) / 7, atol=1e-8
-    )
-    np.testing.assert_allclose(
-        found["loss_factor_ridge_level"][0, -1],
-        (HIGH + LOW) / 2 + (HIGH - LOW) / 2 * np.array([2, 3, 6]) / 7,
-        rtol=1e-8,
-    )
-
-
-@pytest.mark.parametrize("row", [0, 1, 2])
-def test_every_ridge_is_that_of_ridge_path_with_the_intervals_of_its_own_surface(dataset, row):
-    result = (ONE, SHORT, RANDOM)[row]
-    surfaces = result.surfaces
-    for step, direction in enumerate(("ascent", "descent")):
-        path = ridge_path(
-            surfaces.coefficient, surfaces.exponents, radius=np.linspace(0, 1, 11), low=LOW,
-            high=HIGH, direction=direction,
-        )  # fmt: skip
-        for index, name in enumerate(surfaces.response_names):
-            there = {
-                what: dataset[f"{name}_ridge_{what}"].values[row, step]
-                for what in (
-                    "coded_level",
-                    "level",
-                    "value",
-                    "simultaneous_high",
-                    "simultaneous_low",
-                )
-            }
-            np.testing.assert_array_equal(there["coded_level"], path.coded[index])
-            np.testing.assert_array_equal(there["level"], path.engineering[index])
-            at = evaluate_surfaces(surfaces, path.coded[index], units="coded")
-            np.testing.assert_allclose(there["value"], at.value[index], rtol=1e-13)
-            np.testing.assert_allclose(
-                there["simultaneous_high"], at.simultaneous_interval[index, :, 1], rtol=1e-13
-            )
-            np.testing.assert_allclose(
-                there["simultaneous_low"], at.simultaneous_interval[index, :, 0], rtol=1e-13
-            )
-
-
-def test_a_response_without_a_surface_has_neither_points_nor_a_ridge():
+def test_a_response_without_a_surface_has_no_points():
     response = np.array(ONE.runs.response)
     response[1, 2:] = np.nan
     runs = replace(ONE.runs, response=response)
@@ -264,9 +188,9 @@ def test_a_response_without_a_surface_has_neither_points_nor_a_ridge():
         runs.level, response, factor_names=FACTORS, response_names=ONE.response_names,
         low=LOW, high=HIGH, run_names=runs.names,
     )  # fmt: skip
-    bare = replace(ONE, runs=runs, surfaces=surfaces, reduced=None)
+    bare = replace(ONE, runs=runs, surfaces=surfaces)
     dataset = surfaces_to_dataset([bare], origin=ABOUT)
-    for what in ("point_value", "point_simultaneous_high", "ridge_value", "ridge_coded_level"):
+    for what in ("point_value", "point_simultaneous_high"):
         assert np.isnan(dataset[f"hysteresis_energy_{what}"].values).all()
         assert np.isfinite(dataset[f"apparent_spring_constant_{what}"].values).all()
     assert not dataset["hysteresis_energy_point_is_above_leverage"].values.any()

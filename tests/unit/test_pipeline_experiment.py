@@ -230,26 +230,6 @@ def test_a_column_that_does_not_fit_the_runs_is_refused():
         RunTable(**{**vars(runs), "specimen": ("a",)})
 
 
-def test_terms_are_left_out_only_where_it_is_asked_for():
-    runs, line = made()
-    assert fit(runs, line).reduced is None
-    noise = np.random.default_rng(8).normal(0, 0.02, runs.response.shape)
-    noisy = RunTable(**{**vars(runs), "response": runs.response * (1 + noise)})
-    result = fit(noisy, line, term_reduction="aicc")
-    # tau is one number and its scatter: the mean alone
-    assert result.reduced.is_kept[2].tolist() == [True, *[False] * 9]
-    # K_ap rises with the mean tension by far the most
-    assert result.reduced.is_kept[0, 5]
-    assert result.surfaces.coefficient.shape == (5, 10)
-
-
-def test_specimens_drawn_from_many_keep_all_terms_with_a_note():
-    runs, line = made(specimens=("a", "b", "c"), shift=4000.0)
-    result = fit(runs, line, specimens_as="random", term_reduction="aicc")
-    assert result.reduced is None
-    assert any("reduced model not given" in note for note in map(str, result.notes))
-
-
 def changed(runs, **columns):
     return RunTable(**{**vars(runs), **columns})
 

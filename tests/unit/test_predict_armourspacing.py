@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from reduction.prediction.armour import ArmourDesign, _fill_factor, _wire_gap
+from reduction.prediction.armour import ArmourDesign, _wire_gap
 
 
 def layer(degrees, n_wires, wire_radius=1.0, core_radius=9.0):
@@ -32,11 +32,6 @@ def test_gap_of_straight_wires_is_a_chord():
     assert (gap > 0).tolist() == [True, True, True, False]
 
 
-def test_fill_factor_is_the_share_of_the_circumference():
-    assert _fill_factor(layer(60.0, 10)) == pytest.approx(10 * 2 / (2 * np.pi * 10 * 0.5))
-
-
 def test_a_full_circumference_does_not_fit_since_the_cylinder_is_round():
     full = layer(np.degrees(np.arccos(12 / (10 * np.pi))), 12)
-    assert _fill_factor(full) == pytest.approx(1.0)
     assert _wire_gap(full) < 0

@@ -1,10 +1,9 @@
 import numpy as np
 import pytest
-from scipy.optimize import minimize
 
 from reduction.experiments.designs import model_matrix, quadratic_exponents
 from reduction.experiments.fit_results import STATIONARY_KINDS, STATIONARY_REASONS
-from reduction.experiments.stationary_point import _curvature, canonical_analysis, ridge_path
+from reduction.experiments.stationary_point import _curvature, canonical_analysis
 
 EXPONENTS = quadratic_exponents(3)
 # Treb: B1 .. B10 of the published data by least squares
@@ -78,46 +77,3 @@ def test_curvature_gives_the_surface_back():
     point = np.array([0.3, -0.6, 0.9])
     height = TREB[0] + point @ slope[0] + point @ form[0] @ point
     assert height == pytest.approx(model_matrix(point, EXPONENTS) @ TREB, rel=1e-14)
-
-
-@pytest.mark.parametrize("direction", ["ascent", "descent"])
-@pytest.mark.parametrize("radius", [0.3, 1.0, 1.4])
-def test_ridge_points_are_those_a_search_on_the_sphere_finds(direction, radius):
-    sign = -1 if direction == "ascent" else 1
-
-    def height(angles):
-        theta, phi = angles
-        point = radius * np.array(
-            [np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)]
-        )
-        return sign * float(model_matrix(point, EXPONENTS) @ TREB)
-
-    starts = [(theta, phi) for theta in (0.5, 1.5, 2.5) for phi in (0.0, 2.0, 4.0)]
-    best = min(minimize(height, start, tol=1e-12).fun for start in starts)
-    path = ridge_path([TREB], EXPONENTS, radius=[radius], direction=direction, **BOX)
-    assert path.value[0, 0] == pytest.approx(sign * best, rel=1e-8)
-    assert np.linalg.norm(path.coded[0, 0]) == pytest.approx(radius, rel=1e-12)
-    # the slope of the surface lies along the radius, twice the multiplier long
-    slope, form = _curvature([TREB], EXPONENTS)
-    gradient = slope[0] + 2 * form[0] @ path.coded[0, 0]
-    np.testing.assert_allclose(
-        gradient, 2 * path.multiplier[0, 0] * path.coded[0, 0], rtol=1e-6, atol=1e-7
-    )
-
-
-def test_a_ridge_without_slope_along_it_ends_on_its_axis():
-    """y = -X1^2 + X2^2 + X1: up the X2 axis, b has no part along it."""
-    exponents = quadratic_exponents(2)
-    path = ridge_path([[0, -1, 1, 1, 0, 0.0]], exponents, radius=[2.0], low=[0, 0], high=[1, 1])
-    # multiplier 1: x1 = 1/4, and the rest of the radius along x2
-    np.testing.assert_allclose(np.abs(path.coded[0, 0]), [0.25, np.sqrt(4 - 1 / 16)], rtol=1e-9)
-    assert path.multiplier[0, 0] == pytest.approx(1.0)
-
-
-def test_the_path_starts_at_the_centre_and_never_falls():
-    path = ridge_path([TREB, np.full(10, np.nan)], EXPONENTS, radius=np.linspace(0, 1.5, 16), **BOX)
-    assert path.value[0, 0] == pytest.approx(90.0)
-    assert np.isnan(path.multiplier[0, 0])
-    assert (np.diff(path.value[0]) > 0).all()
-    np.testing.assert_allclose(path.engineering[0], 0.5 + path.coded[0] / 2)
-    assert np.isnan(path.coded[1]).all()

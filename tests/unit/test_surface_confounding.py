@@ -1,29 +1,13 @@
-"""Half-normal points and aliases."""
+"""Aliases of main effects and interactions."""
 
 import numpy as np
 import pytest
-from scipy import stats
 
 from reduction.experiments.designs import plackett_burman
-from reduction.experiments.screening import alias_matrix, half_normal_coordinates
+from reduction.experiments.screening import alias_matrix
 from reduction.record.errors import DataError
 
 RNG = np.random.default_rng(12)
-
-
-def test_half_normal_points_rise_and_keep_their_effect():
-    effects = RNG.standard_normal((4, 11))
-    points = half_normal_coordinates(effects)
-    assert np.all(np.diff(points.size, axis=-1) >= 0)
-    np.testing.assert_array_equal(
-        np.abs(np.take_along_axis(effects, points.order, -1)), points.size
-    )
-    np.testing.assert_allclose(points.quantile, stats.halfnorm.ppf((np.arange(11) + 0.5) / 11))
-
-
-def test_half_normal_points_need_an_effect():
-    with pytest.raises(DataError, match="no effect to plot"):
-        half_normal_coordinates([])
 
 
 def test_in_twelve_runs_each_interaction_is_a_third_of_every_other_main_effect():

@@ -1,4 +1,4 @@
-"""Screening: effects, their error by dummies or Lenth, half-normal points, confounding."""
+"""Screening: effects, their error by dummies or Lenth, confounding."""
 
 import numpy as np
 import pytest

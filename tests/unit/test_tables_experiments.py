@@ -8,7 +8,6 @@ from table_cells import table_rows
 from reduction.archive.csv_definitions import EXPERIMENT_TABLES
 from reduction.archive.csv_tables import _by_response
 from reduction.archive.surfaces_dataset import surfaces_to_dataset
-from reduction.experiments.stationary_point import ridge_path
 from reduction.experiments.surface_points import evaluate_surfaces
 from reduction.quantities.names import RESPONSE_PATTERNS, RESPONSES, SURFACE_NAMES, SURFACE_SCHEMA
 from reduction.uncertainty.surface_errors import with_shared_at_points
@@ -161,23 +160,6 @@ def test_a_point_shows_its_levels(dataset):
     assert [row["point_level"] for row in rows[:3]] == pytest.approx([0.3, 5950, 2125])
     assert [row["point_coded_level"] for row in rows[60:63]] == [1, 1, 1]
     assert [row["factor_unit"] for row in rows[:3]] == list(UNITS)
-
-
-def test_a_ridge_has_a_row_a_distance_and_factor(dataset):
-    rows = [row for row in rows_of(dataset, "ridge") if row["experiment"] == "half-inch"]
-    assert len(rows) == len(ONE.surfaces.response_names) * 2 * 11 * 3
-    path = ridge_path(
-        ONE.surfaces.coefficient, ONE.surfaces.exponents, radius=np.linspace(0, 1, 11),
-        low=ONE.low, high=ONE.high, direction="descent",
-    )  # fmt: skip
-    last = rows[63:66]
-    assert {(row["response"], row["ridge_direction"], row["ridge_radius"]) for row in last} == {
-        ("apparent_spring_constant", "descent", 1.0)
-    }
-    assert [row["response_ridge_level"] for row in last] == path.engineering[0, -1].tolist()
-    assert [row["response_ridge_coded_level"] for row in last] == path.coded[0, -1].tolist()
-    # evaluated again at the point, to the last digits
-    assert last[0]["response_ridge_value"] == pytest.approx(path.value[0, -1], rel=1e-12)
 
 
 def test_an_interaction_has_a_row_a_column(dataset):
