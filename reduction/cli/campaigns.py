@@ -36,6 +36,7 @@ from reduction.batch.campaign_status import (
 from reduction.batch.finished_run import finished_run, keep_finished
 from reduction.batch.run_lock import run_lock
 from reduction.batch.workers import Workers, keep_freed_memory, local_workers
+from reduction.campaign.load import load_campaign
 from reduction.cli.output import CommandOutput
 from reduction.cli.progress import campaign_progress
 from reduction.record.errors import ArchiveError, SettingsError
@@ -634,3 +635,43 @@ def _printed(client: Path, output: CommandOutput) -> Path:
     _print_page(client, pdf, browser=_find_browser())
     output.say(f"printed: {pdf}")
     return pdf
+
+
+_DEMO_NAMES = ("tmt-synthetic", "nylon-synthetic", "hose-synthetic")
+
+_PACKAGE = Path(__file__).parents[1]
+
+_MADE_HERE = shutil.ignore_patterns("__pycache__")
+
+
+def _demo_campaigns() -> Path:
+    """Location of the campaigns: in an installed package, or in its checkout."""
+    installed = _PACKAGE / "demo"
+    return installed if installed.is_dir() else _PACKAGE.parent / "raw"
+
+
+def run_demo(folder: Path, output: CommandOutput) -> None:
+    """Copy each campaign to ``raw`` in a folder and run it; existing files are not replaced."""
+    raw = folder / "raw"
+    standing = [name for name in _DEMO_NAMES if (raw / name).exists()]
+    if standing:
+        raise SettingsError(
+            f"{raw}: campaigns are there already", found=", ".join(standing),
+            needed="a folder without them",
+            hint="Name another folder, or run them as they are: "
+            f'reduction run "{raw / standing[0] / "campaign.toml"}"',
+        )  # fmt: skip
+    for name in _DEMO_NAMES:
+        shutil.copytree(_demo_campaigns() / name, raw / name, ignore=_MADE_HERE)
+    documents = []
+    for name in _DEMO_NAMES:
+        campaign = load_campaign(raw / name / "campaign.toml")
+        output.say(f"{campaign.attributes['title']}: {raw / name / 'campaign.toml'}\n")
+        documents.append(
+            run_campaign(
+                campaign, processed=folder / "processed", reports=folder / "reports", tests=(),
+                force=False, jobs=None, scheduler=None, output=output,
+            )
+        )  # fmt: skip
+        output.say("")
+    output.answer({"folder": str(folder), "campaigns": documents})

@@ -162,7 +162,7 @@ def demo(
 ) -> None:
     """Copy the synthetic campaigns of this package to a folder, and run them there."""
     with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
-        from reduction.cli.demo import run_demo
+        from reduction.cli.campaigns import run_demo
 
         run_demo(folder, output)
 

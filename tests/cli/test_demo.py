@@ -6,21 +6,21 @@ import pytest
 from commandruns import ROOT
 from shortcampaign import write_short
 
-from reduction.cli import demo
+from reduction.cli import campaigns
 
 
 @pytest.fixture
 def one_short(tmp_path, monkeypatch):
     """A package whose one campaign takes a second."""
-    monkeypatch.setattr(demo, "_PACKAGE", tmp_path / "reduction")
-    monkeypatch.setattr(demo, "_NAMES", ("short",))
+    monkeypatch.setattr(campaigns, "_PACKAGE", tmp_path / "reduction")
+    monkeypatch.setattr(campaigns, "_DEMO_NAMES", ("short",))
     write_short(tmp_path / "reduction" / "demo" / "short")
     return tmp_path
 
 
 def test_the_campaigns_of_a_checkout_are_those_of_raw():
-    assert demo._campaigns() == ROOT / "raw"
-    for name in demo._NAMES:
+    assert campaigns._demo_campaigns() == ROOT / "raw"
+    for name in campaigns._DEMO_NAMES:
         assert (ROOT / "raw" / name / "campaign.toml").is_file()
 
 

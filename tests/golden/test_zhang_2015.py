@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from scipy import integrate, optimize
 
-from reduction.prediction import zhang_example as zhang2015
 from reduction.prediction.wave_load import _find_extremes, immerse_hose, wave_load
 from reduction.prediction.wave_theory import (
     _wave_number,
@@ -16,6 +15,7 @@ from reduction.prediction.wave_theory import (
     stokes_wave,
     wave_period_of,
 )
+from reduction.published import zhang_2015 as zhang2015
 
 TABLE_7 = Path(__file__).parent / "zhang_2015_table_7.csv"
 HALF_A_HUNDREDTH = 0.005

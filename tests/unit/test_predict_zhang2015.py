@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from reduction.prediction.wave_theory import stokes_wave
-from reduction.prediction.zhang_example import printed_airy_wave, printed_stokes_wave
+from reduction.published.zhang_2015 import printed_airy_wave, printed_stokes_wave
 from reduction.record.errors import SettingsError
 
 

@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 
 from reduction.prediction.wave_load import wave_load
-from reduction.prediction.zhang_example import printed_airy_wave, printed_section
 from reduction.published.printed_cells import cells_of, number_of
-from reduction.published.zhang_2015 import _table_answers
+from reduction.published.zhang_2015 import _table_answers, printed_airy_wave, printed_section
 
 ANSWERS = _table_answers()
 CELLS = [cell for cell in cells_of("Zhang-2015") if cell.table == "7"]
