@@ -316,7 +316,7 @@ def interval_note(interval_of: str, surface_interval_of: str) -> str:
     return f"the interval applies to {told}; scatter between specimens is not included"
 
 
-def sigma_from_r2(coefficient: ArrayLike, r2: float, *, n_factors: int = 3) -> float:
+def sigma_from_r2(coefficient: ArrayLike, r2: float) -> float:
     r"""Scatter of a run about a surface for which only coefficients and r2 are printed.
 
     .. math:: s^2 = \frac{(1 - r^2)}{r^2 \, \nu} \sum_i (\hat y_i - \bar{\hat y})^2
@@ -336,10 +336,10 @@ def sigma_from_r2(coefficient: ArrayLike, r2: float, *, n_factors: int = 3) -> f
     1.6
     """
     values = np.asarray(coefficient, dtype=np.float64)
-    exponents = quadratic_exponents(n_factors)
+    exponents = quadratic_exponents(3)
     if not 0 < r2 < 1:
         return float("nan")
-    coded = box_behnken(n_factors).coded
+    coded = box_behnken(3).coded
     fitted = model_matrix(coded, exponents) @ values
     explained = float(np.sum((fitted - fitted.mean()) ** 2))
     freedom = len(coded) - len(exponents)

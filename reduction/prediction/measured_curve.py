@@ -680,7 +680,6 @@ def constant_errors(
     strain_offset: float = 0.0,
     tension_gain: float = 0.0,
     strain_gain: float = 0.0,
-    of: str = "",
 ) -> SharedErrors:
     """Zero and scale of the load and of the strain as shared errors.
 
@@ -708,7 +707,7 @@ def constant_errors(
         errors.reshape(-1, 2, 1, 2).transpose(1, 0, 2, 3), (2, len(kept), 2, 2)
     )  # fmt: skip
     return SharedErrors(
-        tuple(Component(name, of) for name in kept),
+        tuple(Component(name, "") for name in kept),
         strain=knots,
         tension=np.stack([knots, knots]),
         tension_error=rows[0].copy(),

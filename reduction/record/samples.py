@@ -169,14 +169,9 @@ def like_storage(reference: NDArray[Any], made: NDArray[Any]) -> NDArray[Any]:
     return moved
 
 
-def zeros_like(
-    reference: NDArray[Any],
-    *,
-    shape: int | tuple[int, ...] | None = None,
-    dtype: DTypeLike | None = None,
-) -> NDArray[Any]:
-    """Return an array of zeros; parameters as in `empty_like`."""
-    made = empty_like(reference, shape=shape, dtype=dtype)
+def zeros_like(reference: NDArray[Any], *, dtype: DTypeLike | None = None) -> NDArray[Any]:
+    """Return an array of zeros with the shape of another; parameters as in `empty_like`."""
+    made = empty_like(reference, dtype=dtype)
     # a new scratch file contains zeros, and so does memory that the system allocates on first use
     return made if _is_on_disk(made) else np.zeros(made.shape, dtype=made.dtype)
 
