@@ -17,7 +17,7 @@ from reduction.quantities.units import UnitSystem
 from reduction.record.errors import ArchiveError
 from reduction.record.notes import Note, urgency
 from reduction.report.campaign_summary import SummaryFinding, Tile
-from reduction.report.experiment_report import (
+from reduction.report.experiment_tables import (
     anova_table,
     answer_table,
     block_words,
@@ -25,19 +25,12 @@ from reduction.report.experiment_report import (
     coefficient_budget_table,
     coefficient_budgets,
     confounding_words,
-    draw_checks,
-    draw_contours,
-    draw_effects,
-    draw_forms,
-    draw_single_time,
-    draw_surface,
     effect_table,
     experiment_findings,
     form_quality_table,
     form_table,
     form_words,
     line_of_runs_table,
-    make_planes,
     negative_inside,
     negative_words,
     quality_table,
@@ -48,6 +41,15 @@ from reduction.report.experiment_report import (
     surface_coefficient_table,
 )
 from reduction.report.figures.budget_figures import draw_coefficient_budgets
+from reduction.report.figures.experiment_figures import (
+    draw_checks,
+    draw_contours,
+    draw_effects,
+    draw_forms,
+    draw_single_time,
+    draw_surface,
+    make_planes,
+)
 from reduction.report.figures.hold_figures import draw_creep, draw_held_pairs, draw_stiffness
 from reduction.report.figures.hose_figures import (
     draw_all_comparisons,

@@ -26,7 +26,7 @@ from reduction.quantities.row import COMPONENT
 from reduction.quantities.units import UnitSystem, combined_unit, display_unit
 from reduction.record.measurement import Floats, Integers
 from reduction.record.notes import Note
-from reduction.report.test_view import Expanded, RowView, TestView, expand
+from reduction.report.test_view import Expanded, RowView, TestView, expand, expanded_of
 from reduction.report.text_style import DEGREES, Shown, in_order, shown
 
 EVENT_WORDS = {
@@ -745,3 +745,31 @@ def view_ropes(
 def _rows(data: xr.Dataset, places: Integers) -> xr.Dataset:
     variables = {name: at_places(one, "property", places) for name, one in data.variables.items()}
     return xr.Dataset(variables, attrs=data.attrs)
+
+
+def expanded_of_runs(view: ExperimentView, name: str, tests: Mapping[str, TestView]) -> Expanded:
+    """Return the expanded uncertainty of a response in each run."""
+    spread = view.per_run(f"{name}_measured_standard_uncertainty")
+    given = expand(spread)
+    half, factor = given.half.copy(), given.factor.copy()
+    pairs = zip(view.texts("run_name"), view.texts("run_specimen"), strict=True)
+    for place, (run, specimen) in enumerate(pairs):
+        test = tests.get(run)
+        own = None if test is None else test.array(f"test_{name}")
+        if test is None or own is None or specimen not in test.specimens:
+            continue
+        found = expanded_of(test, f"test_{name}", own)
+        row = test.specimens.index(specimen)
+        half[place], factor[place] = found.half[row], found.factor[row]
+    return Expanded(half, factor)
+
+
+def base_response(name: str) -> str:
+    """Return the response of a surface, before any transform.
+
+    Examples
+    --------
+    >>> base_response("log_hysteresis_energy")
+    'hysteresis_energy'
+    """
+    return next(base for base in RESPONSES if name.endswith(base))

@@ -19,7 +19,7 @@ from reduction.lines.archive_source import _line_source_of_experiment
 from reduction.lines.line_lookup import look_up
 from reduction.quantities.names import RESPONSES
 from reduction.record.contributions import Component, Contributions
-from reduction.report.experiment_report import _expanded_of_coefficients, _interval_of_surfaces
+from reduction.report.experiment_tables import _expanded_of_coefficients, _interval_of_surfaces
 from reduction.report.product_views import ExperimentView
 
 SHARED = surface_experiment()

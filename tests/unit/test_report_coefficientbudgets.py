@@ -7,7 +7,7 @@ import pytest
 from experiment_views import law_experiment, view_of
 from experiments import surface_experiment
 
-from reduction.report.experiment_report import coefficient_budget_table, coefficient_budgets
+from reduction.report.experiment_tables import coefficient_budget_table, coefficient_budgets
 from reduction.report.figures.budget_figures import draw_coefficient_budgets
 
 KAP = "apparent_spring_constant"

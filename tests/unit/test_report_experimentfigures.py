@@ -11,7 +11,7 @@ from experiments import screening_experiment, surface_experiment
 
 from reduction.experiments.response_surfaces import fit_surfaces
 from reduction.report.campaign_sections import _make_experiment_section
-from reduction.report.experiment_report import (
+from reduction.report.figures.experiment_figures import (
     draw_checks,
     draw_contours,
     draw_effects,

@@ -8,7 +8,7 @@ import pytest
 from experiment_views import law_experiment, view_of
 from experiments import HIGH, LOW, STRENGTH, screening_experiment, surface_experiment
 
-from reduction.report.experiment_report import (
+from reduction.report.experiment_tables import (
     anova_table,
     answer_table,
     caution_table,

@@ -8,7 +8,7 @@ import pytest
 from experiment_views import CODED, law_experiment, view_of
 from experiments import screening_experiment, surface_experiment
 
-from reduction.report.experiment_report import (
+from reduction.report.experiment_tables import (
     block_words,
     confounding_words,
     experiment_findings,

@@ -14,7 +14,7 @@ from reduction.archive.surfaces_dataset import surfaces_to_dataset
 from reduction.archive.write import write_archive
 from reduction.report.campaign_page import write_report
 from reduction.report.campaign_summary import SummaryFinding, find_faults, test_table
-from reduction.report.experiment_report import form_quality_table, form_table, line_of_runs_table
+from reduction.report.experiment_tables import form_quality_table, form_table, line_of_runs_table
 from reduction.report.figures.hold_figures import draw_pull
 from reduction.report.test_section import (
     _line_table,

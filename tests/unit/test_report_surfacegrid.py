@@ -6,12 +6,8 @@ from experiment_views import law_experiment, view_of
 from experiments import surface_experiment
 
 from reduction.experiments.surface_points import extremes_in_box
-from reduction.report.experiment_report import (
-    HELD,
-    _runs_on_plane,
-    make_planes,
-    negative_inside,
-)
+from reduction.report.experiment_tables import negative_inside
+from reduction.report.figures.experiment_figures import HELD, _runs_on_plane, make_planes
 
 
 def law(frequency, mean, amplitude):

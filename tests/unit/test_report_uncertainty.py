@@ -11,9 +11,8 @@ from experiment_views import law_experiment, view_of
 from scipy import stats
 
 from reduction.report.answer_tables import answer_budgets, budget_sentences, budget_table
-from reduction.report.experiment_report import (
+from reduction.report.experiment_tables import (
     _expanded_of_coefficients,
-    _expanded_of_runs,
     _interval_of_surfaces,
     _shared_by_runs,
     answer_table,
@@ -22,6 +21,7 @@ from reduction.report.experiment_report import (
 from reduction.report.figures.budget_figures import draw_budgets
 from reduction.report.figures.cycle_figures import draw_amplitude_pairs
 from reduction.report.figures.modulus_figures import draw_moduli
+from reduction.report.product_views import expanded_of_runs
 from reduction.report.test_section import _line_table, _summary_table, make_section, segment_table
 from reduction.report.test_view import (
     NORMAL,
@@ -376,13 +376,13 @@ def test_a_run_that_is_a_test_has_the_uncertainty_of_its_archive():
     names = view.texts("run_name")
     specimen = view.texts("run_specimen")[0]
     own = make_view().data.assign_coords({S: [specimen]})
-    found = _expanded_of_runs(view, "apparent_spring_constant", {names[0]: TestView("k", own)})
+    found = expanded_of_runs(view, "apparent_spring_constant", {names[0]: TestView("k", own)})
     # 3 of scatter and 4 of the gain are 5
     assert found.half[0] == pytest.approx(5 * stats.t.ppf(0.975, 9 * (5 / 3) ** 4))
     given = view.per_run("apparent_spring_constant_measured_standard_uncertainty")
     assert found.half[1:] == pytest.approx(NORMAL * given[1:], nan_ok=True)
     elsewhere = SimpleNamespace(array=lambda _: np.array([1.0]), specimens=("another",))
-    same = _expanded_of_runs(view, "apparent_spring_constant", {names[0]: elsewhere})
+    same = expanded_of_runs(view, "apparent_spring_constant", {names[0]: elsewhere})
     assert same.half[0] == pytest.approx(NORMAL * given[0], nan_ok=True)
 
 
