@@ -364,7 +364,7 @@ def _stress(tension: Floats, flags: Integers, specimens: tuple[Specimen, ...]) -
     return stress
 
 
-def _row_account(record: Record, kept: _KeptSamples | None = None) -> Values:
+def _row_counts(record: Record, kept: _KeptSamples | None = None) -> Values:
     """Count rows read, kept, stored and flagged by channel and mask."""
     flags = [record.crosshead_position_quality_flag, *record.quality_flag]
     return {
@@ -410,7 +410,7 @@ def _all_values(test: ReducedTest, kept: _KeptSamples | None) -> Values:
     if test.stepwise is not None:
         values |= stepwise_values(test.stepwise)
     elif test.record is not None:
-        values |= _row_account(test.record, kept) | _sample_values(test, test.record, kept)
+        values |= _row_counts(test.record, kept) | _sample_values(test, test.record, kept)
     if test.history is not None:
         values |= _history_values(test.history)
     if test.strain_models:

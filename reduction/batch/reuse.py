@@ -121,7 +121,7 @@ def _settings_json(
             "earlier_maximum_tension": _plain(history.earlier_maximum_tension),
             "earlier_cycles": _plain(history.earlier_cycles),
             "permanent_set": _plain(history.permanent_set),
-            "splices_let_out": _plain(history.splices_let_out),
+            "splices_slipped_by": _plain(history.splices_slipped_by),
             **(
                 {}
                 if history.earlier_flex_cycles is None

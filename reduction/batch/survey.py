@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from reduction.batch.campaign_status import Progress, Silent, Status, TestStatus
-from reduction.batch.found_steps import FOUND, find_steps, remark_on_cycles
 from reduction.batch.run_lock import RunLock
+from reduction.batch.step_detection import FOUND, find_steps, remark_on_cycles
 from reduction.batch.workers import Task, Workers, work_on
 from reduction.campaign.plan import Campaign, StepPlan, TestPlan, cycles_of_kind
 from reduction.pipeline.located_test import Located, locate, slips_of, tension_at_marks
@@ -29,7 +29,7 @@ from reduction.record.errors import (
 )
 from reduction.record.measurement import Floats, Record, Source, Specimen, StepReadings
 from reduction.record.notes import Note, note
-from reduction.record.row_account import account_rows
+from reduction.record.row_counts import count_rows
 from reduction.record.samples import finite_extremes, step_of_codes
 from reduction.stages.load_at_slack import (
     load_at_slack,
@@ -60,7 +60,7 @@ from reduction.stages.three_parameter_line.rope_programme import tensile_pull
 def _log_summary(located: Located) -> dict[str, Any]:
     """Rate, gaps, standstills, load at slack, flags and notes of a record."""
     record = located.record
-    n_flagged = account_rows(record).n_flagged
+    n_flagged = count_rows(record).n_flagged
     return {
         "rate": {"value": 1 / median_step(record.time), "unit": "Hz"},
         "gaps": int(n_flagged.get("crosshead_position", {}).get("gap", 0)),

@@ -107,7 +107,7 @@ def _earlier(survey: Survey, past: EarlierTests, name: str) -> list[Survey]:
     return [entry for _, entry in placed[: bisect_left(placed, place, key=itemgetter(0))]]
 
 
-def _let_out_before(survey: Survey, own: Survey, earlier: Sequence[Survey], name: str) -> float:
+def _slipped_before(survey: Survey, own: Survey, earlier: Sequence[Survey], name: str) -> float:
     """Slip of the splices before a test [m].
 
     A burst from a longer log uses the clock of that log.
@@ -150,7 +150,7 @@ def history_of(survey: Survey, past: EarlierTests, campaign: Campaign) -> Histor
         return None
     nothing = float("nan")
     tests: list[tuple[str, ...]] = []
-    strain, tension, cycles, flex, left, let_out = [], [], [], [], [], []
+    strain, tension, cycles, flex, left, slipped = [], [], [], [], [], []
     own = _with_earlier_steps(survey, past)
     for name in survey.plan.specimens:
         earlier = _earlier(survey, past, name)
@@ -168,7 +168,7 @@ def history_of(survey: Survey, past: EarlierTests, campaign: Campaign) -> Histor
         left.append(_set_after_rest(survey, earlier, name, free))
         marks = campaign.marks.get(name)
         is_marked = marks is not None and survey.plan.log in marks.test
-        let_out.append(0.0 if is_marked else _let_out_before(survey, own, earlier, name))
+        slipped.append(0.0 if is_marked else _slipped_before(survey, own, earlier, name))
     return History(
         earlier_tests=tuple(tests),
         earlier_maximum_strain=np.array(strain),
@@ -177,7 +177,7 @@ def history_of(survey: Survey, past: EarlierTests, campaign: Campaign) -> Histor
         permanent_set=np.array([value for value, _, _ in left]),
         permanent_set_standard_uncertainty=np.array([spread for _, spread, _ in left]),
         permanent_set_by_tension=np.array([slope for _, _, slope in left]),
-        splices_let_out=np.array(let_out),
+        splices_slipped_by=np.array(slipped),
         earlier_flex_cycles=None if np.isnan(flex).all() else np.array(flex),
     )
 

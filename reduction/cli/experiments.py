@@ -47,7 +47,7 @@ from reduction.experiments.surface_warnings import (
     drift_over_order,
     drifting_responses,
     negative_surfaces,
-    stray_runs,
+    outlying_runs,
 )
 from reduction.quantities.units import UnitSystem, combined_unit, display_unit
 from reduction.record.contributions import CONFIDENCE
@@ -722,7 +722,7 @@ def notes_of_fit(runs: RunSeries, surfaces: ResponseSurfaces) -> tuple[str, ...]
         *_unstated(runs),
         *map(str, _rejected_scales(runs, surfaces)),
         *map(str, negative_surfaces(surfaces)),
-        *map(str, stray_runs(surfaces)),
+        *map(str, outlying_runs(surfaces)),
         *map(str, drifting_responses(surfaces, drift)),
         *(
             f"{one.message}. {one.hint}"

@@ -31,12 +31,12 @@ def serve(
     with campaign_progress(output) as progress:
         session = Session(path, processed, progress=progress)
 
-    def told_of_defect(error: Exception) -> None:
+    def on_defect(error: Exception) -> None:
         if os.environ.get("REDUCTION_DEBUG"):
             output.error("".join(traceback.format_exception(error)))
         output.defect(error)
 
-    with in_order(), ExploreServer(session, output.system, port, told_of_defect) as server:
+    with in_order(), ExploreServer(session, output.system, port, on_defect) as server:
         output.say(f"{path}: {len(session.surveys)} tests")
         output.say(f"Open {server.address}")
         output.say("Ctrl-C ends it. It answers only this machine, and only at this address.")

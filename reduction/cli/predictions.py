@@ -505,7 +505,7 @@ def _show_wave_load(found: PredictedWaveLoad, output: CommandOutput) -> None:
     )
     table = table_of(
         f"load [{force}/{length}]", "maximum", "at [s]", "minimum", "at [s]", "classic maximum",
-        "classic minimum", "less than classic [%]",
+        "classic minimum", "reduction from classic [%]",
     )  # fmt: skip
     scale = per_newton / per_metre
     for direction in ("horizontal", "vertical"):

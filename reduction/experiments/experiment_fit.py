@@ -37,7 +37,7 @@ from reduction.experiments.surface_warnings import (
     drift_over_order,
     drifting_responses,
     negative_surfaces,
-    stray_runs,
+    outlying_runs,
 )
 from reduction.record.errors import DataError, FitError, SettingsError
 from reduction.record.measurement import Bools, Floats, Integers
@@ -353,7 +353,7 @@ def fit_experiment(
         notes += _missing_surfaces(runs, surfaces, response_names)
         notes += surfaces.notes
         notes += negative_surfaces(surfaces)
-        notes += stray_runs(surfaces)
+        notes += outlying_runs(surfaces)
         drift = drift_over_order(surfaces, _places_in_order(runs, run_order))
         notes += drifting_responses(surfaces, drift)
         if _FROM_SLOW_PULL & set(response_names):

@@ -234,7 +234,7 @@ _STRAY_SHARE = 0.03
 The misfit of a quadratic is not scatter, and may be as improbable; it is seldom as large."""
 
 
-def stray_runs(surfaces: ResponseSurfaces) -> tuple[Note, ...]:
+def outlying_runs(surfaces: ResponseSurfaces) -> tuple[Note, ...]:
     r"""Runs that differ from the surface of all others by far more than their scatter.
 
     .. math::
@@ -273,7 +273,7 @@ def stray_runs(surfaces: ResponseSurfaces) -> tuple[Note, ...]:
     >>> found = fit_surfaces(runs, [3 + runs[:, 0] + noise + (np.arange(15) == 13)],
     ...     units="coded", factor_names=["f", "T", "a"], response_names=["y"], low=[0] * 3,
     ...     high=[1] * 3, run_names=[f"R{run}" for run in range(1, 16)])
-    >>> [str(one)[:67] for one in stray_runs(found)]
+    >>> [str(one)[:67] for one in outlying_runs(found)]
     ['run R14 (+33 %) is off the surface of the other runs in y (p 5e-11)']
     """
     leverage, t = surfaces.diagnostics.leverage, surfaces.diagnostics.deleted_residual

@@ -316,12 +316,12 @@ def source_of_tests(
         if len(stated) > 1:
             raise SettingsError(
                 f"the archives state another {name} of '{specimen}'",
-                found=_told(stated),
+                found=_stated_where(stated),
                 needed="one specimen",
             )
     stated = _words_of(own, specimen, "condition")
     if len(stated) > 1:
-        told = f"the archives state another condition of '{specimen}', {_told(stated)}"
+        told = f"the archives state another condition of '{specimen}', {_stated_where(stated)}"
         notes.insert(0, f"DOUBTFUL: {told}: their tests belong together if this is one specimen")
     models = [strain_model_of(one, specimens_of(one).index(specimen)) for one in own]
     known = [model for model in models if model is not None]
@@ -382,7 +382,7 @@ def _words_of(datasets: Sequence[xr.Dataset], specimen: str, name: str) -> dict[
     return found
 
 
-def _told(stated: dict[str, str]) -> str:
+def _stated_where(stated: dict[str, str]) -> str:
     return ", ".join(f"{text} in {where}" for text, where in stated.items())
 
 

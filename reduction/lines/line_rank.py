@@ -134,7 +134,7 @@ def rank_lines(
         for place, (line, values, outside) in enumerate(found)
     )
     return _LineRanking(
-        ranked, tuple(left_out), _told_otherwise([one for one, *_ in found], quantity)
+        ranked, tuple(left_out), _errata_on_order([one for one, *_ in found], quantity)
     )
 
 
@@ -194,7 +194,7 @@ def _ties(
     )
 
 
-def _told_otherwise(lines: Sequence[LineSource], quantity: str) -> tuple[Erratum, ...]:
+def _errata_on_order(lines: Sequence[LineSource], quantity: str) -> tuple[Erratum, ...]:
     """Errata of sentences of [1]_ that order two or more of these lines."""
     named: dict[str, set[str]] = {}
     for cell in cells_of("CG-D-39-80"):

@@ -286,7 +286,7 @@ class ExploreServer(ThreadingHTTPServer):
         Display units.
     port : int
         0 for a free port.
-    told_of_defect : callable, optional
+    on_defect : callable, optional
         Called for a defect of this program; the page learns only that there was one.
 
     Raises
@@ -306,7 +306,7 @@ class ExploreServer(ThreadingHTTPServer):
         session: Session,
         units: UnitSystem,
         port: int = 0,
-        told_of_defect: Callable[[Exception], None] = lambda error: None,
+        on_defect: Callable[[Exception], None] = lambda error: None,
     ) -> None:
         try:
             super().__init__((HOST, port), _Handler)
@@ -317,7 +317,7 @@ class ExploreServer(ThreadingHTTPServer):
                 needed="a free one from 1024 to 65535, or none: one is found then",
             ) from error
         self.token = secrets.token_urlsafe(32)
-        self.told_of_defect = told_of_defect
+        self.on_defect = on_defect
         self.working = threading.Lock()
         self._places = threading.BoundedSemaphore(MOST_AT_ONCE)
         # oldest first, without those at work: connections that wait for their client
@@ -438,7 +438,7 @@ class _Handler(BaseHTTPRequestHandler):
             raise
         except Exception as error:
             # the page learns only that there was a defect; the terminal gets the details
-            self.server.told_of_defect(error)
+            self.server.on_defect(error)
             said = f"internal error, a defect of this program: {type(error).__name__}"
             reply = _as_json(HTTPStatus.INTERNAL_SERVER_ERROR, {"error": said})
         self._send(*reply)

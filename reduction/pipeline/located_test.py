@@ -22,7 +22,7 @@ from reduction.record.measurement import (
     areas_of,
 )
 from reduction.record.notes import note
-from reduction.record.row_account import ROWS_FLAGGED, notes_on_rows
+from reduction.record.row_counts import ROWS_FLAGGED, notes_on_rows
 from reduction.record.samples import (
     copied,
     empty_like,

@@ -71,7 +71,7 @@ from reduction.stages.cycles.loop_sense import (
     waveform_of_log,
 )
 from reduction.stages.cycles.periods import change_of_period
-from reduction.stages.cycles.reading_noise import tone_beside_wave
+from reduction.stages.cycles.reading_noise import vibration_beside_wave
 from reduction.stages.holds.hold_product import HoldResult
 from reduction.stages.holds.relaxation_and_creep import reduce_holds
 from reduction.stages.moduli.modulus_product import ModulusCurves
@@ -163,7 +163,7 @@ def _tones(
     if cycles is None or loops is None or waveform == "sinusoidal":
         return
     for row, (name, load) in enumerate(zip(record.specimens, tension, strict=True)):
-        frequency, size = tone_beside_wave(record.time, load, cycles)
+        frequency, size = vibration_beside_wave(record.time, load, cycles)
         amplitude = finite_median(loops.tension_amplitude[row])
         # it is in the extremes of all cycles alike
         own = finite_median(loops.uncertainty["tension_amplitude"][row]) / np.sqrt(cycles.n_cycles)

@@ -230,7 +230,7 @@ def _shared_area(rows: Sequence[_Row]) -> tuple[float, float]:
     return low, high
 
 
-def _sound(rows: Sequence[_Row], tether: str) -> list[_Row]:
+def _undisputed(rows: Sequence[_Row], tether: str) -> list[_Row]:
     """Rows in which no number is corrected or open."""
     return [
         row
@@ -242,7 +242,9 @@ def _sound(rows: Sequence[_Row], tether: str) -> list[_Row]:
 def _areas_of_tables(*tables: Sequence[Cell]) -> dict[str, tuple[float, ...]]:
     """Area of each tether that each table implies."""
     return {
-        tether: tuple(sum(_shared_area(_sound(_rows_of(cells), tether))) / 2 for cells in tables)
+        tether: tuple(
+            sum(_shared_area(_undisputed(_rows_of(cells), tether))) / 2 for cells in tables
+        )
         for tether in ("new", "used")
     }
 
@@ -251,7 +253,7 @@ def _items_of_segments(cells: Sequence[Cell]) -> Iterator[ReproducedItem]:
     """Table 5 or Table 6."""
     rows = _rows_of(cells)
     for row in rows:
-        low, high = _shared_area([one for one in _sound(rows, row.tether) if one is not row])
+        low, high = _shared_area([one for one in _undisputed(rows, row.tether) if one is not row])
         area, half_range = (low + high) / 2, abs(high - low) / 2
         given = {column: row[column] for column in row.cells} | {"area": area}
         half = {"area": half_range, MODULUS: _HALF_A_PSI} | {

@@ -15,7 +15,7 @@ from reduction.record.arrays import run_blocks
 from reduction.record.errors import DataError
 from reduction.record.measurement import Bools, Floats, Integers, Quality, Record
 from reduction.record.notes import Note, note
-from reduction.record.row_account import notes_on_rows
+from reduction.record.row_counts import notes_on_rows
 from reduction.record.samples import (
     BLOCK,
     any_sample,

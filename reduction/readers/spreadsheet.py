@@ -50,7 +50,7 @@ def _is_markup(name: str) -> bool:
     return name.lower().endswith(_SUFFIXES)
 
 
-class _SoundMarkup:
+class _CheckedMarkup:
     """Parses a part as it is unpacked; stores nothing and fetches nothing external."""
 
     def __init__(self, path: Path, name: str) -> None:
@@ -301,7 +301,7 @@ _NOT_ZIP = (
 def open_workbook(path: Path, watch: Watch | None = None) -> fastexcel.ExcelReader:
     """Open a workbook after checking it for damage."""
     if zipfile.is_zipfile(path):
-        _check_sound(path, watch or Watch(path))
+        _check_integrity(path, watch or Watch(path))
     with _parsed(
         path,
         "the file is not a spreadsheet that can be read",
@@ -310,14 +310,14 @@ def open_workbook(path: Path, watch: Watch | None = None) -> fastexcel.ExcelRead
         return fastexcel.read_excel(path)
 
 
-def _check_sound(path: Path, watch: Watch) -> None:
+def _check_integrity(path: Path, watch: Watch) -> None:
     """Unpack every part once, because the parser checks neither checksums nor markup."""
     try:
         with zipfile.ZipFile(path) as archive:
             parts = archive.infolist()
             watch.check_unpacked(sum(part.file_size for part in parts), "the workbook")
             for part in parts:
-                markup = _SoundMarkup(path, part.filename) if _is_markup(part.filename) else None
+                markup = _CheckedMarkup(path, part.filename) if _is_markup(part.filename) else None
                 with archive.open(part) as stream:
                     while block := stream.read(_BLOCK):
                         watch.check_time()

@@ -77,7 +77,7 @@ class InstrumentErrors:
         Whether it is stated, or found from a mark on the way down.
     splice_slip : float
         Slip of the splices after their marks were read. [m]
-    splices_let_out : float
+    splices_slipped_by : float
         Slip of the splices by the end of the test, from steps in tension. [m]
     test : str
         Name of the test.
@@ -110,7 +110,7 @@ class InstrumentErrors:
     splice_friction: float = 0.0
     is_splice_friction_known: bool = False
     splice_slip: float = 0.0
-    splices_let_out: float = 0.0
+    splices_slipped_by: float = 0.0
     tension_reading: float = 0.0
     position_reading: float = 0.0
     test: str = ""

@@ -70,7 +70,7 @@ def _unknown_mass(mass: float, usual: float, effect: float, cell: str) -> str:
     )
 
 
-def _length_let_out(length: float) -> str:
+def _slip_in_words(length: float) -> str:
     """Remark on a length known to about 10 mm, for a survey and a test alike."""
     if length != length:
         return "an unknown length"
@@ -943,7 +943,7 @@ _OF_MODULI: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "splice-slipped": (
         "warning",
         lambda cycles, length, excess, effect: (
-            f"the splices slipped at {cycles}, by {_length_let_out(length)} in all"
+            f"the splices slipped at {cycles}, by {_slip_in_words(length)} in all"
             + ("" if excess != excess else
                f": from there on, and in later tests without marks of their own, strain is at least"
                f" {100 * excess:.1f} percentage points too large ({effect:.1%} of the mean strain),"
@@ -954,7 +954,7 @@ _OF_MODULI: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "splice-slipped-before": (
         "warning",
         lambda length, excess, effect: (
-            f"before this test the splices slipped by {_length_let_out(length)}, and no"
+            f"before this test the splices slipped by {_slip_in_words(length)}, and no"
             " marks were read in it"
             + ("" if excess != excess else
                f": strain is at least {100 * excess:.1f} percentage points too large"

@@ -163,7 +163,7 @@ def layer_table(view: HoseView) -> PageTable | None:
         sheet.texts("layer", "hose_layer_name")
         .numbers("wrap angle", "hose_layer_wrap_angle")
         .spans("strain up to working load", low, high, PERCENT, places=1)
-        .numbers("most until cords break", "hose_layer_break_strain", PERCENT, 3)
+        .numbers("maximum before cords break", "hose_layer_break_strain", PERCENT, 3)
         .numbers("tensile limit", tensile, PERCENT, 3)
         .numbers("compressive limit", compressive, PERCENT, 3)
         .numbers("least angle", "hose_layer_least_angle")

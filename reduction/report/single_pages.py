@@ -551,7 +551,7 @@ def layers_table(found: PredictedArmour, units: UnitSystem) -> PageTable | None:
         .numbers("von Mises stress", together.wire_stress[:, 0], "stress")
         .numbers("yield stress", limit, "stress")
         .texts("yields", np.where(np.isfinite(limit), yields, ""))
-        .numbers("room between wires", found.gap, "small length", 3)
+        .numbers("gap between wires", found.gap, "small length", 3)
         .numbers("lost by thinning", found.thinning_loss, PERCENT, 2)
         .table(
             f"Layers at {100 * float(found.strain[0]):g} % of strain of the cable, innermost"
@@ -645,7 +645,7 @@ def extremes_table(found: PredictedWaveLoad, units: UnitSystem) -> PageTable | N
         times = [getattr(load, f"time_of_{end}") for load, end in own]
         sheet.numbers("at", times, "time", 3)
     less = [getattr(found.difference, f"{one}_of_{end}") for one, end in pairs]
-    return sheet.numbers("less than classic", less, PERCENT).table(
+    return sheet.numbers("reduction from classic", less, PERCENT).table(
         "Extremes of the load over a period, by optimisation between the plotted times.",
         remarks=[
             "Classic: Morison's equation on the whole section. Improved: on the part under water"
@@ -749,7 +749,7 @@ def wave_coefficient_table(found: PredictedWaveLoad) -> PageTable | None:
         .texts("wave theory", [one.wave_theory for one in published])
         .cells("drag", [_pair(*one.drag_coefficient) for one in published])
         .numbers("inertia", [one.inertia_coefficient for one in published], "number", 3)
-        .texts("said of them", [one.comment for one in published])
+        .texts("comment of the source", [one.comment for one in published])
         .row(
             words("this case"), words(_named(found.used)),
             number(found.drag_coefficient, digits=3), number(found.inertia_coefficient, digits=3),

@@ -345,7 +345,7 @@ def _slip_table(view: TestView) -> PageTable | None:
             [TableCell(f"{low:.0f} to {high:.0f}", is_number=True) for low, high in ends],
         )
         .measured("step of peak tension", "slip_tension_step")
-        .measured("splice let out", "slip_length")
+        .measured("splice slip", "slip_length")
     )
     return sheet.table("Slips of a splice, apart from steady creep.", remarks=[sheet.about()])
 

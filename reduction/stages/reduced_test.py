@@ -64,7 +64,7 @@ class History:
     rest. NaN where one of the two records does not begin slack. [1]
     ``permanent_set_by_tension`` is its change with the tension that counts as
     slack. [N-1]
-    ``splices_let_out`` is the least length by which the splices slipped since the marks that its
+    ``splices_slipped_by`` is the least length by which the splices slipped since the marks that its
     strain rests on were read. [m]
     ``earlier_flex_cycles`` is None where nothing is known about flexing.
     """
@@ -76,7 +76,7 @@ class History:
     permanent_set: Floats
     permanent_set_standard_uncertainty: Floats
     permanent_set_by_tension: Floats
-    splices_let_out: Floats
+    splices_slipped_by: Floats
     earlier_flex_cycles: Floats | None = None
 
 

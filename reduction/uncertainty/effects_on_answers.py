@@ -212,23 +212,23 @@ def splice_slip_notes(test: ReducedTest) -> Iterator[Note]:
             if name == specimen.name
         ]
         if slips is not None and own and test.amplitude is not None:
-            let_out = float(np.sum(slips.slip_length[own]))
+            slipped = float(np.sum(slips.slip_length[own]))
             cycles = "cycle " if len(own) == 1 else "cycles "
             cycles += " and ".join(f"{cycle:,}" for cycle in slips.slip_cycle[own].tolist())
-            yield _of_slip(test, index, "splice-slipped", let_out, cycles=cycles)
-        before = 0.0 if test.history is None else float(test.history.splices_let_out[index])
+            yield _of_slip(test, index, "splice-slipped", slipped, cycles=cycles)
+        before = 0.0 if test.history is None else float(test.history.splices_slipped_by[index])
         if before and test.strain_models[index].method != "extensometer":
             yield _of_slip(test, index, "splice-slipped-before", before)
 
 
-def _of_slip(test: ReducedTest, index: int, code: str, let_out: float, **numbers: Any) -> Note:
+def _of_slip(test: ReducedTest, index: int, code: str, slipped: float, **numbers: Any) -> Note:
     """Effect of a length let out by the splices on the strain of a test.
 
     It is compared with the interval of strain from all other sources.
     """
     specimen, model, summary = test.specimens[index], test.strain_models[index], test.amplitude
     if summary is not None:
-        excess = let_out / _length_of_strain(test, summary, index)
+        excess = slipped / _length_of_strain(test, summary, index)
         mean = float(summary.mean_strain[index])
         half = _EXPANDED * _standard_uncertainty(
             test, summary, "mean_strain", index, left_out="splice_slip"
@@ -244,11 +244,11 @@ def _of_slip(test: ReducedTest, index: int, code: str, let_out: float, **numbers
             ends = position_by_model(
                 model, strain=[mean, mean + _SMALL], tension=[hold.hold_initial_tension] * 2
             )
-            excess = let_out * _SMALL / float(ends[1] - ends[0])
+            excess = slipped * _SMALL / float(ends[1] - ends[0])
         if test.strain_standard_uncertainty is not None:
             half = _EXPANDED * float(test.strain_standard_uncertainty[index])
     found = note(
-        code, specimen.name, length=let_out, excess=excess, effect=excess / mean, **numbers
+        code, specimen.name, length=slipped, excess=excess, effect=excess / mean, **numbers
     )
     is_held = model.method == "extensometer" or excess <= half
     return replace(found, severity="note") if is_held else found

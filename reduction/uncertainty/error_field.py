@@ -277,7 +277,7 @@ def _position_parts(
         begin, offset = model.coefficients["reference_position"], 0.0
     lengths = {
         Component("position_offset", errors.position_instrument): offset,
-        Component("splice_slip", errors.specimen): errors.splices_let_out,
+        Component("splice_slip", errors.specimen): errors.splices_slipped_by,
         Component("splice_slip", f"{errors.specimen}, marks of {errors.test}"): errors.splice_slip,
     }
     if model.method == "extensometer" or not (gain or any(lengths.values())):

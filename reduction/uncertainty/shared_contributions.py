@@ -240,7 +240,7 @@ def _inertia_of(
 # a cycle is steeper than the compliance of a relaxed specimen, for rubber by up to a factor of two:
 # the length let out lies between that found by the slope of a cycle and its double.  Root mean
 # square: sqrt(7/3).  Slip that makes no step is not detected
-_LET_OUT = (7 / 3) ** 0.5
+_OF_SLIP = (7 / 3) ** 0.5
 
 
 def with_splice_slips(
@@ -252,18 +252,18 @@ def with_splice_slips(
     about zero (JCGM 100:2008, F.2.4.5).
     """
     return tuple(
-        replace(one, splices_let_out=_LET_OUT * float(_let_out(test, index)[-1]))
+        replace(one, splices_slipped_by=_OF_SLIP * float(_slipped_length(test, index)[-1]))
         for index, one in enumerate(errors)
     )
 
 
-def _let_out(test: ReducedTest, index: int) -> Floats:
+def _slipped_length(test: ReducedTest, index: int) -> Floats:
     """Least length let out by splices at each cycle since their marks were read. [m].
 
     A step may be at any of the cycles that it is dated to.  One value where there are no cycles.
     """
     n_cycles = 1 if test.cycles is None else test.cycles.n_cycles
-    before = 0.0 if test.history is None else float(test.history.splices_let_out[index])
+    before = 0.0 if test.history is None else float(test.history.splices_slipped_by[index])
     found = np.full(n_cycles, before)
     slips, number = test.slips, np.arange(1, n_cycles + 1)
     if slips is None:
@@ -280,11 +280,11 @@ def _slipped(
     test: ReducedTest, index: int, errors: InstrumentErrors, cycles: slice | Integers
 ) -> InstrumentErrors:
     """Errors of a mean over some of the cycles, where some precede a slip."""
-    if not errors.splices_let_out:
+    if not errors.splices_slipped_by:
         return errors
-    let_out = _let_out(test, index)
-    share = float(let_out[cycles].mean() / let_out[-1])
-    return replace(errors, splices_let_out=errors.splices_let_out * share)
+    slipped = _slipped_length(test, index)
+    share = float(slipped[cycles].mean() / slipped[-1])
+    return replace(errors, splices_slipped_by=errors.splices_slipped_by * share)
 
 
 def _slipped_by_cycle(
@@ -294,8 +294,8 @@ def _slipped_by_cycle(
     by_steps = Component("splice_slip", test.specimens[index].name)
     if by_steps not in found.component:
         return found
-    let_out = _let_out(test, index)
-    place, share = found.component.index(by_steps), let_out[block] / let_out[-1]
+    slipped = _slipped_length(test, index)
+    place, share = found.component.index(by_steps), slipped[block] / slipped[-1]
     values = {name: rows.copy() for name, rows in found.values.items()}
     for rows in values.values():
         rows[place] = (rows[place].T * share).T
@@ -524,7 +524,7 @@ def _of_curves(
     missed = np.nan_to_num(curves.tangent_modulus_window_uncertainty[index])
     by_window = {
         "branch_tension": np.zeros_like(missed),
-        "tangent_modulus_untrimmed": np.hypot(missed, _smeared(curves, index)),
+        "tangent_modulus_untrimmed": np.hypot(missed, _window_blur(curves, index)),
     }
     values = {
         name: np.concatenate([rows, by_window.get(name, missed)[None]])
@@ -576,7 +576,7 @@ def _friction_on_branches(
 _MOVED = 1e-3
 
 
-def _smeared(curves: ModulusCurves, index: int) -> Floats:
+def _window_blur(curves: ModulusCurves, index: int) -> Floats:
     """Possible error of the untrimmed modulus near a reversal, due to the window. [Pa].
 
     The modulus changes at a reversal within less than a window: where the trimmed

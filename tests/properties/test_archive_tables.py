@@ -15,7 +15,7 @@ from table_cells import text_of_columns
 
 from reduction.archive.csv_columns import csv_text
 from reduction.archive.csv_tables import _Curve, _envelope_rows
-from reduction.archive.test_dataset import _row_account
+from reduction.archive.test_dataset import _row_counts
 from reduction.archive.variables import pad
 from reduction.record.measurement import Record
 
@@ -82,7 +82,7 @@ def test_the_account_counts_every_flag_of_every_row(flags):
         quality_flag=np.array([flags], dtype=np.uint16),
         crosshead_position_quality_flag=np.zeros(n_samples, dtype=np.uint16),
     )
-    counts = _row_account(record)["n_flagged"]
+    counts = _row_counts(record)["n_flagged"]
     assert counts[0].sum() == 0
     assert counts[1].sum() == sum(flag.bit_count() for flag in flags)
 

@@ -198,21 +198,21 @@ def test_no_load_is_called_the_greatest_where_one_is_not_known():
     assert after_greater(loaded(900.0, None, 600.0)) == []
 
 
-def let_out(surveys, *tests_of_marks):
+def slipped(surveys, *tests_of_marks):
     campaign = SimpleNamespace(
         specimens={"hose": Specimen("hose")},
         marks={"hose": SimpleNamespace(test=tests_of_marks)} if tests_of_marks else {},
     )
     past = earlier_tests_of(surveys, {})
-    return [history_of(entry, past, campaign).splices_let_out[0] for entry in surveys]
+    return [history_of(entry, past, campaign).splices_slipped_by[0] for entry in surveys]
 
 
 def test_slips_count_for_every_later_test_but_those_with_marks_of_their_own():
     surveys = [survey(name, place) for place, name in enumerate("ABCD", 1)]
     surveys[1].slips = {"hose": [SpliceSlip(60.0, 0.03), SpliceSlip(90.0, 0.02)], "other": []}
-    assert let_out(surveys) == pytest.approx([0, 0, 0.05, 0.05])
+    assert slipped(surveys) == pytest.approx([0, 0, 0.05, 0.05])
     # its own marks were read with the splices as they are
-    assert let_out(surveys, "A", "C") == pytest.approx([0, 0, 0, 0.05])
+    assert slipped(surveys, "A", "C") == pytest.approx([0, 0, 0, 0.05])
 
 
 def test_a_part_of_a_log_comes_after_the_slips_before_its_first_row():
@@ -220,7 +220,7 @@ def test_a_part_of_a_log_comes_after_the_slips_before_its_first_row():
     whole.slips = {"hose": [SpliceSlip(60.0, 0.03), SpliceSlip(90.0, 0.02)]}
     for part, begin in ((early, 0.0), (late, 70.0)):
         part.plan, part.first_time = replace(part.plan, part_of="A"), begin
-    assert let_out([whole, early, late]) == pytest.approx([0, 0, 0.03])
+    assert slipped([whole, early, late]) == pytest.approx([0, 0, 0.03])
 
 
 def test_a_later_test_is_told_the_slip_that_the_test_itself_found():

@@ -1,13 +1,13 @@
 import pytest
 
-from reduction.readers.spreadsheet import _SoundMarkup
+from reduction.readers.spreadsheet import _CheckedMarkup
 from reduction.record.errors import LogError
 
 
 @pytest.fixture
 def check(tmp_path):
     def check_part(text, name="xl/worksheets/sheet1.xml"):
-        part = _SoundMarkup(tmp_path / "log.xlsx", name)
+        part = _CheckedMarkup(tmp_path / "log.xlsx", name)
         data = text.encode()
         part.add(data[:20])
         part.add(data[20:])

@@ -9,7 +9,7 @@ from reduction.readers.sample_flags import (
     _time_faults,
 )
 from reduction.record.measurement import Quality, Record
-from reduction.record.row_account import account_rows
+from reduction.record.row_counts import count_rows
 
 RANDOM = np.random.default_rng(20051010)
 CLOCK = np.arange(0, 200, 0.1)
@@ -193,7 +193,7 @@ def test_every_row_is_accounted_for_by_mask_and_channel():
         crosshead_position_quality_flag=np.full(4, Quality.GAP, dtype=np.uint16),
         n_rows_read=5,
     )
-    account = account_rows(record)
+    account = count_rows(record)
     assert (account.n_read, account.n_kept) == (5, 4)
     assert account.n_flagged == {
         "crosshead_position": {"gap": 4},

@@ -12,7 +12,7 @@ from reduction.stages.moduli import local_regression as groups
 from reduction.stages.moduli import tangent_modulus as specimencurves
 from reduction.stages.moduli.tangent_modulus import tangent_curves
 from reduction.stages.moduli.tangent_window import choose_grid_and_window
-from reduction.uncertainty.shared_contributions import _smeared
+from reduction.uncertainty.shared_contributions import _window_blur
 
 AREA = 5e-4
 SETTINGS = ModulusSettings()
@@ -212,7 +212,7 @@ def test_what_a_window_over_the_end_of_a_branch_smears_is_carried(triangle):
     tension = np.interp(strain, knots, [200.0, 224.0, 316.0, 340.0])
     curves = curves_of(strain, tension, cycles)
     whole = curves.tangent_modulus_untrimmed[0] * AREA
-    carried = _smeared(curves, 0) * AREA
+    carried = _window_blur(curves, 0) * AREA
     truth = np.where(np.abs(curves.strain_bin - 1.25) < 0.23, 200.0, 1200.0)
     off = np.abs(whole - truth)
     assert np.nanmax(off) > 100

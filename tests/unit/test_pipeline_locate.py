@@ -8,7 +8,7 @@ import pytest
 from reduction.pipeline.located_test import locate
 from reduction.record.errors import DataError
 from reduction.record.measurement import Quality, Record
-from reduction.record.row_account import notes_on_rows
+from reduction.record.row_counts import notes_on_rows
 from reduction.record.settings import CycleSettings, ReductionSettings
 
 

@@ -99,7 +99,7 @@ def test_strength_against_exposure_is_points_a_line_and_its_band():
     assert len(breaks["x"]) == 6 and bound["y"] == [5000.0]
     assert figure.layout["title"]["subtitle"]["text"] == "SYNTHETIC DATA"
     table = exposure_table(view(BREAKS))
-    assert column(table, "change a year [lbf/year]")[0].startswith("-600 ± ")
+    assert column(table, "change per year [lbf/year]")[0].startswith("-600 ± ")
 
 
 def test_breaks_without_a_line_are_shown_and_the_reason_told():

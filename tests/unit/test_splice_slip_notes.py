@@ -79,7 +79,7 @@ def test_no_slip_has_no_note():
 )
 def test_a_slip_before_the_test_is_told_like_one_in_it(spread, severity):
     test = reduced(spread=spread)
-    test.slips, test.history = None, SimpleNamespace(splices_let_out=np.array([0.1]))
+    test.slips, test.history = None, SimpleNamespace(splices_slipped_by=np.array([0.1]))
     (found,) = splice_slip_notes(test)
     assert found.severity == severity
     assert "before this test the splices slipped by about 100 mm or more" in str(found)
@@ -90,7 +90,7 @@ def test_a_slip_before_the_test_is_told_like_one_in_it(spread, severity):
 def test_a_hold_after_a_slip_has_the_same_excess():
     test = reduced(spread=0.004)
     test.slips, test.amplitude = None, None
-    test.history = SimpleNamespace(splices_let_out=np.array([0.1]))
+    test.history = SimpleNamespace(splices_slipped_by=np.array([0.1]))
     test.strain_standard_uncertainty = np.array([0.004])
     test.holds = (
         SimpleNamespace(

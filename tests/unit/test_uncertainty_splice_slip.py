@@ -37,7 +37,7 @@ def slipped_test(before=0.0):
     )  # fmt: skip
     return SimpleNamespace(
         cycles=SimpleNamespace(n_cycles=10), slips=slips, specimens=(SimpleNamespace(name="new"),),
-        history=SimpleNamespace(splices_let_out=np.array([before])),
+        history=SimpleNamespace(splices_slipped_by=np.array([before])),
     )  # fmt: skip
 
 
@@ -56,7 +56,7 @@ def test_the_length_that_a_step_of_tension_says_is_the_least_and_its_double_the_
 
 
 def test_slips_by_marks_are_an_error_of_their_own_and_an_extensometer_has_neither():
-    errors = InstrumentErrors("new", splice_slip=0.01, splices_let_out=0.02, test="T-1")
+    errors = InstrumentErrors("new", splice_slip=0.01, splices_slipped_by=0.02, test="T-1")
     found = rows_of(errors)
     assert found[Component("splice_slip", "new, marks of T-1")] == pytest.approx(0.004)
     assert found[BY_STEPS] == pytest.approx(0.008)
@@ -82,10 +82,10 @@ def test_only_cycles_after_a_slip_have_it():
 
 def test_a_mean_over_cycles_has_the_share_of_those_after_the_slip():
     test = slipped_test()
-    errors = InstrumentErrors("new", splices_let_out=1.0)
-    assert _slipped(test, 0, errors, slice(0, 4)).splices_let_out == 0.0
-    assert _slipped(test, 0, errors, slice(3, 5)).splices_let_out == pytest.approx(0.2)
-    assert _slipped(test, 0, errors, np.array([0, 9])).splices_let_out == pytest.approx(0.5)
+    errors = InstrumentErrors("new", splices_slipped_by=1.0)
+    assert _slipped(test, 0, errors, slice(0, 4)).splices_slipped_by == 0.0
+    assert _slipped(test, 0, errors, slice(3, 5)).splices_slipped_by == pytest.approx(0.2)
+    assert _slipped(test, 0, errors, np.array([0, 9])).splices_slipped_by == pytest.approx(0.5)
 
 
 FREE, SPLICES = 2.5, 1.2  # m

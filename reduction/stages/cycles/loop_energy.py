@@ -43,7 +43,7 @@ from reduction.record.settings import Waveform
 from reduction.stages.cycles.cycle_product import Cycles
 from reduction.stages.cycles.fundamental import sums_over_cycles
 from reduction.stages.cycles.reading_noise import reading_noise, rounding_of_branches
-from reduction.stages.cycles.turns import energy_beside_polygon
+from reduction.stages.cycles.turns import energy_missed_by_polygon
 
 _EIGHTH_ORDER = (4 / 5, -1 / 5, 4 / 105, -1 / 280)
 
@@ -244,7 +244,7 @@ def work_at_equal_phase(
         return work, mean / (time[branch_last[:, 1]] - time[branch_first[:, 0]]), used
 
 
-def energy_of_cycles_beside_polygon(
+def energy_of_cycles_missed_by_polygon(
     force: Floats, stretch: Floats, moved: Floats, begin: Integers, end: Integers
 ) -> tuple[Floats, Floats]:
     """Area missing from the polygon of the readings of each loop, and its possible error."""
@@ -257,7 +257,7 @@ def energy_of_cycles_beside_polygon(
 
     at_corners, between = (
         of_cycles(one)
-        for one in energy_beside_polygon(force, stretch, moved, noise=reading_noise(moved))
+        for one in energy_missed_by_polygon(force, stretch, moved, noise=reading_noise(moved))
     )
     # half of it, as for the levels: no machine turns at once
     return at_corners / 2 + between, np.abs(at_corners / 2) + _OF_A_KINK * np.abs(between)

@@ -49,7 +49,7 @@ from reduction.stages.cycles.fundamental import (
 )
 from reduction.stages.cycles.loop_energy import (
     energy_by_chance,
-    energy_of_cycles_beside_polygon,
+    energy_of_cycles_missed_by_polygon,
     energy_of_rounding,
     loop_energy,
     without_drift,
@@ -1038,7 +1038,7 @@ def _measure(
         lacking = np.zeros(first.size)
         may_lack = np.full(first.size, energy_by_chance(force, stretch, first, last))
     else:
-        lacking, may_lack = energy_of_cycles_beside_polygon(force, stretch, moved, first, last)
+        lacking, may_lack = energy_of_cycles_missed_by_polygon(force, stretch, moved, first, last)
     energy, norm = loop_energy(force, stretch, first, last, waveform=waveform)
     measured = np.array(
         [

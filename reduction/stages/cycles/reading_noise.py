@@ -87,7 +87,7 @@ def within_scatter(noise: float, top: Floats) -> float:
 _LEAST_OF_GREATEST = 0.2  # of the noise: half the scatter of the greatest of hundreds of readings
 
 
-def tone_beside_wave(time: Floats, values: Floats, cycles: Cycles) -> tuple[float, float]:
+def vibration_beside_wave(time: Floats, values: Floats, cycles: Cycles) -> tuple[float, float]:
     r"""Frequency and amplitude of an oscillation that is no part of the wave; zeros without one.
 
     Parameters
@@ -122,10 +122,10 @@ def tone_beside_wave(time: Floats, values: Floats, cycles: Cycles) -> tuple[floa
     >>> wave = 100 * np.abs((time / 2.5) % 2 - 1) + np.random.default_rng(1).normal(0, 0.1, 10_000)
     >>> stands = find_standstills(time, wave, wave[None], settings=PhaseSettings())
     >>> cycles = find_cycles(time, wave, wave[None], stands, settings=CycleSettings())
-    >>> print(*(round(one, 1) for one in tone_beside_wave(time, wave, cycles)))
+    >>> print(*(round(one, 1) for one in vibration_beside_wave(time, wave, cycles)))
     0 0
     >>> hum = 2 * np.sin(2 * np.pi * 50.01 * time)
-    >>> print(*(round(one, 1) for one in tone_beside_wave(time, wave + hum, cycles)))
+    >>> print(*(round(one, 1) for one in vibration_beside_wave(time, wave + hum, cycles)))
     50.0 2.0
     """
     per_cycle = float(np.median(cycles.last - cycles.first))

@@ -471,7 +471,7 @@ _RESTS = 0.05  # of the greatest step nearby
 _ABOVE = 1.1  # of the greatest height at which lines cross above the readings at a turn of ramps
 
 
-def energy_beside_polygon(
+def energy_missed_by_polygon(
     tension: Floats, strain: Floats, moved: Floats, *, noise: float
 ) -> tuple[Floats, Floats]:
     r"""Area between the polygon of the readings and a loop, at machine corners and elsewhere.
@@ -511,14 +511,14 @@ def energy_beside_polygon(
 
     >>> strain = 0.1 - np.abs(np.arange(11) - 5.5) * 0.01
     >>> force = 1000 * strain - np.where(np.arange(11) <= 5, 0, 40)
-    >>> at_corners, between = energy_beside_polygon(force, strain, strain, noise=0)
+    >>> at_corners, between = energy_missed_by_polygon(force, strain, strain, noise=0)
     >>> print(at_corners.round(4)[4:7], abs(between).max().round(9))
     [0.  0.2 0. ] 0.0
 
     A circle of 12 readings, whose polygon is 4.5 % too small:
 
     >>> turn = 2 * np.pi * np.arange(13) / 12
-    >>> _, between = energy_beside_polygon(np.sin(turn), np.cos(turn), np.cos(turn), noise=0)
+    >>> _, between = energy_missed_by_polygon(np.sin(turn), np.cos(turn), np.cos(turn), noise=0)
     >>> print((between[1:].sum() * 12 / 11 / np.pi).round(3))
     -0.043
     """

@@ -7,7 +7,11 @@ import pytest
 
 from reduction.experiments.designs import box_behnken
 from reduction.experiments.response_surfaces import fit_surfaces
-from reduction.experiments.surface_warnings import drift_over_order, drifting_responses, stray_runs
+from reduction.experiments.surface_warnings import (
+    drift_over_order,
+    drifting_responses,
+    outlying_runs,
+)
 
 CODED = box_behnken(3).coded
 RNG = np.random.default_rng(13)
@@ -32,7 +36,7 @@ def stiffness(scatter):
 def test_a_centre_run_with_a_wrong_load_is_named_with_what_it_is_off(transform):
     runs = stiffness(0.003)
     runs[13] *= 0.8
-    (stray,) = stray_runs(fitted(runs, transform))
+    (stray,) = outlying_runs(fitted(runs, transform))
     said = r"run R14 \(-(20|21) %\) is off the surface of the other runs in K \(p "
     assert re.match(said, str(stray))
     assert stray.severity == "warning" and "which of" not in str(stray)
@@ -42,7 +46,7 @@ def test_of_two_runs_opposite_through_the_centre_the_residuals_do_not_tell_which
     """R5 is (-1, 0, -1) and R8 is (1, 0, 1); the others know of their difference alone."""
     runs = stiffness(0.0005)
     runs[4] *= 1.2
-    (stray,) = stray_runs(fitted(runs))
+    (stray,) = outlying_runs(fitted(runs))
     assert str(stray).startswith("run R5 (+20 %) or R8 (-17 %) is off the surface of the other")
     assert str(stray).endswith("the residuals do not show which of the 2 is wrong")
 
@@ -50,7 +54,7 @@ def test_of_two_runs_opposite_through_the_centre_the_residuals_do_not_tell_which
 def test_sound_runs_are_not_named():
     """Of a law that is no quadratic, with scatter of 3 % and with next to none."""
     for scatter in [0.03] * 40 + [1e-4] * 40:
-        assert stray_runs(fitted(stiffness(scatter))) == ()
+        assert outlying_runs(fitted(stiffness(scatter))) == ()
 
 
 def test_drift_is_given_as_a_share_of_the_response():

@@ -19,7 +19,7 @@ _OUT_OF_ORDER = 0.02
 
 
 @dataclass(frozen=True)
-class _RowAccount:
+class _RowCounts:
     """Account of every row of a record."""
 
     n_read: int
@@ -27,7 +27,7 @@ class _RowAccount:
     n_flagged: dict[str, dict[str, int]]
 
 
-def account_rows(record: Record) -> _RowAccount:
+def count_rows(record: Record) -> _RowCounts:
     """Number of rows read, kept, and flagged by mask and channel."""
     channels = {"crosshead_position": record.crosshead_position_quality_flag}
     for name, flags in zip(record.specimens, record.quality_flag, strict=True):
@@ -45,7 +45,7 @@ def account_rows(record: Record) -> _RowAccount:
             if mask.name is not None
         }
         n_flagged[channel] = {name: count for name, count in of_mask.items() if count}
-    return _RowAccount(record.n_rows_read, record.n_samples, n_flagged)
+    return _RowCounts(record.n_rows_read, record.n_samples, n_flagged)
 
 
 ROWS_FLAGGED = ("rows-resampled", "rows-set-aside", "rows-flagged")
@@ -54,7 +54,7 @@ ROWS_FLAGGED = ("rows-resampled", "rows-set-aside", "rows-flagged")
 
 def notes_on_rows(record: Record) -> list[Note]:
     """Count flagged rows by mask and channel; empty if no row is flagged."""
-    account = account_rows(record)
+    account = count_rows(record)
     masks = set().union(*account.n_flagged.values())
     if not masks:
         return []
