@@ -76,6 +76,7 @@ def _strain_document(campaign: Campaign, model: StrainModel) -> dict[str, Any]:
         lengths = (tape.near_toe, tape.far_toe, tape.far_thimble)
         document["tape"] = {
             "standard_uncertainty": tape.reading_uncertainty,
+            "splice_creep": tape.splice_creep,
             "readings": [
                 list(row) for row in zip(tape.test, tape.hold, *map(_plain, lengths), strict=True)
             ],

@@ -776,6 +776,11 @@ def _load(path: Path, *, allow_remote: bool, text: str | None) -> Campaign:
             name: replace(one, reading_uncertainty=file.uncertainty.tape, is_reading_stated=True)
             for name, one in marks.items()
         }
+    if file.uncertainty.splice_creep is not None:
+        marks = {
+            name: replace(one, splice_creep=file.uncertainty.splice_creep, is_creep_stated=True)
+            for name, one in marks.items()
+        }
     for specimen, rows in marks.items():
         unknown = sorted(set(rows.test) - set(plans))
         if unknown:

@@ -250,6 +250,8 @@ class UncertaintySection(_UncertaintySection):
     """Of frame, load cell and grips: ``"2e-8 m/N"``."""
     splice_friction: _Relative | None = None
     """Excess of splices when unloading over loading, relative to extension: ``"2 %"``."""
+    splice_creep: _Relative | None = None
+    """Creep of splices from a cycle to a mark, relative to extension: ``"2 %"``."""
 
 
 def stated_errors(

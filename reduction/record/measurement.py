@@ -225,6 +225,11 @@ class SpliceMarks:
         Standard uncertainty of one tape reading. [m]
     is_reading_stated : bool
         Whether the campaign states it; otherwise it is that of the last digit.
+    splice_creep : float
+        Creep of the splices from the time of a cycle to that of a mark, relative to their
+        extension; a standard uncertainty. The default is a judgement: no measurement is known. [1]
+    is_creep_stated : bool
+        Whether the campaign states it.
     place : tuple of MarkPlace, length n_marks or 0
         Source of each row; empty if the rows come from no file.
     """
@@ -237,6 +242,8 @@ class SpliceMarks:
     far_thimble: Floats
     reading_uncertainty: float = 0.0
     is_reading_stated: bool = False
+    splice_creep: float = 0.02
+    is_creep_stated: bool = False
     place: tuple[MarkPlace, ...] = ()
 
     def __post_init__(self) -> None:

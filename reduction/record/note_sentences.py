@@ -525,7 +525,8 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "note",
         "the marks were read in holds: if the splices creep by 10 % of their extension from the"
         " time of a cycle to that of a mark, strain amplitudes are {effect:.1%} too small; the"
-        " intervals include 2 %",
+        " intervals include 2 %. If splices of this make creep more, state splice_creep in"
+        " [uncertainty]",
     ),
     "splice-friction-unknown": ("note", _unknown_friction),
     "splice-friction-matters": ("warning", _unknown_friction),

@@ -56,6 +56,7 @@ CELLS = replace(MODEL, mark_load_cell=("A", "B"))
     "change",
     [
         {"tape": replace(TAPE, reading_uncertainty=0.002)},
+        {"tape": replace(TAPE, splice_creep=0.08)},
         {"tape": replace(TAPE, near_toe=np.array([0.6, 0.71]))},
         {"model": CELLS},
         {"model": replace(MODEL, by_marks=replace(MODEL, method="mixed"))},
@@ -72,6 +73,7 @@ def test_settings_have_every_reading_as_it_was_made_and_no_digit_that_was_comput
     strain = found["strain"]["new"]
     assert strain["tape"] == {
         "standard_uncertainty": 0.001,
+        "splice_creep": 0.02,
         "readings": [["P", "slack", 0.6, 3.2, 3.7], ["P", "min", 0.7, 5.2, 5.9]],
     }
     assert strain["marks"] == [["P", "slack", 3.7, None, "A"], ["P", "min", 5.9, 380.0, "A"]]

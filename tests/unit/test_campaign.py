@@ -472,6 +472,8 @@ def test_marks_of_all_tests_are_pooled_by_specimen(folder):
     assert marks.hold == ("slack", "max")
     assert marks.free_length == pytest.approx([8 * 0.3048, 17.5 * 0.3048])
     assert marks.splice_length == pytest.approx([4 * 0.3048, 5.5 * 0.3048])
+    stated = "[uncertainty]\nsplice_creep = '8 %'\n" + BASE + "strain = { marks = 'marks.csv' }\n"
+    assert load(folder, stated + TEST).marks["a"].splice_creep == 0.08
 
 
 @pytest.mark.parametrize(

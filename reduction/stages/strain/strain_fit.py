@@ -68,10 +68,6 @@ _USUAL_TAPE = 0.005 * 0.3048
 
 _USUAL_READINGS = 4.0  # weight of this value, beside those of slack rows
 
-# creep of the splices between the time of a cycle and that of a mark, as a fraction of their
-# extension.  A judgement, as large as that of friction: no measurement of splices is known.
-_CREEP = 0.02
-
 _CREEP_TOLD = 0.1  # of their extension: a note states the effect of this creep
 
 _CREEP_NOTICE = 0.005  # of a strain amplitude: smaller effects are not stated
@@ -344,7 +340,7 @@ def _fit_mixed(readings: PooledMarks, average: SpliceAverage | None) -> _MixedFi
     covariance[2, 2] += of_marks
     if not average.slip:  # strain refers to the mean slack length; a test may lie anywhere about it
         of_slip = _growth_of_slack(marks) / (_ANY * splice)
-    between += _of_creep(np.array(values), _mean_splice_strain(given, own))
+    between += _of_creep(np.array(values), _mean_splice_strain(given, own), marks.splice_creep)
     model = StrainModel(
         marks.specimen,
         "mixed",
@@ -364,17 +360,17 @@ def _mean_splice_strain(given: SpliceReadings, own: Sequence[int]) -> float:
     return float(given.splice[of_test if of_test.any() else loaded].mean())
 
 
-def _of_creep(values: Floats, mean: float) -> Floats:
+def _of_creep(values: Floats, mean: float, share: float) -> Floats:
     """Covariance of the coefficients by creep of the splices before a mark is read. [SI].
 
-    In a cycle the splices extend from their mean less than between marks, by a fixed fraction:
+    In a cycle the splices extend from their mean less than between marks, by a fixed share:
     their strain about the mean is that much smaller, whatever drives it.
     """
     change = np.zeros(values.size)
     # offset, powers of the strain, compliance and limit
     change[[2, 3, 4, 5, 6, 8]] = -values[[2, 3, 4, 5, 6, 8]]
     change[2] += mean
-    return _CREEP**2 * np.outer(change, change)
+    return share**2 * np.outer(change, change)
 
 
 def _law_in_si(values: Floats, reference: float) -> tuple[Floats, Floats]:
@@ -613,6 +609,8 @@ def _average_at_marks(
 
 def _on_creep(model: StrainModel, marks: SpliceMarks, rows: Integers) -> tuple[Note, ...]:
     """Effect of creep of the splices, which no mark shows, on a strain amplitude."""
+    if marks.is_creep_stated:
+        return ()
     free = marks.free_length[rows]
     if np.ptp(free) < _CREEP_NOTICE * model.coefficients["relaxed_free_length"]:
         return ()
