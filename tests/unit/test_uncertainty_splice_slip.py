@@ -1,5 +1,6 @@
 """What a slip of the splices adds to the interval of strain, and to that of which cycles."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -8,6 +9,7 @@ import pytest
 from reduction.record.contributions import Component, Contributions, InstrumentErrors
 from reduction.record.measurement import Specimen, SpliceMarks
 from reduction.stages.moduli.modulus_product import Slips
+from reduction.stages.strain.mark_readings import slack_growth, tape_error, tape_freedom
 from reduction.stages.strain.strain_fit import PooledMarks, average_over_laws, fit_strain_model
 from reduction.stages.strain.strain_model import StrainModel
 from reduction.uncertainty.error_field import error_field
@@ -135,6 +137,39 @@ def test_a_slack_length_that_grows_is_any_length_from_first_to_last():
     model = model_of("T-2", (0.0, 0.004, 0.004, 0.004), is_slack_alone=True)
     assert any(one.code == "slack-length-grows" for one in model.notes)
     assert model.splice_slip == pytest.approx(0.004 / 12**0.5)
+
+
+def seated(step):
+    """Slack rows of four tests, the first shorter by a step; no error of the tape is stated."""
+    marks, tension = slipping_marks((0.0, step, step, step), is_slack_alone=True)
+    return replace(marks, reading_uncertainty=1.24e-3, is_reading_stated=False), tension
+
+
+@pytest.mark.parametrize(("step", "severity"), [(0.04, "note"), (0.09, "warning")])
+def test_what_a_tether_keeps_of_its_first_stretch_is_no_scatter_of_the_tape(step, severity):
+    """It keeps 1.1 % or 2.4 % of its slack length; the rows after that agree exactly."""
+    marks, tension = seated(step)
+    rows = PooledMarks(marks, tension, np.zeros(tension.size, dtype=bool))
+    of_reading = np.array([[2.0, -2.0], [-2.0, 3.0]])
+    np.testing.assert_allclose(rows.relaxed().covariance, 1.24e-3**2 * of_reading / 4)
+    np.testing.assert_allclose(rows.relaxed().values, [FREE, SPLICES + 0.75 * step])
+    # nine readings after the step, about three means
+    assert tape_freedom(marks, slack_growth(marks).course) == 4 + 9 - 3
+    assert tape_error(marks, slack_growth(marks).course) == 1.24e-3
+    model = fit_strain_model(Specimen("new"), test_id="T-2", marks=marks, mark_tension=tension)
+    (told,) = [one for one in model.notes if one.code.startswith("slack-")]
+    assert (told.severity, told.numbers["growth"]) == (severity, pytest.approx(step))
+    assert model.splice_slip == pytest.approx(step / 12**0.5)
+
+
+def test_one_reading_of_the_first_slack_row_that_is_off_is_no_growth():
+    marks, tension = seated(0.0)
+    far_toe = marks.far_toe.copy()
+    far_toe[0] -= 0.04
+    marks = replace(marks, far_toe=far_toe)
+    model = fit_strain_model(Specimen("new"), test_id="T-2", marks=marks, mark_tension=tension)
+    (told,) = [one for one in model.notes if one.code.startswith("slack-")]
+    assert (told.code, told.numbers["test"]) == ("slack-rows-differ", "T-1")
 
 
 def test_marks_without_a_slip_add_nothing():

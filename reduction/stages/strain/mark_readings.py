@@ -18,7 +18,7 @@ References
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import sqrt
 from typing import Literal
 
@@ -134,17 +134,21 @@ class RelaxedLengths:
 
 
 def relaxed_lengths(
-    free_length: ArrayLike, splice_length: ArrayLike, *, reading_uncertainty: float
+    free_length: ArrayLike,
+    splice_length: ArrayLike,
+    *,
+    reading_uncertainty: float,
+    growth: ArrayLike | None = None,
 ) -> RelaxedLengths:
-    """Mean free and splice length of the slack rows.
+    """Mean free and splice length of the slack rows; `growth` as in `SlackGrowth.course`.
 
     Notes
     -----
     The mean over tests is used, not each test's own row: a reading is good to 0.01 ft
     ([3]_, Table 3), which is 0.12 % of the free length, and that would enter every
     strain and modulus of the test.  Rows that scatter more than the tape explains widen both
-    lengths (`reduction.stages.strain.mark_readings.row_scatter`).  Causes are a permanent set from
-    test to test, and a tape that is read less precisely than its last digit.
+    lengths (`reduction.stages.strain.mark_readings.row_scatter`).  A permanent set from test to
+    test is no scatter: where the rows show one, they are judged about it.
 
     Examples
     --------
@@ -164,11 +168,101 @@ def relaxed_lengths(
     n_slack = rows.shape[1]
     mean = rows.mean(axis=1)
     # made uncorrelated: one tape measured both lengths, and one scatter is judged
-    apart = np.linalg.solve(np.linalg.cholesky(_OF_READINGS), rows - mean[:, None])
-    scatter = row_scatter(
-        reading_uncertainty**2, apart.ravel(), np.kron(np.eye(2), np.ones((1, n_slack)))
-    )
+    courses = _courses(n_slack, growth)
+    apart = np.linalg.solve(np.linalg.cholesky(_OF_READINGS), _about(courses, rows))
+    scatter = row_scatter(reading_uncertainty**2, apart.ravel(), np.kron(np.eye(2), courses))
     return RelaxedLengths(mean, scatter.variance * _OF_READINGS / n_slack, scatter.note)
+
+
+def _courses(n_rows: int, growth: ArrayLike | None) -> Floats:
+    """What the lengths of slack rows may follow: a constant and, if there is one, a growth."""
+    course = np.array([] if growth is None else growth, dtype=np.float64)
+    return np.vstack([np.ones(n_rows), *([course - course.mean()] if course.size else [])])
+
+
+def _about(courses: Floats, rows: Floats) -> Floats:
+    """Residuals of rows about the courses, which are orthogonal."""
+    left = rows - rows.mean(axis=1, keepdims=True)
+    for course in courses[1:]:
+        left = left - np.outer(left @ course / (course @ course), course)
+    return np.asarray(left)
+
+
+# a reading of a stretched or slack tether, where the error of the tape is not stated: five
+# thousandths of a foot, with the weight of this many readings beside those of slack rows
+_USUAL_TAPE = 0.005 * 0.3048
+_USUAL_READINGS = 4.0
+
+_STEP = 5.0  # standard uncertainties: of a first row that is shorter than those that follow
+
+_TREND_CHANCE = 0.01
+
+# fewest slack rows that can show a trend; or a step, if their scatter must tell the error
+TREND_ROWS = 4
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class SlackGrowth:
+    """Growth of the slack length over the tests: permanent set, or a splice let out.
+
+    Parameters
+    ----------
+    length : float
+        From the first row to the last; 0 where the rows show none. [m]
+    course : ndarray, shape (n_slack,) or (0,)
+        A step behind the first row, or a trend. [1]
+    """
+
+    length: float = 0.0
+    course: Floats = field(default_factory=lambda: np.empty(0))
+
+
+def slack_growth(marks: SpliceMarks) -> SlackGrowth:
+    """Growth that the slack rows show.
+
+    Needs a trend over the rows, since single readings scatter by more than their last digit, or a
+    step behind the first row, far beyond the error of the tape.  What a specimen keeps of its first
+    stretch makes such a step.
+    """
+    length = marks.far_thimble[marks.is_slack]
+    if length.size < (2 if marks.is_reading_stated else TREND_ROWS):
+        return SlackGrowth()
+    course = np.append(0.0, np.ones(length.size - 1))
+    step, least = float(length[1:].mean() - length[0]), float(length[1:].min() - length[0])
+    error = tape_error(marks, course) * sqrt(1 + 1 / (length.size - 1))
+    if step > _STEP * error and (marks.is_reading_stated or least > step / 2):
+        return SlackGrowth(step, course)
+    if length.size < TREND_ROWS or np.ptp(length) == 0:
+        return SlackGrowth()
+    row = np.arange(length.size, dtype=np.float64)
+    slope, correlation = np.polyfit(row, length, 1)[0], float(np.corrcoef(row, length)[0, 1])
+    # probability of a correlation this large in rows without a trend (Student's t, both sides)
+    chance = scipy.special.betainc(length.size / 2 - 1, 0.5, max(0.0, 1 - correlation**2))
+    if slope <= 0 or chance > _TREND_CHANCE:
+        return SlackGrowth()
+    return SlackGrowth(float(slope * (length.size - 1)), row)
+
+
+def tape_error(marks: SpliceMarks, growth: ArrayLike | None = None) -> float:
+    """Standard uncertainty of one reading: stated, or the usual one pooled with slack rows.
+
+    Slack rows of one specimen are readings of the same lengths, test after test, but for a growth.
+    """
+    if marks.is_reading_stated or not marks.is_slack.any():
+        return marks.reading_uncertainty
+    slack = np.stack([marks.near_toe, marks.far_toe, marks.far_thimble])[:, marks.is_slack]
+    scatter = float((_about(_courses(slack.shape[1], growth), slack) ** 2).sum())
+    found = (_USUAL_READINGS * _USUAL_TAPE**2 + scatter) / tape_freedom(marks, growth)
+    return max(marks.reading_uncertainty, float(np.sqrt(found)))
+
+
+def tape_freedom(marks: SpliceMarks, growth: ArrayLike | None = None) -> float:
+    """Number of readings that the error of the tape rests on; infinite where it is stated."""
+    if marks.is_reading_stated:
+        return float("inf")
+    n_slack = int(marks.is_slack.sum())
+    return _USUAL_READINGS + 3.0 * max(n_slack - len(_courses(n_slack, growth)), 0)
 
 
 MarkReading = Literal["arrival", "start", "end"]
@@ -370,10 +464,6 @@ def measure_mark_tension(
             same = distance <= nearest + standstills.position_tolerance
             measured.append(during[int(np.flatnonzero(same)[0])])
     return np.array(measured)
-
-
-# fewest slack rows that can show a trend, and the probability that level ones show it
-TREND_ROWS = 4
 
 
 def root_mean_square(residual: Floats) -> float:

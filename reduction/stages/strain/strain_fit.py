@@ -14,7 +14,6 @@ from dataclasses import dataclass, field, replace
 from math import sqrt
 
 import numpy as np
-import scipy
 from numpy.typing import ArrayLike
 
 from reduction.record.errors import DataError
@@ -28,11 +27,13 @@ from reduction.record.measurement import (
 from reduction.record.notes import Note, note
 from reduction.record.settings import StrainMethod, StrainSettings
 from reduction.stages.strain.mark_readings import (
-    TREND_ROWS,
     RelaxedLengths,
     check_marks,
     relaxed_lengths,
     root_mean_square,
+    slack_growth,
+    tape_error,
+    tape_freedom,
 )
 from reduction.stages.strain.splice_calibration import (
     EXPONENT_UNCERTAINTY,
@@ -61,12 +62,6 @@ from reduction.stages.strain.strain_model import (
 )
 from reduction.stages.strain.tape_and_crosshead import TAPE_UNCERTAINTY
 from reduction.stages.strain.zero_strain import ZeroStrain
-
-# five thousandths of a foot: scatter of a reading of a stretched tether, where the error of the
-# tape is not stated
-_USUAL_TAPE = 0.005 * 0.3048
-
-_USUAL_READINGS = 4.0  # weight of this value, beside those of slack rows
 
 _CREEP_TOLD = 0.1  # of their extension: a note states the effect of this creep
 
@@ -135,6 +130,7 @@ class PooledMarks:
             self.marks.free_length[slack],
             self.marks.splice_length[slack],
             reading_uncertainty=self.marks.reading_uncertainty,
+            growth=slack_growth(self.marks).course,
         )
 
 
@@ -287,7 +283,7 @@ def _splice_readings(readings: PooledMarks, relaxed: RelaxedLengths) -> SpliceRe
         relaxed=relaxed.covariance / np.outer(lengths, lengths),
         row=np.flatnonzero(known),
         tension_uncertainty=_tension_uncertainty(readings)[known],
-        tape_freedom=_tape_freedom(marks),
+        tape_freedom=tape_freedom(marks, slack_growth(marks).course),
     )
 
 
@@ -305,7 +301,8 @@ def _tension_uncertainty(readings: PooledMarks) -> Floats:
 def average_over_laws(readings: PooledMarks) -> SpliceAverage:
     """Average over the laws of the splices that the marks do not reject."""
     marks = readings.marks
-    held = replace(readings, marks=replace(marks, reading_uncertainty=_tape_error(marks)))
+    reading = tape_error(marks, slack_growth(marks).course)
+    held = replace(readings, marks=replace(marks, reading_uncertainty=reading))
     given = _splice_readings(held, readings.relaxed())
     names = [f"the mark of test {marks.test[row]} at {marks.hold[row]}" for row in given.row]
     return fit_splice_laws(given, specimen=marks.specimen, names=names)
@@ -339,7 +336,7 @@ def _fit_mixed(readings: PooledMarks, average: SpliceAverage | None) -> _MixedFi
     between = to_si @ average.between @ to_si.T
     covariance[2, 2] += of_marks
     if not average.slip:  # strain refers to the mean slack length; a test may lie anywhere about it
-        of_slip = _growth_of_slack(marks) / (_ANY * splice)
+        of_slip = slack_growth(marks).length / (_ANY * splice)
     between += _of_creep(np.array(values), _mean_splice_strain(given, own), marks.splice_creep)
     model = StrainModel(
         marks.specimen,
@@ -414,26 +411,6 @@ def _own_offset(average: SpliceAverage, place: int | None) -> tuple[float, float
         spread = abs(step) * sqrt(5.0) / _ANY
     variance = float(average.test_variance[place])
     return float(average.test_offset[place]) + step / 2, variance, spread
-
-
-def _tape_error(marks: SpliceMarks) -> float:
-    """Standard uncertainty of one reading: stated, or the usual one pooled with slack rows.
-
-    Slack rows of one specimen are readings of the same lengths, test after test.
-    """
-    if marks.is_reading_stated or not marks.is_slack.any():
-        return marks.reading_uncertainty
-    slack = np.stack([marks.near_toe, marks.far_toe, marks.far_thimble])[:, marks.is_slack]
-    scatter = float(((slack - slack.mean(axis=1, keepdims=True)) ** 2).sum())
-    found = (_USUAL_READINGS * _USUAL_TAPE**2 + scatter) / _tape_freedom(marks)
-    return max(marks.reading_uncertainty, float(np.sqrt(found)))
-
-
-def _tape_freedom(marks: SpliceMarks) -> float:
-    """Number of readings that the error of the tape rests on; infinite where it is stated."""
-    if marks.is_reading_stated:
-        return float("inf")
-    return _USUAL_READINGS + 3.0 * max(int(marks.is_slack.sum()) - 1, 0)
 
 
 _NO_FIT = SpliceCalibration(np.empty(0), np.empty((0, 0)), np.empty((0, 2)), np.empty(0))
@@ -640,7 +617,7 @@ def _friction(model: StrainModel, readings: PooledMarks) -> tuple[float, float] 
         # the law has the tensions at the end of the holds on the way up
         relaxed = float(np.nanmean(readings.tension[up] / readings.tension_on_arrival[up]))
         tension.append(readings.tension_on_arrival[rows] * relaxed)
-    reading, shares, errors = sqrt(3) * _tape_error(marks), [], []
+    reading, shares, errors = sqrt(3) * tape_error(marks, slack_growth(marks).course), [], []
     for one in tension:
         by_law = position_by_model(model, strain=strain, tension=one) - marks.free_length[rows]
         extension = by_law - known["relaxed_splice_length"]
@@ -660,7 +637,9 @@ _SCATTER_NOTICE = 2.0
 
 _OUTLIER_NOTICE = 5.0
 
-_TREND_CHANCE = 0.01
+# growth of the slack length that rubber and splices usually keep of their first stretch, which is
+# in the interval of strain
+_SET = 0.02
 
 
 def _on_constant_fraction(model: StrainModel, is_stretched: Bools) -> tuple[Note, ...]:
@@ -718,32 +697,13 @@ def _on_scatter(model: StrainModel, is_stretched: Bools, expected: float) -> tup
     return tuple(notes)
 
 
-def _growth_of_slack(marks: SpliceMarks) -> float:
-    """Growth of the slack length over the tests: permanent set, or a splice let out. [m].
-
-    Zero where there is none.  Needs a trend over the rows, since single readings scatter by more
-    than their last digit, or a step after the first row, far beyond the stated error of the tape.
-    """
-    length = marks.far_thimble[marks.is_slack]
-    if marks.is_reading_stated and length.size > 1:
-        step = float(length[1:].mean() - length[0])
-        if step > _OUTLIER_NOTICE * marks.reading_uncertainty * sqrt(1 + 1 / (length.size - 1)):
-            return step
-    if length.size < TREND_ROWS or np.ptp(length) == 0:
-        return 0.0
-    row = np.arange(length.size)
-    slope, correlation = line_slope(row, length), float(np.corrcoef(row, length)[0, 1])
-    # probability of a correlation this large in rows without a trend (Student's t, both sides)
-    chance = scipy.special.betainc(length.size / 2 - 1, 0.5, max(0.0, 1 - correlation**2))
-    return 0.0 if slope <= 0 or chance > _TREND_CHANCE else float(slope * (length.size - 1))
-
-
 def _on_slack(marks: SpliceMarks) -> tuple[Note, ...]:
     """Say where the slack length grows, or a slack row is misread: strain refers to their mean."""
-    growth = _growth_of_slack(marks)
+    growth = slack_growth(marks).length
     if growth:
         effect = growth / float(marks.far_thimble[marks.is_slack][0])
-        return (note("slack-length-grows", marks.specimen, growth=growth, effect=effect),)
+        code = "slack-length-grows" if effect < _SET else "slack-length-grows-far"
+        return (note(code, marks.specimen, growth=growth, effect=effect),)
     rows = np.flatnonzero(marks.is_slack)
     if rows.size < 2:
         return ()
