@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from reduction.record.errors import DataError
-from reduction.stages.strain.splice_laws import LAWS, SpliceReadings, fit_splice_laws
+from reduction.stages.strain.splice_laws import LAWS, SpliceReadings, _other_load, fit_splice_laws
 
 FREE = np.array([0.0, 0.5, 0.8, 1.0, 1.3, 1.6, 1.9, 2.2, 2.5])
 # a rubber that softens, then stiffens
@@ -351,3 +351,21 @@ def test_marks_on_the_way_down_alone_are_refused_with_what_they_lack():
     )
     with pytest.raises(DataError, match=r"found no stretched mark .* approached by loading"):
         fit_splice_laws(given)
+
+
+@pytest.mark.parametrize(("factor", "is_told"), [(4.4482, True), (0.4536, True), (1.3, False)])
+def test_a_load_in_another_unit_than_that_of_the_other_tests_is_told_by_the_marks(factor, is_told):
+    """Four tests at strains that overlap, of a rubber that softens by 4 % from test to test."""
+    free = np.array([
+        0, 0.75, 1.0, 1.25, 0, 0.5, 1.0, 1.5, 0, 1.25, 1.5, 1.75, 0, 1.0, 1.5, 2.0,
+    ])  # fmt: skip
+    test = np.arange(16) // 4
+    tension = np.interp(free, FREE, TENSION) * (1 - 0.04 * test)
+    tension[test == 1] *= factor
+    marks = SpliceReadings(free, 0.2 * free, tension, test, free == 0, 0.45, TAPE, np.zeros((2, 2)))
+    found = _other_load(marks)
+    if is_told:
+        row, ratio = found
+        assert test[row] == 1
+        assert ratio == pytest.approx(factor, rel=0.08)
+    assert (found is not None) is is_told

@@ -34,6 +34,7 @@ import scipy
 
 from reduction.record.errors import DataError
 from reduction.record.measurement import Bools, Floats, read_only_arrays
+from reduction.stages.plausible_bands import words_of_ratio
 
 LAWS: dict[str, tuple[str, ...]] = {
     "tension-driven": ("tension",),
@@ -814,6 +815,43 @@ def _misread(readings: SpliceReadings, slip: float) -> list[int]:
     return [loaded[at] for at in np.argsort(misfit) if misfit[at] <= least + _AS_LIKELY]
 
 
+# as different are the tensions of two tests of one specimen where a unit or a gain is wrong
+_OTHER_LOAD = 1.7
+
+_ALIKE = 3.0  # times as far from the other tests as those are from one another, in logarithms
+
+
+def _over_others(free: Floats, force: Floats, own: Bools, others: Bools) -> float:
+    """Mean of a force over that of other rows at the same strain; all in logarithms."""
+    inside = own & (free >= free[others].min()) & (free <= free[others].max())
+    if np.count_nonzero(inside) < 2 or np.unique(free[others]).size < 3:  # one may be misread
+        return float("nan")
+    curve = np.polyfit(free[others], force[others], 2)
+    return float(np.median(force[inside] - np.polyval(curve, free[inside])))
+
+
+def _other_load(readings: SpliceReadings) -> tuple[int, float] | None:
+    """First row of the test whose tensions are those of the others times a factor, and the factor.
+
+    The free length has about one curve of tension in all tests, whatever its splices do.
+    """
+    loaded = np.flatnonzero((np.nan_to_num(readings.tension) > 0) & (readings.free > 0))
+    free, force = np.log(readings.free[loaded]), np.log(readings.tension[loaded])
+    of_test, found = readings.test[loaded], []
+    for test in np.unique(of_test):
+        others = of_test != test
+        left = np.unique(of_test[others])
+        if left.size < 2:  # of two tests nothing tells which is wrong
+            continue
+        away = _over_others(free, force, ~others, others)
+        among = [
+            _over_others(free, force, of_test == one, others & (of_test != one)) for one in left
+        ]
+        if abs(away) > max(np.log(_OTHER_LOAD), _ALIKE * np.nanmax(np.abs([*among, 0.0]))):
+            found.append((int(loaded[np.argmin(others)]), float(np.exp(away))))
+    return found[0] if len(found) == 1 else None
+
+
 def _refusal(
     readings: SpliceReadings, judged: _Judged, specimen: str, names: Sequence[str]
 ) -> DataError:
@@ -825,8 +863,16 @@ def _refusal(
     def named(row: int) -> str:
         return names[row] if names else f"row {row + 1} of its marks"
 
-    suspects = _misread(readings, judged.slip)
-    if 0 < len(suspects) <= _MOST_NAMED:
+    odd = _other_load(readings)
+    suspects = [] if odd is not None else _misread(readings, judged.slip)
+    if odd is not None:
+        like = words_of_ratio(odd[1])
+        look = (
+            f"{named(odd[0])} and the others of its test: their tensions are {odd[1]:.3g} times"
+            f" those of the other tests at the same strain{f' (as {like})' * bool(like)}. Check the"
+            " unit, gain and factor of that load"
+        )
+    elif 0 < len(suspects) <= _MOST_NAMED:
         look = f"{' or '.join(map(named, suspects))}: without it a law agrees with the others"
     else:
         worst = int(np.argmax(points))
