@@ -162,6 +162,30 @@ def test_what_a_tether_keeps_of_its_first_stretch_is_no_scatter_of_the_tape(step
     assert model.splice_slip == pytest.approx(step / 12**0.5)
 
 
+def test_a_set_that_grows_from_test_to_test_accuses_no_row():
+    """Readings of a generated tether that keeps 12 mm in four tests; tape good to 1.5 mm."""
+    marks, tension = seated(0.0)
+    slack = np.flatnonzero(marks.is_slack)
+    rows = {
+        "near_toe": [2.19, 2.19, 2.20, 2.20], "far_toe": [10.68, 10.69, 10.70, 10.72],
+        "far_thimble": [12.37, 12.39, 12.39, 12.41],
+    }  # fmt: skip
+    columns = {name: getattr(marks, name).copy() for name in rows}
+    for name, feet in rows.items():
+        columns[name][slack] = np.array(feet) * 0.3048
+    marks = replace(marks, reading_uncertainty=0.001524, is_reading_stated=True, **columns)
+    assert slack_growth(marks).length == pytest.approx(3 * 0.012 * 0.3048)
+    model = fit_strain_model(Specimen("new"), test_id="T-2", marks=marks, mark_tension=tension,
+                             average=average_over_laws(PooledMarks(*seated(0.0), tension < 0)))  # fmt: skip
+    assert [one.code for one in model.notes if "slack" in one.code] == ["slack-length-grows"]
+
+
+@pytest.mark.parametrize("thimble", [(0, 0, 0, 0.04), (0, 0.04, 0, 0), (0.04, 0, 0, 0)])
+def test_a_single_slack_row_that_is_off_is_no_growth(thimble):
+    marks, _ = slipping_marks(thimble, is_slack_alone=True)
+    assert slack_growth(marks).length == 0.0
+
+
 def test_one_reading_of_the_first_slack_row_that_is_off_is_no_growth():
     marks, tension = seated(0.0)
     far_toe = marks.far_toe.copy()

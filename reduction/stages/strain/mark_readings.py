@@ -193,7 +193,9 @@ def _about(courses: Floats, rows: Floats) -> Floats:
 _USUAL_TAPE = 0.005 * 0.3048
 _USUAL_READINGS = 4.0
 
-_STEP = 5.0  # standard uncertainties: of a first row that is shorter than those that follow
+_STEP = 5.0  # standard uncertainties: of a growth
+
+_BESIDE = 0.25  # of a growth: a row further off it is misread, or the growth is another
 
 _TREND_CHANCE = 0.01
 
@@ -221,27 +223,29 @@ class SlackGrowth:
 def slack_growth(marks: SpliceMarks) -> SlackGrowth:
     """Growth that the slack rows show.
 
-    Needs a trend over the rows, since single readings scatter by more than their last digit, or a
-    step behind the first row, far beyond the error of the tape.  What a specimen keeps of its first
-    stretch makes such a step.
+    Needs a step behind the first row, or a trend, far beyond the error of the tape and clear of a
+    single row that is misread; or a trend beyond the scatter of the rows about it.  What a specimen
+    keeps of its first stretch makes such a step.
     """
     length = marks.far_thimble[marks.is_slack]
-    if length.size < (2 if marks.is_reading_stated else TREND_ROWS):
-        return SlackGrowth()
-    course = np.append(0.0, np.ones(length.size - 1))
-    step, least = float(length[1:].mean() - length[0]), float(length[1:].min() - length[0])
-    error = tape_error(marks, course) * sqrt(1 + 1 / (length.size - 1))
-    if step > _STEP * error and (marks.is_reading_stated or least > step / 2):
-        return SlackGrowth(step, course)
-    if length.size < TREND_ROWS or np.ptp(length) == 0:
+    if length.size < (2 if marks.is_reading_stated else TREND_ROWS) or np.ptp(length) == 0:
         return SlackGrowth()
     row = np.arange(length.size, dtype=np.float64)
-    slope, correlation = np.polyfit(row, length, 1)[0], float(np.corrcoef(row, length)[0, 1])
+    found, surest = SlackGrowth(), _STEP
+    for course in (np.minimum(row, 1.0), row):
+        about = course - course.mean()
+        slope = float(length @ about) / float(about @ about)
+        away = np.abs(length - length.mean() - slope * about)
+        grown = SlackGrowth(slope * float(course[-1]), course)
+        sure = slope * float(np.linalg.norm(about)) / tape_error(marks, course)
+        if sure > surest and float(away.max()) < grown.length * _BESIDE:
+            found, surest = grown, sure
+    if found.length or length.size < TREND_ROWS:
+        return found
+    correlation = float(np.corrcoef(row, length)[0, 1])
     # probability of a correlation this large in rows without a trend (Student's t, both sides)
     chance = scipy.special.betainc(length.size / 2 - 1, 0.5, max(0.0, 1 - correlation**2))
-    if slope <= 0 or chance > _TREND_CHANCE:
-        return SlackGrowth()
-    return SlackGrowth(float(slope * (length.size - 1)), row)
+    return found if correlation <= 0 or chance > _TREND_CHANCE else grown
 
 
 def tape_error(marks: SpliceMarks, growth: ArrayLike | None = None) -> float:
