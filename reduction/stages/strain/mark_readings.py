@@ -193,7 +193,7 @@ def _about(courses: Floats, rows: Floats) -> Floats:
 _USUAL_TAPE = 0.005 * 0.3048
 _USUAL_READINGS = 4.0
 
-_STEP = 5.0  # standard uncertainties: of a growth
+_STEP = 4.0  # standard uncertainties: of a growth
 
 _BESIDE = 0.25  # of a growth: a row further off it is misread, or the growth is another
 
