@@ -137,6 +137,7 @@ def implausible(
                 notes.append(copied[name])
         notes += _of_statements(campaign, survey, models)
         notes += _of_columns(campaign, survey)
+        notes += _of_absent(campaign, survey)
     for test, one in _of_pairs(campaign, read, models):
         found[test].append(one)
     for plan in campaign.experiments.values():
@@ -200,6 +201,15 @@ def _copied_marks(campaign: Campaign) -> dict[str, Note]:
                 break
         earlier[name] = own
     return found
+
+
+def _of_absent(campaign: Campaign, survey: Survey) -> Iterator[Note]:
+    """Find marks that were read in this test on a specimen that it lacks."""
+    present = survey.plan.specimens
+    for name, marks in campaign.marks.items():
+        n_marks = marks.test.count(survey.plan.log)
+        if n_marks and name not in present:
+            yield note("marks-of-absent", name, n_marks=n_marks, present=" and ".join(present))
 
 
 def _readings(marks: SpliceMarks) -> set[tuple[str, float, float, float]]:

@@ -1903,6 +1903,11 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         " specimen: read the tape on each. If only {other} was read, state in [uncertainty] what"
         ' the strain may differ by, such as strain = "3 %"',
     ),
+    "marks-of-absent": (
+        "warning",
+        "{n_marks} marks were read on it in this test, which is one of {present}. Check `specimens`"
+        " of the test, and test and specimen of these rows",
+    ),
     "stiffness-jumps": (
         "warning",
         lambda other, ratio, like: (
@@ -2010,7 +2015,8 @@ SENTENCES: Mapping[str, tuple[Severity, str | Callable[..., str]]] = {
 """Severity and sentence of each note, by code."""
 
 CAUSES = (
-    "log-used-twice", "readings-used-twice", "marks-of-another", "channels-alike",
+    "log-used-twice", "readings-used-twice", "marks-of-another", "marks-of-absent",
+    "channels-alike",
     "column-of-another", "diameter-readings-apart", "stretched-diameters-apart",
     "cycles-in-other-kind", "rate-not-as-stated", "level-not-as-stated",
     "load-never-falls", "load-zero-drifts", "load-zero-wrong", "load-negative",

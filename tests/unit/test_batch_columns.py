@@ -5,7 +5,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from reduction.batch.plausibility import _copied_marks, _of_columns, _of_pairs, _off_other_specimens
+from reduction.batch.plausibility import (
+    _copied_marks,
+    _of_absent,
+    _of_columns,
+    _of_pairs,
+    _off_other_specimens,
+)
 from reduction.pipeline.reduce_test import Extremes
 from reduction.readers.layout import Layout
 from reduction.record.measurement import Specimen, SpliceMarks
@@ -129,6 +135,14 @@ def test_marks_that_were_read_on_another_specimen_are_told(readings, strain, n_n
     assert list(found) == ["B"] * n_notes
     assert all(one.code == "marks-of-another" for one in found.values())
     assert all("those of A" in str(one) for one in found.values())
+
+
+@pytest.mark.parametrize(("specimens", "told"), [(("A",), []), (("C", "D"), ["marks-of-absent"])])
+def test_marks_that_were_read_in_a_test_of_other_specimens_are_told(specimens, told):
+    survey = SimpleNamespace(plan=SimpleNamespace(log="T", specimens=specimens))
+    found = list(_of_absent(SimpleNamespace(marks={"A": tape("A", *_READ)}), survey))
+    assert [one.code for one in found] == told
+    assert all("A: 4 marks" in str(one) and "one of C and D" in str(one) for one in found)
 
 
 def five_specimens(stiffness, *, material="rubber", kind="elastomer"):
