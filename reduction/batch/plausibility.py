@@ -138,7 +138,7 @@ def implausible(
         notes += _of_statements(campaign, survey, models)
         notes += _of_columns(campaign, survey)
         notes += _of_absent(campaign, survey)
-    for test, one in _of_pairs(campaign, read, models):
+    for test, one in (*_of_pairs(campaign, read, models), *_of_swapped(read)):
         found[test].append(one)
     for plan in campaign.experiments.values():
         for test, one in _off_plan(campaign, plan, read):
@@ -612,6 +612,43 @@ def _of_stiffness(
                 survey.plan.id,
                 note("stiffness-jumps", name, other=test, ratio=ratio, like=words_of_ratio(ratio)),
             )
+
+
+# logarithm of the ratio of two peaks: of a pair that is too alike, and how far off the others of
+# the pair, in their spread, a test is whose specimens are swapped
+_TOO_ALIKE = 0.04
+_SWAPPED = 3.0
+_FEWEST_OF_PAIR = 4  # tests of a pair
+
+
+def _of_swapped(surveys: Sequence[Survey]) -> Iterator[tuple[str, Note]]:
+    """Find tests of two specimens on one crosshead whose peaks have the inverse of their ratio.
+
+    Both specimens have the same history, so that the ratio of their peaks is nearly that of their
+    other tests.
+    """
+    pairs: dict[tuple[str, str], list[tuple[str, float]]] = {}
+    for survey in surveys:
+        peaks = survey.extremes.greatest_tension
+        names = sorted(survey.plan.specimens)
+        if len(names) == 2 and all(peaks.get(name, np.nan) > 0 for name in names):
+            ratio = float(np.log(peaks[names[1]] / peaks[names[0]]))
+            pairs.setdefault((names[0], names[1]), []).append((survey.plan.id, ratio))
+    for (first, second), tests in pairs.items():
+        ratios = np.array([ratio for _, ratio in tests])
+        if ratios.size < _FEWEST_OF_PAIR:
+            continue
+        for place, (test, ratio) in enumerate(tests):
+            others = np.delete(ratios, place)
+            usual = float(np.median(others))
+            apart = abs(ratio - usual)
+            if abs(usual) > _TOO_ALIKE and apart > _SWAPPED * max(
+                float(np.abs(others - usual).max()), abs(ratio + usual)
+            ):
+                yield test, note(
+                    "specimens-swapped", second, other=first, ratio=float(np.exp(ratio)),
+                    usual=float(np.exp(usual)), n_others=others.size,
+                )  # fmt: skip
 
 
 def _off_the_others(

@@ -1903,6 +1903,12 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         " specimen: read the tape on each. If only {other} was read, state in [uncertainty] what"
         ' the strain may differ by, such as strain = "3 %"',
     ),
+    "specimens-swapped": (
+        "warning",
+        "its peak is {ratio:.3g} times that of {other}, and {usual:.3g} times in their {n_others}"
+        " other tests: the two are swapped. Check the order of `specimens` of this test, and of the"
+        " load columns of its log",
+    ),
     "marks-of-absent": (
         "warning",
         "{n_marks} marks were read on it in this test, which is one of {present}. Check `specimens`"
@@ -2016,7 +2022,7 @@ SENTENCES: Mapping[str, tuple[Severity, str | Callable[..., str]]] = {
 
 CAUSES = (
     "log-used-twice", "readings-used-twice", "marks-of-another", "marks-of-absent",
-    "channels-alike",
+    "channels-alike", "specimens-swapped",
     "column-of-another", "diameter-readings-apart", "stretched-diameters-apart",
     "cycles-in-other-kind", "rate-not-as-stated", "level-not-as-stated",
     "load-never-falls", "load-zero-drifts", "load-zero-wrong", "load-negative",

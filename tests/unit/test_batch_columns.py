@@ -10,6 +10,7 @@ from reduction.batch.plausibility import (
     _of_absent,
     _of_columns,
     _of_pairs,
+    _of_swapped,
     _off_other_specimens,
 )
 from reduction.pipeline.reduce_test import Extremes
@@ -143,6 +144,34 @@ def test_marks_that_were_read_in_a_test_of_other_specimens_are_told(specimens, t
     found = list(_of_absent(SimpleNamespace(marks={"A": tape("A", *_READ)}), survey))
     assert [one.code for one in found] == told
     assert all("A: 4 marks" in str(one) and "one of C and D" in str(one) for one in found)
+
+
+def pulled_together(*ratios):
+    """Tests T-1, ... of the specimens A and B, with the peaks of B over those of A."""
+    return [
+        SimpleNamespace(
+            plan=SimpleNamespace(id=f"T-{place}", specimens=("B", "A")),
+            extremes=Extremes(greatest_tension={"A": 400.0, "B": 400.0 * ratio}),
+        )
+        for place, ratio in enumerate(ratios, start=1)
+    ]
+
+
+@pytest.mark.parametrize(
+    ("ratios", "told"),
+    [
+        ((1.13, 0.885, 1.14, 1.16), ["T-2"]),
+        ((1.13, 1.12, 1.14, 1.16), []),
+        ((1.02, 0.98, 1.02, 1.02), []),  # too alike
+        ((1.14, 1.09, 1.12, 0.95), []),  # a new and a worn one, at more stretch from test to test
+        ((1.13, 0.885, 1.14), []),  # too few
+    ],
+)
+def test_specimens_that_are_swapped_in_one_of_their_tests_are_told(ratios, told):
+    found = list(_of_swapped(pulled_together(*ratios)))
+    assert [test for test, _ in found] == told
+    assert all("B: its peak is 0.885 times that of A, and 1.14 times in their 3 other" in str(one)
+               for _, one in found)  # fmt: skip
 
 
 def five_specimens(stiffness, *, material="rubber", kind="elastomer"):
