@@ -354,11 +354,17 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         lambda load, n_rests, zero, effect: (
             f"the load cell reads {load:.4g} N at slack ({_rests(n_rests)}),"
             f" {100 * abs(effect):.2g} % of the peak load, and load rises with stretch: its"
-            f" zero is wrong{', not its sign' if load < 0 else ''}. "
+            f" zero is wrong{', not its sign' if load < 0 else ', or the specimen pulls there'}. "
             + (
                 f'Set zero = "{zero}" for this channel'
                 if zero
                 else "Set zero for this channel in each layout of the log"
+            )
+            # a rope cannot push, but a test house may keep it taut
+            + (
+                "; if it is held at a pretension there, state phases.slack_tension below that load"
+                if load > 0
+                else ""
             )
         ),
     ),
@@ -604,7 +610,7 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "note",
         lambda n_first, n_last: (
             f"the machine was not at full amplitude in the first {n_first} and the last {n_last}"
-            " cycles; these are not counted"
+            " cycles; these are left out, and counted only in slopes per decade of cycles"
         ),
     ),
     "counter-constant": (

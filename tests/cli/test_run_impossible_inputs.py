@@ -130,7 +130,7 @@ def test_a_zero_above_a_tenth_of_the_peak_is_told_by_the_length_that_the_tape_re
     rewrite(lambda time, place, new, used: (time, place, new + 25, used))
     done = command("check", folder / "campaign.toml", "--json", cwd=folder)
     messages = {one["id"]: one["message"] for one in json.loads(done.stdout)["tests"]}
-    assert 'its zero is wrong. Set zero = "24.9' in messages["A"]
+    assert 'its zero is wrong, or the specimen pulls there. Set zero = "24.9' in messages["A"]
 
 
 def test_the_zero_that_is_named_puts_it_right(tethers, command):

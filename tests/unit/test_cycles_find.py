@@ -156,7 +156,7 @@ def test_two_holds_of_the_set_up_are_no_dwells():
     assert find(time, position).n_cycles == 5
 
 
-def test_cycles_of_a_machine_that_starts_are_not_counted_and_said():
+def test_cycles_of_a_machine_that_starts_are_left_out_said_and_numbered():
     time, position = path(back([*LEAD, *strokes(50, 20)]))
     # strokes of 5 s between 4 and 5 m; two peaks are too low at the start
     low = np.select([time < 60, time < 70], [0.88, 0.94], 1.0)
@@ -167,6 +167,9 @@ def test_cycles_of_a_machine_that_starts_are_not_counted_and_said():
     assert found.n_cycles == 18
     (one,) = [one for one in found.notes if one.code == "cycles-of-starting-machine"]
     assert one.numbers == {"n_first": 2, "n_last": 0}
+    # creep began with them: a slope per decade of cycles numbers them
+    np.testing.assert_array_equal(found.number, np.arange(3, 21))
+    assert found.is_count_sure
 
 
 @pytest.mark.parametrize("waveform", ["triangular", "sinusoidal"])

@@ -76,6 +76,14 @@ def test_what_is_stated_of_the_zero_is_no_warning():
     assert notes(400 * PLACE - 14.4, rest, offset=7.0) == ["load-zero-wrong"]
 
 
+@pytest.mark.parametrize("load", [-14.4, 14.4])
+def test_a_load_above_zero_may_be_a_pretension(load):
+    rest = LoadAtSlack(load, 0.035, 1, load, load)
+    (found,) = notes_on_zero(["A"], PLACE, 400 * PLACE[None] + load, [rest], [f"{load} N"])
+    assert ("or the specimen pulls there" in str(found)) == (load > 0)
+    assert ("phases.slack_tension below that load" in str(found)) == (load > 0)
+
+
 def test_without_a_rest_the_zero_is_not_known():
     assert notes(400 * PLACE - 300, None, "") == ["load-negative"]
     assert notes(400 * PLACE + 300, None, "") == []

@@ -1152,6 +1152,7 @@ class _Chosen:
     counted_by: str
     is_odd: Bools
     n_unsteady: int = 0
+    n_starting: int = 0  # of them before the first cycle
     notes: tuple[Note, ...] = ()
     made: tuple[str, ...] = ()
 
@@ -1171,6 +1172,7 @@ def _between_reversals(
     """
     notes = list(found.notes)
     branch_first, branch_last = found.branch_first, found.branch_last
+    n_starting = 0
     # a stroke of constant speed has its full amplitude from the start, a sine grows into it
     if settings.waveform == "sinusoidal":
         steady = _steady_span(values, branch_first, branch_last)
@@ -1179,6 +1181,7 @@ def _between_reversals(
             code = "cycles-of-starting-machine"
             notes.append(note(code, n_first=steady.start, n_last=n_last))
         branch_first, branch_last = branch_first[steady], branch_last[steady]
+        n_starting = steady.start
     n_unsteady = found.branch_first.shape[0] - branch_first.shape[0]
     first, last = branch_first[:, 0], branch_last[:, 1]
     # the only cycle of a log, stored by a machine
@@ -1209,7 +1212,8 @@ def _between_reversals(
     return _Chosen(
         first, last, branch_first, branch_last, count,
         counted_by="machine counter" if is_counted else "reversals",
-        is_odd=is_odd, n_unsteady=n_unsteady, notes=tuple(notes), made=found.made,
+        is_odd=is_odd, n_unsteady=n_unsteady, n_starting=n_starting, notes=tuple(notes),
+        made=found.made,
     )  # fmt: skip
 
 
@@ -1310,6 +1314,11 @@ def find_cycles(
             notes.append(note("cycles-in-gaps", n_cycles=first.size, n_hidden=n_hidden))
         elif odd.any():
             count, is_sure = np.flatnonzero(~odd) + 1 - int(odd[0]), True
+        if chosen.n_starting:
+            # creep, and softening, began with the cycles in which the machine started
+            if count is None:
+                count, is_sure = np.arange(1, first.size + 1), True
+            count = count + chosen.n_starting
     if first.size == 1:
         notes.append(note("one-cycle"))
     # the way to the cycles and from them is not a cycle
