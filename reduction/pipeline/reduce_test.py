@@ -65,6 +65,7 @@ from reduction.stages.cycles.cycle_product import Cycles, Loops
 from reduction.stages.cycles.cycle_search import control_channel, label_phases
 from reduction.stages.cycles.loop_sense import (
     OPEN,
+    change_of_wave,
     finite_median,
     notes_of_loops,
     unlike_neighbours,
@@ -998,6 +999,25 @@ def _with_waveform_of_log(
     return as_other, (note("period-changes", share=change),)
 
 
+def _unlike_waves(
+    time: Floats, driven: Floats, cycles: Cycles | None, unlike: float
+) -> tuple[Note, ...]:
+    """Waves that differ from cycle to cycle, or from one part of the cycles to the other."""
+    if unlike:
+        return (note("wave-not-periodic", share=unlike, is_open=unlike > OPEN),)
+    changed = None if cycles is None else change_of_wave(time, driven, cycles)
+    if changed is None or cycles is None:
+        return ()
+    share, last, first = changed
+    number, begin = cycles.number, float(time[cycles.first[first]])
+    return (
+        note(
+            "wave-changes", share=share, last=int(number[last]), first=int(number[first]),
+            begin=begin,
+        ),
+    )  # fmt: skip
+
+
 def reduce_test(
     located: Located,
     *,
@@ -1111,7 +1131,7 @@ def reduce_test(
     loop_notes = (
         (
             *of_wave,
-            *([note("wave-not-periodic", share=unlike, is_open=unlike > OPEN)] if unlike else []),
+            *_unlike_waves(record.time, driven, cycles, unlike),
             *notes_of_loops(
                 cycle_parts["loops"], names=record.specimens, time_step=median_step(record.time),
                 lag=[one.lag for one in instruments] or [0.0] * len(specimens),

@@ -723,6 +723,15 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             + ". Test each frequency separately"
         ),
     ),
+    "wave-changes": (
+        "warning",
+        lambda share, last, first, begin: (
+            f"the waveform changes between cycles {last} and {first} (cycle {first} begins at"
+            f" {begin:.6g} s; the shapes differ by {share:.0%} of half the range): the means over"
+            " the cycles belong to neither. Enter each part as a test with the same file, its own"
+            " waveform and order, and one step"
+        ),
+    ),
     "tension-hums": (
         "warning",
         lambda frequency, size, effect: (
@@ -2046,7 +2055,7 @@ CAUSES = (
     "target-strain-missed", "density-outside-band", "strain-above-band",
     "extensometer-off-at-slack", "reference-tension-elsewhere", "length-jumps",
     "slipped-in-earlier-step", "strain-below-zero",
-    "wave-not-periodic", "tension-hums", "tension-late", "tension-filtered",
+    "wave-not-periodic", "wave-changes", "tension-hums", "tension-late", "tension-filtered",
     "tension-behind-position",
     "loops-give-work", "loops-not-of-a-sine", "hold-load-late",
 )  # fmt: skip

@@ -10,6 +10,7 @@ from reduction.stages.cycles.cycle_product import Cycles, Loops
 from reduction.stages.cycles.cycle_search import find_cycles
 from reduction.stages.cycles.loop_sense import (
     OPEN,
+    change_of_wave,
     contradicts_sine,
     notes_of_loops,
     unlike_neighbours,
@@ -322,6 +323,42 @@ def test_a_wave_of_two_frequencies_does_not_repeat(ratio, share):
 @pytest.mark.parametrize(("step", "noise"), [(0.05, 0.0), (0.05, 0.01), (0.5, 0.0)])
 def test_a_wave_that_drifts_grows_sweeps_or_is_no_sine_repeats(wave, step, noise):
     assert unlike(wave, step=step, noise=noise) == 0
+
+
+def changed(wave, *, step=0.05, noise=0.01):
+    time = np.arange(0, 120, step)
+    driven = wave(time) + noise * np.random.default_rng(8).normal(size=time.size)
+    stands = find_standstills(time, driven, driven[None], settings=PhaseSettings())
+    cycles = find_cycles(time, driven, driven[None], stands, settings=CycleSettings())
+    found = change_of_wave(time, driven, cycles)
+    return None if found is None else tuple(time[cycles.first[list(found[1:])]].round())
+
+
+def sine(time):
+    return -np.cos(np.pi * time / 3)
+
+
+def ramps(time):
+    return 1 - 2 * np.abs(np.abs(time / 3 % 2) - 1)
+
+
+@pytest.mark.parametrize("step", [0.05, 0.3])
+@pytest.mark.parametrize("at", [24.0, 60.0, 96.0])
+@pytest.mark.parametrize(
+    "order", [(sine, ramps), (ramps, sine), (ramps, lambda t: np.clip(1.3 * ramps(t), -1, 1))]
+)
+def test_a_lasting_change_of_the_waveform_is_placed(order, at, step):
+    one, other = order
+    assert changed(lambda t: np.where(t < at, one(t), other(t)), step=step) == (at - 6, at)
+
+
+@pytest.mark.parametrize("wave", [
+    sine, ramps, lambda t: sine(t) * (1 + t / 60) + t / 90, lambda t: np.cos(t + t**2 / 300),
+    lambda t: np.where(t < 60, 1, 2) * (1 + sine(t)), lambda t: np.clip(ramps(t), -0.6, 0.8),
+])  # fmt: skip
+@pytest.mark.parametrize(("step", "noise"), [(0.05, 0.05), (0.6, 0.0)])
+def test_a_wave_that_drifts_grows_sweeps_or_steps_keeps_its_shape(wave, step, noise):
+    assert changed(wave, step=step, noise=noise) is None
 
 
 def test_cycles_that_are_no_closed_loops_keep_their_amplitudes_and_have_no_loss():

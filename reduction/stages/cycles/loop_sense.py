@@ -16,7 +16,7 @@ References
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from itertools import pairwise
 from typing import Literal
@@ -215,9 +215,7 @@ def unlike_neighbours(
         half = float(np.ptp(one)) / 2
         if not (half > 0 and np.isfinite(one + other).all()):
             continue
-        basis = np.stack([np.ones(_PHASES), phase, one], axis=1)
-        rest = other - basis @ np.linalg.lstsq(basis, other)[0]
-        left.append(float(np.sqrt(np.mean(rest**2))) / half)
+        left.append(float(np.sqrt(np.mean(_beside(one, other, phase) ** 2))) / half)
         gone.append((other.max() + other.min() - one.max() - one.min()) / (4 * half))
         noise.append(reading_noise(driven[part]) / half)
     if not left:
@@ -228,6 +226,91 @@ def unlike_neighbours(
     # a turn is uncertain by up to half a reading
     by_chance = _REPEATS + np.pi / n_readings + _BEYOND_SCATTER * float(np.median(noise))
     return share if share > by_chance else 0.0
+
+
+def change_of_wave(time: Floats, driven: Floats, cycles: Cycles) -> tuple[float, int, int] | None:
+    """Lasting change of the shape of the wave, between two cycles of a test; None without one.
+
+    Parameters
+    ----------
+    time, driven : ndarray, shape (n_samples,)
+        [s], and position or tension. [m] or [N]
+    cycles : Cycles
+        Cycles of the record.
+
+    Returns
+    -------
+    share : float
+        Root mean square of the difference over half the range. [1]
+    last, first : int
+        Last cycle with the old shape and first one with the new, among those examined. [1]
+
+    Raises
+    ------
+    IndexError
+        If a cycle lies outside the record.
+
+    Notes
+    -----
+    Some forty cycles at equal phases, from middle to middle of their rises. The place is that of
+    least squares; the medians of those before and after it, three or more, differ.
+
+    Examples
+    --------
+    >>> from reduction.record.settings import CycleSettings, PhaseSettings
+    >>> from reduction.stages.cycles.cycle_search import find_cycles
+    >>> from reduction.stages.standstills import find_standstills
+    >>> time = np.arange(0, 120, 0.05)
+    >>> wave = np.where(time < 60, 1 - 2 * np.abs(time / 6 % 2 - 1), -np.cos(np.pi * time / 6))
+    >>> stands = find_standstills(time, wave, wave[None], settings=PhaseSettings())
+    >>> cycles = find_cycles(time, wave, wave[None], stands, settings=CycleSettings())
+    >>> share, last, first = change_of_wave(time, wave, cycles)
+    >>> print(round(share, 2), last, first)
+    0.07 4 5
+    """
+    places = _spread(np.flatnonzero(touching(cycles)[1:]))
+    phase = np.linspace(0, 1, _PHASES, endpoint=False)
+    waves, at, noise = [], [], []
+    for one in places.tolist():
+        begin, end = (
+            _crossing(time[part], driven[part])
+            for part in (
+                slice(cycles.branch_first[place, 0], cycles.branch_last[place, 0] + 1)
+                for place in (one, one + 1)
+            )
+        )
+        low, high = np.searchsorted(time, [begin, end]).tolist()
+        part = slice(low - 1, high + 1)
+        wave = np.interp(begin + phase * (end - begin), time[part], driven[part])
+        half = float(np.ptp(wave)) / 2
+        if half > 0 and np.isfinite(wave).all():
+            waves.append((wave - wave.mean()) / half)
+            noise.append(reading_noise(driven[part]) / half)
+            at.append(one)
+    if len(waves) < 2 * _FEWEST_CYCLES:
+        return None
+    shapes, count = np.array(waves), len(waves)
+    stops = np.arange(_FEWEST_CYCLES, count - _FEWEST_CYCLES + 1)
+    apart = [_of_parts(np.mean, shapes, stop, phase) for stop in stops.tolist()]
+    stop = int(stops[np.argmax(stops * (count - stops) * np.square(apart))])
+    share = _of_parts(np.median, shapes, stop, phase)
+    n_readings = float(np.median(cycles.last - cycles.first))
+    # noise of two medians, and the chords between the readings of a sine
+    by_noise = _WITHIN * float(np.median(noise)) * np.sqrt(1 / stop + 1 / (count - stop))
+    least = float(np.hypot(_REPEATS + (2 * np.pi / n_readings) ** 2 / 8, by_noise))
+    return (share, at[stop - 1], at[stop]) if share > least else None
+
+
+def _of_parts(middle: Callable[..., Floats], shapes: Floats, stop: int, phase: Floats) -> float:
+    """Root mean square between the mean or median shapes before and from a cycle on."""
+    one, other = middle(shapes[:stop], axis=0), middle(shapes[stop:], axis=0)
+    return float(np.sqrt(np.mean(_beside(one, other, phase) ** 2)))
+
+
+def _beside(one: Floats, other: Floats, phase: Floats) -> Floats:
+    """What a factor times one wave, a constant and a line leave of another."""
+    basis = np.stack([np.ones(phase.size), phase, one], axis=1)
+    return np.asarray(other - basis @ np.linalg.lstsq(basis, other)[0])
 
 
 _PHASES = 64
