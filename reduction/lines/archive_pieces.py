@@ -323,6 +323,11 @@ def source_of_tests(
     if len(stated) > 1:
         told = f"the archives state another condition of '{specimen}', {_stated_where(stated)}"
         notes.insert(0, f"DOUBTFUL: {told}: their tests belong together if this is one specimen")
+    notes[:0] = [
+        f"DOUBTFUL: {first} and {second} come from the same log: if they are the same cycles, they"
+        " count twice; name one of them"
+        for first, second in _same_logs(own)
+    ]
     models = [strain_model_of(one, specimens_of(one).index(specimen)) for one in own]
     known = [model for model in models if model is not None]
     if any(_differ(known[0], other) for other in known[1:]):
@@ -345,6 +350,20 @@ def source_of_tests(
         is_synthetic=any(one.attrs.get("synthetic") == "yes" for one in own),
         loops=tuple(loops),
     )
+
+
+def _same_logs(datasets: Sequence[xr.Dataset]) -> list[tuple[str, str]]:
+    """Ids of archives of different campaigns that were made from one log."""
+    by_log: dict[str, dict[str, str]] = {}
+    for one in datasets:
+        digest = str(one.attrs.get("raw_file_sha256", ""))
+        by_log.setdefault(digest, {}).setdefault(str(one.attrs.get("campaign", "")), _id(one))
+    return [
+        (first, other)
+        for digest, (first, *others) in ((key, [*ids.values()]) for key, ids in by_log.items())
+        if digest
+        for other in others
+    ]
 
 
 def _id(dataset: xr.Dataset) -> str:

@@ -248,6 +248,17 @@ def test_tests_of_two_campaigns_keep_their_campaigns_names():
     assert [one.name for one in found.pieces] == ["c/T-1", "d/T-1"]
 
 
+def test_one_log_in_two_campaigns_is_doubted():
+    other = cyclic("again", 2, campaign="d")
+    for one, log in ((other, "ab12"), (first := cyclic(), "ab12"), (third := cyclic("T-3", 3), "")):
+        one.attrs["raw_file_sha256"] = log
+    notes = source_of_tests([first, other, third], "new", branch="mean").notes
+    assert [one for one in notes if "same log" in one] == [notes[0]]
+    assert notes[0].startswith("DOUBTFUL: c/T-1 and d/again come from the same log")
+    other.attrs["campaign"] = "c"  # a log with several tests is one campaign's
+    assert source_of_tests([first, other], "new", branch="mean").notes == ()
+
+
 def test_archives_without_the_specimen_are_passed_over():
     tests = [cyclic(), cyclic("T-2", 2, specimens=("used",))]
     assert specimens_of(tests[1]) == ("used",)
