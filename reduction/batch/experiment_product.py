@@ -267,7 +267,7 @@ def write_experiments(
     empty = {
         name: _nothing_to_fit(plan)
         for name, plan in campaign.experiments.items()
-        if not (held[name] or any(_is_there(archive_of(run)) for run in plan.runs))
+        if not (held[name] or any((path := archive_of(run)) and path.exists() for run in plan.runs))
     }
     ready = {
         name: plan
@@ -307,10 +307,6 @@ def write_experiments(
 def settings_of_experiments(plans: Mapping[str, ExperimentPlan]) -> str:
     """All settings of experiments as JSON: the attribute ``settings`` of their archive."""
     return json.dumps({name: asdict(plan) for name, plan in plans.items()}, sort_keys=True)
-
-
-def _is_there(path: Path | None) -> bool:
-    return path is not None and path.exists()
 
 
 def _nothing_to_fit(plan: ExperimentPlan) -> FitError:

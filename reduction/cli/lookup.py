@@ -932,14 +932,19 @@ def _shown(name: str, system: UnitSystem) -> tuple[str, float]:
     return display_unit(quantity_of(name).unit, system)
 
 
+def _at_points(values: Any, *, is_grid: bool) -> Any:
+    """Numbers for JSON: a list for a grid, one for a single point."""
+    shaped = np.atleast_1d(values).ravel()
+    return plain(shaped if is_grid else shaped[0])
+
+
 def _document(
     line: LineSource, found: DesignValues, points: Mapping[str, Floats], *, grid: bool
 ) -> dict[str, Any]:
     """Output of ``--json`` in SI: numbers for a single point, lists for a grid."""
 
     def of(values: Any) -> Any:
-        shaped = np.atleast_1d(values).ravel()
-        return plain(shaped if grid else shaped[0])
+        return _at_points(values, is_grid=grid)
 
     return {
         "line": line.name,
@@ -1181,8 +1186,7 @@ def _difference_document(
     """Output of ``--json`` in SI: numbers for a single point, lists for a grid."""
 
     def of(values: Any) -> Any:
-        shaped = np.atleast_1d(values).ravel()
-        return plain(shaped if grid else shaped[0])
+        return _at_points(values, is_grid=grid)
 
     def side(line: LineSource, one: DesignValues, at: Mapping[str, Floats]) -> dict[str, Any]:
         return {

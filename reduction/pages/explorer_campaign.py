@@ -172,11 +172,6 @@ SETTINGS: tuple[Setting, ...] = (
 _BY_KEY = {one.key: one for one in SETTINGS}
 
 
-def _setting_of(key: str) -> Setting | None:
-    """The setting of a key; None where it is not offered."""
-    return _BY_KEY.get(key)
-
-
 def settings_of_kind(kind: str) -> list[Setting]:
     """Settings that affect a kind of test; there are none for weights hung by hand."""
     if kind == "stepwise":
@@ -428,7 +423,7 @@ class CampaignText:
             return {
                 ("tests", test, "steps", int(place), end): int(text) if text.isdecimal() else text
             }
-        setting = _setting_of(key)
+        setting = _BY_KEY.get(key)
         if setting is None:
             raise SettingsError("this setting cannot be changed here", found=repr(key))
         if setting.path[0] in self.in_table.get(test, ()):

@@ -43,6 +43,7 @@ from reduction.report.text_style import (
     measured,
     number,
     number_text,
+    percent_cell,
     shown,
     source_meanings,
     source_words,
@@ -161,7 +162,7 @@ def budget_table(view: TestView, answers: Sequence[AnswerBudget]) -> PageTable |
             one.cell,
             words(one.unit.unit),
             number(float("nan") if one.drawn else one.budget.coverage_factor, digits=3),
-            *(_share(one.share(source)) for source in sources),
+            *(percent_cell(one.share(source)) for source in sources),
         ]
         for one in answers
     ]
@@ -178,10 +179,6 @@ def budget_table(view: TestView, answers: Sequence[AnswerBudget]) -> PageTable |
             source_meanings(sources),
         ],
     )  # fmt: skip
-
-
-def _share(value: float) -> TableCell:
-    return TableCell(f"{100 * value:.1f}", repr(value), is_number=True)
 
 
 def budget_sentences(view: TestView, answers: Sequence[AnswerBudget]) -> list[str]:

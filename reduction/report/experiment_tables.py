@@ -62,6 +62,7 @@ from reduction.report.text_style import (
     make_table,
     number,
     number_text,
+    percent_cell,
     share_text,
     shown,
     source_meanings,
@@ -664,7 +665,7 @@ def coefficient_budget_table(
             words(one.words),
             one.cell,
             number(one.budget.coverage_factor, digits=3),
-            *(_percent(one.share(source)) for source in sources),
+            *(percent_cell(one.share(source)) for source in sources),
         ]
         for one in answers
     ]
@@ -676,10 +677,6 @@ def coefficient_budget_table(
         rows, is_compact=True,
         remarks=[f"±: expanded uncertainty, 95 % ({factors}).", source_meanings(sources)],
     )  # fmt: skip
-
-
-def _percent(value: float) -> TableCell:
-    return TableCell(f"{100 * value:.1f}", repr(value), is_number=True)
 
 
 def experiment_findings(view: ExperimentView) -> list[SummaryFinding]:

@@ -82,6 +82,11 @@ class Figure:
         return script_json({"data": self.data, "layout": self.layout})
 
 
+def if_any(figure: Figure) -> list[Figure]:
+    """Return a figure in a list, which is empty where the figure has no data."""
+    return [figure] if figure.has_data else []
+
+
 def script_json(document: object) -> str:
     r"""Return JSON that is safe inside a script element.
 

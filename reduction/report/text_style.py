@@ -311,6 +311,11 @@ def number(value: float, unit: Shown | None = None, *, digits: int = 4) -> Table
     return TableCell(number_text(value * scale, digits), _exact(value), is_number=True)
 
 
+def percent_cell(share: float) -> TableCell:
+    """Return a cell with a share in percent."""
+    return TableCell(f"{100 * share:.1f}", repr(share), is_number=True)
+
+
 def count(value: float) -> TableCell:
     """Return a cell with a count."""
     text = f"{value:,.0f}" if isfinite(value) else NOT_GIVEN

@@ -22,6 +22,7 @@ from reduction.report.figure_data import (
     Figure,
     Trace,
     axis,
+    if_any,
     line,
     make_figure,
     named_axis,
@@ -142,7 +143,7 @@ def draw_surface(
     data += _points_in_space(view, surfaces, index, planes)
     held, level = view.factors[planes.held], view.levels(planes.held)[1]
     title = f"{view.name}: {words} at {_at(view, planes.held, level)}"
-    return _given(
+    return if_any(
         make_figure(
             f"{view.key}-{name}-surface", title,
             f"Surface of the {words} over {in_words(view.factors[planes.across[0]])} and"
@@ -237,10 +238,6 @@ def _scale_words(name: str) -> str:
     if name == base_response(name):
         return ""
     return f", fitted to the {in_words(name)} and transformed back (medians)"
-
-
-def _given(figure: Figure) -> list[Figure]:
-    return [figure] if figure.has_data else []
 
 
 def _points_in_space(

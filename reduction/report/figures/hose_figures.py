@@ -15,7 +15,16 @@ import numpy as np
 
 from reduction.prediction.hose_geometry import NEUTRAL_ANGLE, cord_strain_chart
 from reduction.record.measurement import Bools, Floats
-from reduction.report.figure_data import Figure, Trace, axis, band, line, make_figure, plain_numbers
+from reduction.report.figure_data import (
+    Figure,
+    Trace,
+    axis,
+    band,
+    if_any,
+    line,
+    make_figure,
+    plain_numbers,
+)
 from reduction.report.product_views import (
     EVENT_WORDS,
     SOURCE_WORDS,
@@ -117,11 +126,6 @@ def _slack_zone(view: HoseView) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _kept_figure(figure: Figure) -> list[Figure]:
-    """Return a figure, or nothing where it is empty."""
-    return [figure] if figure.has_data else []
-
-
 _FAMILY = (45.0, 50.0, float(np.degrees(NEUTRAL_ANGLE)), 58.0, 61.0, 64.0, 66.0, 68.0, 70.0, 72.0)
 """Wrap angles of the chart. [deg]"""
 
@@ -165,7 +169,7 @@ def draw_chart(view: HoseView) -> list[Figure]:
                  width=1.2)
         )  # fmt: skip
     data += _event_marks(view, "cord_strain", Shown("%", 100.0))
-    return _kept_figure(
+    return if_any(
         make_figure(
             f"{view.key}-chart", f"Cord strain over hose strain, hose {view.name}",
             "Each line is a wrap angle, given at its end in degrees from the axis, with the dead"
@@ -279,7 +283,7 @@ def draw_tension(view: HoseView) -> list[Figure]:
     about = f"Shaded blue: 95 % band ({_FACTOR}, at held strain){_KINK}. "
     about = about if view.sources else ""
     grey = " Grey: cords slack, the rubber carries all load." if view.is_slack_at_first else ""
-    return _kept_figure(
+    return if_any(
         make_figure(
             f"{view.key}-tension", f"Predicted tension, hose {view.name}",
             f"{about}Safe working load: a cord carries its working share of its break"
@@ -302,7 +306,7 @@ def draw_pressure(view: HoseView) -> list[Figure]:
     data.append(line(strain, unit.factor * pressure, name="fill pressure", colour=NET, width=2.4))
     data += [mark for mark in _event_marks(view, "fill_pressure", unit) if mark["name"] != SLACKEST]
     about = f" Shaded blue: 95 % band ({_FACTOR}){_KINK}." if view.sources else ""
-    return _kept_figure(
+    return if_any(
         make_figure(
             f"{view.key}-pressure", f"Predicted fill pressure, hose {view.name}",
             "Pressure in the bore of a closed hose above that outside, caused by the cords; zero"
@@ -325,7 +329,7 @@ def draw_budget(view: HoseView) -> list[Figure]:
         return []
     names, share = _largest(view.sources, 100 * variance[:, kept] / total[kept])
     strain = _percent(view)[kept]
-    return _kept_figure(
+    return if_any(
         make_figure(
             f"{view.key}-budget", f"Where the uncertainty of tension comes from, hose {view.name}",
             "Share of each uncertain number in the variance of the tension at held strain. Sources"
@@ -393,7 +397,7 @@ def draw_all_hoses(views: Sequence[HoseView]) -> list[Figure]:
     about = f" Shaded: 95 % band ({_FACTOR}), where uncertainties are stated." if any(
         view.sources for view in views
     ) else ""  # fmt: skip
-    return _kept_figure(
+    return if_any(
         make_figure(
             "hoses-tension", "Predicted tension of all hoses",
             f"Net tension against strain of the whole length, events marked.{about}"
@@ -454,7 +458,7 @@ def draw_comparison(view: ComparisonView) -> list[Figure]:
     judged = view.judged if view.judged == "midline" else f"{view.judged} branch"
     about = f"{_shaded(view)} " if has_band else ""
     fitted = " Calibrated: with the numbers fitted to this test." if view.fitted else ""
-    return _kept(
+    return if_any(
         make_figure(
             f"{view.key}-tension", f"Measured and predicted tension, {view.name}",
             f"{about}Thick: the {judged} of the test, which is compared with the prediction."
@@ -480,7 +484,7 @@ def draw_compared_pressure(view: ComparisonView) -> list[Figure]:
                      colour=tint, alpha=_ALPHA)
             )  # fmt: skip
         data.append(line(strain, curve, name=whose, colour=tint, width=2.4))
-    return _kept(
+    return if_any(
         make_figure(
             f"{view.key}-fill-pressure", f"Measured and predicted fill pressure, {view.name}",
             f"In the bore, above the pressure outside. Shaded: 95 % ({factor_words([NORMAL])}).",
@@ -532,7 +536,7 @@ def draw_error(view: ComparisonView) -> list[Figure]:
         if np.any(allowed > 0)
         else ""
     )
-    return _kept(
+    return if_any(
         make_figure(
             f"{view.key}-error", f"Comparison error, {view.name}",
             "Predicted minus measured tension: above zero the hose is softer than predicted."
@@ -607,7 +611,7 @@ def draw_all_comparisons(views: Sequence[ComparisonView]) -> list[Figure]:
                  dash=_PULLED.get(first.loading, "dot"), width=2)
         )  # fmt: skip
     return [
-        *_kept(
+        *if_any(
             make_figure(
                 "comparisons-tension", "Measured and predicted tension of the hoses",
                 "Solid: predicted from construction alone, shaded with its 95 % interval. Dashed:"
@@ -616,7 +620,7 @@ def draw_all_comparisons(views: Sequence[ComparisonView]) -> list[Figure]:
                 xaxis=_strain_axis(), yaxis=axis(force.label("tension"), rangemode="tozero"),
             )
         ),
-        *_kept(
+        *if_any(
             make_figure(
                 "comparisons-relative", "Relative difference of all comparisons",
                 "Predicted minus measured over measured tension, at the compared curve of each;"
@@ -733,7 +737,3 @@ def _cycle_ticks(number: Floats) -> dict[str, Any]:
     if is_long:
         kept = [10**p for p in range(first, last + 2)]
     return {"tickvals": kept, "ticktext": [f"{tick:,}" for tick in kept]}
-
-
-def _kept(figure: Figure) -> list[Figure]:
-    return [figure] if figure.has_data else []
