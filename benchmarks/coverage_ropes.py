@@ -43,7 +43,7 @@ from reduction.record.settings import CycleSettings, ReductionSettings
 from reduction.stages.reduced_test import ReducedTest, TestDescription
 from reduction.stages.strain.strain_model import StrainModel
 from reduction.stages.three_parameter_line.line_product import SlowPull
-from reduction.uncertainty.shared_contributions import PullOrigin
+from reduction.uncertainty.errors_of_cycles import PullOrigin
 
 STRENGTH, LENGTH = 28.5e3, 1.8
 PULL = np.array([0.0, 1 / 45e3, -6.5e-10, 9.5e-15])  # strain of the slow pull: K_0 doubles on it

@@ -36,7 +36,7 @@ from reduction.record.notes import Note
 from reduction.stages.reduced_test import History, ReducedTest
 from reduction.stages.strain.strain_model import StrainModel
 from reduction.stages.three_parameter_line.line_product import SlowPull
-from reduction.uncertainty.shared_contributions import PullOrigin
+from reduction.uncertainty.errors_of_cycles import PullOrigin
 
 
 def _reduce_survey(

@@ -22,7 +22,7 @@ from reduction.quantities.units import parse_quantity
 from reduction.record.errors import ReductionError
 from reduction.stages.strain.strain_model import StrainModel
 from reduction.stages.three_parameter_line.line_product import SlowPull
-from reduction.uncertainty.shared_contributions import PullOrigin
+from reduction.uncertainty.errors_of_cycles import PullOrigin
 
 Pulls = Mapping[tuple[str, str], SlowPull]
 

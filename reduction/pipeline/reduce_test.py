@@ -94,16 +94,14 @@ from reduction.uncertainty.effects_on_answers import (
     with_weighed_notes,
 )
 from reduction.uncertainty.error_field import error_field
+from reduction.uncertainty.errors_of_curves import with_shared_ratios
+from reduction.uncertainty.errors_of_cycles import PullOrigin, with_shared_steps, with_splice_slips
 from reduction.uncertainty.monte_carlo import with_line_spread
 from reduction.uncertainty.propagation import with_diameter
 from reduction.uncertainty.shared_contributions import (
-    PullOrigin,
     contributions_of_test,
     lag_of_test,
     shared_uncertainty_of_cycles,
-    with_shared_ratios,
-    with_shared_steps,
-    with_splice_slips,
 )
 
 _GREATEST_STRAIN = 10.0  # no rubber is stretched to eleven times its length

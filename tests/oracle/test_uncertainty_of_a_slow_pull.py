@@ -13,7 +13,7 @@ from reduction.stages.three_parameter_line.slow_pull import (
     strain_at_break_share,
     strain_at_tension,
 )
-from reduction.uncertainty.shared_contributions import _of_pull
+from reduction.uncertainty.errors_of_cycles import errors_of_pull
 
 MODEL = StrainModel("rope", "gauge-length", {"reference_position": 0.0, "gauge_length": 2.0})
 LOAD = np.linspace(0.0, 2000.0, 4001)
@@ -54,7 +54,7 @@ def test_a_slow_pull_changes_as_its_log_says(source):
     size = ERRORS[source]
     pull, exact = numbers()
     above, below = (numbers(source, way * size)[1] for way in (1, -1))
-    parts = _of_pull(
+    parts = errors_of_pull(
         pull, InstrumentErrors("rope", **{source: size}), MODEL,
         tension=GRID, share=SHARES, rated_break_strength=STRENGTH,
     )  # fmt: skip
@@ -68,7 +68,7 @@ def test_a_slow_pull_changes_as_its_log_says(source):
 
 
 def test_a_pull_of_no_stated_strength_has_no_strain_at_a_share_of_it():
-    parts = _of_pull(
+    parts = errors_of_pull(
         numbers()[0], InstrumentErrors("rope", tension_gain=1e-3), MODEL,
         tension=GRID, share=SHARES, rated_break_strength=None,
     )  # fmt: skip

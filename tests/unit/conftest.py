@@ -49,7 +49,7 @@ from reduction.stages.three_parameter_line.rope_programme import (
     TensilePull,
 )
 from reduction.stages.three_parameter_line.slow_pull import fit_pull
-from reduction.uncertainty.shared_contributions import with_shared_steps
+from reduction.uncertainty.errors_of_cycles import with_shared_steps
 
 N_SAMPLES, N_CYCLES, N_BINS, N_SEGMENTS = 60, 4, 5, 3
 SOURCE = Source("T-1.csv", "ab" * 32, 12345)

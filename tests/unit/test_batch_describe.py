@@ -14,7 +14,7 @@ from reduction.record.contributions import InstrumentErrors, StatedErrors
 from reduction.record.measurement import Specimen, SpliceMarks
 from reduction.record.settings import ReductionSettings
 from reduction.stages.strain.strain_model import StrainModel
-from reduction.uncertainty.shared_contributions import PullOrigin
+from reduction.uncertainty.errors_of_cycles import PullOrigin
 
 TAPE = SpliceMarks(
     "new", ("P", "P"), ("slack", "min"), near_toe=np.array([0.6, 0.7]),

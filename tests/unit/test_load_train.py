@@ -19,7 +19,7 @@ from reduction.stages.load_train import acceleration, end_mass, turn_acceleratio
 from reduction.stages.strain.strain_model import StrainModel
 from reduction.uncertainty.effects_on_answers import _wave_left
 from reduction.uncertainty.error_field import error_field
-from reduction.uncertainty.shared_contributions import _inertia_of
+from reduction.uncertainty.errors_of_cycles import inertia_of
 
 SETTINGS = ReductionSettings(cycles=CycleSettings(waveform="sinusoidal"))
 
@@ -241,7 +241,7 @@ def test_of_an_extensometer_the_crosshead_tells_how_far_the_mass_moves():
     )
     errors = replace(InstrumentErrors("line"), attached_mass=spread)
     model = StrainModel("line", "extensometer", {})
-    inertia = _inertia_of(record, loops, 0, errors, model, cycles)
+    inertia = inertia_of(record, loops, 0, errors, model, cycles)
     at = np.array([0.05 - amplitude, 0.05, 0.05 + amplitude])
     field = error_field(errors, model, strain=at, tension=np.full(3, 1e4), inertia=inertia)
     force = spread * length * amplitude * (2 * np.pi * frequency) ** 2

@@ -12,7 +12,7 @@ from reduction.stages.moduli import local_regression as groups
 from reduction.stages.moduli import tangent_modulus as specimencurves
 from reduction.stages.moduli.tangent_modulus import tangent_curves
 from reduction.stages.moduli.tangent_window import choose_grid_and_window
-from reduction.uncertainty.shared_contributions import _window_blur
+from reduction.uncertainty.errors_of_curves import _window_blur
 
 AREA = 5e-4
 SETTINGS = ModulusSettings()

@@ -14,7 +14,7 @@ from reduction.stages.three_parameter_line.rope_programme import (
     dynamic_stiffness,
     summarise_bedding_in,
 )
-from reduction.uncertainty.shared_contributions import trend_and_step_contributions
+from reduction.uncertainty.errors_of_cycles import trend_and_step_contributions
 
 AREA = 5e-4
 MODEL = StrainModel("new", "gauge-length", {"reference_position": 0.0, "gauge_length": 2.0})

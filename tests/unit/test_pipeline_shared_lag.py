@@ -13,8 +13,9 @@ from reduction.record.settings import CycleSettings, ReductionSettings
 from reduction.stages.cycles.cycle_product import Cycles
 from reduction.stages.reduced_test import TestDescription
 from reduction.stages.strain.strain_model import StrainModel
+from reduction.uncertainty.errors_of_cycles import _has_corners
 from reduction.uncertainty.propagation import LoopQuantities, loop_contributions
-from reduction.uncertainty.shared_contributions import _has_corners, lag_of_test
+from reduction.uncertainty.shared_contributions import lag_of_test
 
 TIME = np.arange(0, 118, 0.1)
 TURNS = np.arange(50, 1151, 50)

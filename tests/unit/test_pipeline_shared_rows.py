@@ -8,13 +8,9 @@ import pytest
 from reduction.record.contributions import Component, Contributions, InstrumentErrors
 from reduction.stages.moduli.modulus_product import Ratio
 from reduction.stages.strain.strain_model import StrainModel
+from reduction.uncertainty.errors_of_curves import errors_of_ratios, with_shared_ratios
+from reduction.uncertainty.errors_of_cycles import errors_of_slips, with_shared_steps
 from reduction.uncertainty.propagation import with_shared_interval
-from reduction.uncertainty.shared_contributions import (
-    _of_ratios,
-    _of_slips,
-    with_shared_ratios,
-    with_shared_steps,
-)
 
 MODEL = StrainModel("new", "gauge-length", {"reference_position": 2.0, "gauge_length": 2.0})
 CELL, NEW, USED = (
@@ -42,7 +38,7 @@ def test_one_load_cell_cancels_in_a_ratio_and_two_diameters_add(rich_test):
     test = replace(
         rich_test, curves=moduli, ratios=(ratio(), ratio("new, cycles 9", "new, cycles 1"))
     )
-    (shared,) = _of_ratios(test, found)
+    (shared,) = errors_of_ratios(test, found)
     of_ratio = shared.values["modulus_ratio"]
     assert of_ratio[:, 0, 0, 0] == pytest.approx([0.0, -0.022, 0.022])
     # two sets of cycles of one specimen share all of it
@@ -66,7 +62,7 @@ def test_few_cycles_widen_the_interval_less_where_instruments_dominate():
 def test_ratios_of_a_test_without_shared_errors_stay_as_they_are(rich_test):
     test = replace(rich_test, contributions=None)
     assert with_shared_ratios(test) is test
-    assert _of_ratios(replace(rich_test, ratios=()), Contributions(())) == []
+    assert errors_of_ratios(replace(rich_test, ratios=()), Contributions(())) == []
 
 
 def test_a_slip_scales_with_the_cell_and_its_length_with_the_scale_of_position(rich_test):
@@ -75,7 +71,7 @@ def test_a_slip_scales_with_the_cell_and_its_length_with_the_scale_of_position(r
         for name in ("new", "used")
     ]
     test = replace(rich_test, strain_models=(MODEL, replace(MODEL, specimen="used")))
-    (found,) = _of_slips(test, errors)
+    (found,) = errors_of_slips(test, errors)
     step = found.values["slip_tension_step"]
     by_source = {one.source: row for row, one in enumerate(found.component)}
     assert step[by_source["tension_gain"]] == pytest.approx(0.01 * test.slips.slip_tension_step)
@@ -83,7 +79,7 @@ def test_a_slip_scales_with_the_cell_and_its_length_with_the_scale_of_position(r
     length = found.values["slip_length"]
     assert length[by_source["position_gain"]] == pytest.approx(0.002 * test.slips.slip_length)
     assert not length[by_source["tension_gain"]].any()
-    assert _of_slips(replace(rich_test, slips=None), errors) == []
+    assert errors_of_slips(replace(rich_test, slips=None), errors) == []
 
 
 def test_a_stepwise_test_has_the_gauge_length_and_the_diameter_in_its_moduli(stepwise_test):

@@ -13,7 +13,7 @@ from reduction.report.figures.modulus_figures import draw_steps
 from reduction.report.test_section import interval_table
 from reduction.report.test_view import NOTHING_STATED, TestView
 from reduction.stages.moduli.stepwise_test import StepReadings, reduce_stepwise
-from reduction.uncertainty.shared_contributions import with_shared_steps
+from reduction.uncertainty.errors_of_cycles import with_shared_steps
 
 INCH, POUND = 0.0254, 4.4482216
 AREA = np.pi / 4 * 0.0257**2

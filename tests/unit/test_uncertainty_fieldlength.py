@@ -8,7 +8,7 @@ import pytest
 from reduction.record.contributions import InstrumentErrors
 from reduction.stages.strain.strain_model import StrainModel, strain_by_model
 from reduction.uncertainty.error_field import coefficient_errors, error_field
-from reduction.uncertainty.shared_contributions import _of_material
+from reduction.uncertainty.errors_of_curves import errors_of_material
 
 COEFFICIENTS = {
     "relaxed_free_length": 2.55,
@@ -42,7 +42,7 @@ def slack_contributions(**stated):
             strain=np.array([0.03]), by_tension=np.array([2e-4]), by_lag=np.array([0.1])
         ),
     )  # fmt: skip
-    (found,) = _of_material(test, 0, InstrumentErrors("new", **stated), MODEL, np.nan)
+    (found,) = errors_of_material(test, 0, InstrumentErrors("new", **stated), MODEL, np.nan)
     return dict(zip(found.component, found.values["slack_strain_at_unloading"], strict=True))
 
 

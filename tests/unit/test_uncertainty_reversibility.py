@@ -9,8 +9,8 @@ from reduction.record.contributions import InstrumentErrors
 from reduction.record.measurement import LoadTrain
 from reduction.stages.strain.strain_model import StrainModel
 from reduction.uncertainty.effects_on_answers import load_train_notes
+from reduction.uncertainty.errors_of_curves import _reversibility_on_branches
 from reduction.uncertainty.propagation import LoopQuantities, loop_contributions
-from reduction.uncertainty.shared_contributions import _reversibility_on_branches
 
 GAUGE = StrainModel("rope", "gauge-length", {"gauge_length": 1.0, "reference_position": 1.0})
 PEAK, STROKE, LOSS = 1000.0, 0.01, 0.05  # [N], [1], [1]: tension from zero, strain amplitude

@@ -6,8 +6,9 @@ import pytest
 from reduction.record.contributions import InstrumentErrors
 from reduction.stages.holds.hold_product import HoldResult
 from reduction.stages.strain.strain_model import StrainModel
+from reduction.uncertainty.errors_of_curves import _friction_on_branches
+from reduction.uncertainty.errors_of_cycles import _of_hold
 from reduction.uncertainty.propagation import LoopQuantities, loop_contributions
-from reduction.uncertainty.shared_contributions import _friction_on_branches, _of_hold
 
 MODEL = StrainModel(
     "new", "tension-driven",

@@ -13,9 +13,9 @@ from reduction.stages.strain.mark_readings import slack_growth, tape_error, tape
 from reduction.stages.strain.strain_fit import PooledMarks, average_over_laws, fit_strain_model
 from reduction.stages.strain.strain_model import StrainModel
 from reduction.uncertainty.error_field import error_field
-from reduction.uncertainty.shared_contributions import (
-    _slipped,
-    _slipped_by_cycle,
+from reduction.uncertainty.errors_of_cycles import (
+    errors_after_slip,
+    slipped_by_cycle,
     with_splice_slips,
 )
 
@@ -71,23 +71,25 @@ def test_only_cycles_after_a_slip_have_it():
         (Component("position_offset", "crosshead"), BY_STEPS),
         {"mean_strain": np.ones((2, 10)), "chord_modulus": np.ones((2, 10, 2))},
     )
-    found = _slipped_by_cycle(ten, test, 0, slice(0, 10))
+    found = slipped_by_cycle(ten, test, 0, slice(0, 10))
     # in hundredths of what was let out in the end; a third of the second slip in each cycle
     course = [0, 0, 0, 0, 0.4, 0.4, 0.4, 0.6, 0.8, 1.0]
     assert found.values["mean_strain"][1] == pytest.approx(course)
     assert found.values["chord_modulus"][1, :, 1] == pytest.approx(course)
     assert (found.values["mean_strain"][0] == 1).all()
     part = Contributions(ten.component, {"mean_strain": np.ones((2, 3))})
-    found = _slipped_by_cycle(part, test, 0, slice(7, 10))
+    found = slipped_by_cycle(part, test, 0, slice(7, 10))
     assert found.values["mean_strain"][1] == pytest.approx(course[7:])
 
 
 def test_a_mean_over_cycles_has_the_share_of_those_after_the_slip():
     test = slipped_test()
     errors = InstrumentErrors("new", splices_slipped_by=1.0)
-    assert _slipped(test, 0, errors, slice(0, 4)).splices_slipped_by == 0.0
-    assert _slipped(test, 0, errors, slice(3, 5)).splices_slipped_by == pytest.approx(0.2)
-    assert _slipped(test, 0, errors, np.array([0, 9])).splices_slipped_by == pytest.approx(0.5)
+    assert errors_after_slip(test, 0, errors, slice(0, 4)).splices_slipped_by == 0.0
+    assert errors_after_slip(test, 0, errors, slice(3, 5)).splices_slipped_by == pytest.approx(0.2)
+    assert errors_after_slip(test, 0, errors, np.array([0, 9])).splices_slipped_by == pytest.approx(
+        0.5
+    )
 
 
 FREE, SPLICES = 2.5, 1.2  # m
