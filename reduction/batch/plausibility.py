@@ -138,7 +138,7 @@ def implausible(
         notes += _of_statements(campaign, survey, models)
         notes += _of_columns(campaign, survey)
         notes += _of_absent(campaign, survey)
-    for test, one in (*_of_pairs(campaign, read, models), *_of_swapped(read)):
+    for test, one in (*_of_pairs(campaign, read, models), *_of_swapped(read), *_of_dates(read)):
         found[test].append(one)
     for plan in campaign.experiments.values():
         for test, one in _off_plan(campaign, plan, read):
@@ -612,6 +612,38 @@ def _of_stiffness(
                 survey.plan.id,
                 note("stiffness-jumps", name, other=test, ratio=ratio, like=words_of_ratio(ratio)),
             )
+
+
+def _of_dates(surveys: Sequence[Survey]) -> Iterator[tuple[str, Note]]:
+    """Find tests whose date is not that of their place in the history of a specimen."""
+    told: set[str] = set()
+    by_specimen: dict[str, list[tuple[int, str, str]]] = {}
+    for survey in surveys:
+        date = survey.plan.attributes.get("date", "")
+        if survey.plan.order is not None and _DAY.fullmatch(date):
+            for name in survey.plan.specimens:
+                dated = by_specimen.setdefault(name, [])
+                dated.append((survey.plan.order, date, survey.plan.id))
+    for dated in by_specimen.values():
+        # those that contradict most others first: without them the others may be in order
+        left = sorted(dated)
+        while left:
+            wrong = [sum(_is_late(one, other) for other in left) for one in left]
+            if not max(wrong):
+                break
+            odd = left.pop(int(np.argmax(wrong)))
+            _, date, test = next(other for other in left if _is_late(odd, other))
+            if odd[2] not in told:
+                told.add(odd[2])
+                yield odd[2], note("date-against-order", date=odd[1], other=test, of_other=date)
+
+
+_DAY = re.compile(r"\d{4}-\d{2}-\d{2}")
+
+
+def _is_late(one: tuple[int, str, str], other: tuple[int, str, str]) -> bool:
+    """Whether two tests have different orders, and dates the other way round."""
+    return (one[0] < other[0] and one[1] > other[1]) or (one[0] > other[0] and one[1] < other[1])
 
 
 # logarithm of the ratio of two peaks: of a pair that is too alike, and how far off the others of

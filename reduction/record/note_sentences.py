@@ -1924,6 +1924,11 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         " other tests: the two are swapped. Check the order of `specimens` of this test, and of the"
         " load columns of its log",
     ),
+    "date-against-order": (
+        "warning",
+        "its date is {date}, that of {other} {of_other}, and their `order` is the other way round:"
+        " correct the date, or the order, which determines what the specimen had been through",
+    ),
     "marks-of-absent": (
         "warning",
         "{n_marks} marks were read on it in this test, which is one of {present}. Check `specimens`"
@@ -2037,7 +2042,7 @@ SENTENCES: Mapping[str, tuple[Severity, str | Callable[..., str]]] = {
 
 CAUSES = (
     "log-used-twice", "readings-used-twice", "marks-of-another", "marks-of-absent",
-    "channels-alike", "specimens-swapped",
+    "channels-alike", "specimens-swapped", "date-against-order",
     "column-of-another", "diameter-readings-apart", "stretched-diameters-apart",
     "cycles-in-other-kind", "rate-not-as-stated", "level-not-as-stated",
     "load-never-falls", "load-zero-drifts", "load-zero-wrong", "load-negative",

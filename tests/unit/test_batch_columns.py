@@ -9,6 +9,7 @@ from reduction.batch.plausibility import (
     _copied_marks,
     _of_absent,
     _of_columns,
+    _of_dates,
     _of_pairs,
     _of_swapped,
     _off_other_specimens,
@@ -144,6 +145,24 @@ def test_marks_that_were_read_in_a_test_of_other_specimens_are_told(specimens, t
     found = list(_of_absent(SimpleNamespace(marks={"A": tape("A", *_READ)}), survey))
     assert [one.code for one in found] == told
     assert all("A: 4 marks" in str(one) and "one of C and D" in str(one) for one in found)
+
+
+@pytest.mark.parametrize(
+    ("dates", "told"),
+    [
+        (("2026-03-15", "2026-03-15", "2026-02-01", "2026-03-16"), ["T-3"]),
+        (("2026-05-15", "2026-03-15", "2026-03-15", "2026-03-16"), ["T-1"]),
+        (("2026-03-15", "2026-03-15", "2026-03-16", ""), []),
+        (("spring", "2026-03-15", "2026-03-15", "2026-03-16"), []),
+    ],
+)
+def test_a_date_against_the_order_of_the_tests_is_told(dates, told):
+    surveys = [
+        SimpleNamespace(plan=SimpleNamespace(
+            id=f"T-{order}", order=order, attributes={"date": date}, specimens=("A", "B")))
+        for order, date in enumerate(dates, start=1)
+    ]  # fmt: skip
+    assert [test for test, _ in _of_dates(surveys)] == told
 
 
 def pulled_together(*ratios):

@@ -59,6 +59,14 @@ def test_a_crosshead_in_another_unit_than_stated_is_named(of_log, stated):
     assert f"the crosshead at {factor * HOLDS[0]:.4g} m" in str(raised.value)
 
 
+def test_readings_that_would_be_shorter_than_the_allowance_fit_no_unit():
+    """A load of 0 to 130 lbf stands in the column of the position: 5.9 mm is near its zero."""
+    with pytest.raises(DataError) as raised:
+        check(HOLDS, holds=np.array([0.04, 26.0, 33.0]), rest=0.0, reach=(8.0, 40.0))
+    assert "far_thimble_mm" not in str(raised.value)
+    assert "column, unit and zero of crosshead_position" in str(raised.value)
+
+
 def test_without_a_hold_in_the_log_its_range_names_the_unit():
     with pytest.raises(DataError, match=r"is the header far_thimble_ft\?"):
         check(HOLDS / 0.3048, holds=np.empty(0), slack=SLACK / 0.3048)

@@ -121,7 +121,7 @@ def check_tape_against_crosshead(
             row = int(stretched[np.flatnonzero(outside)[0]])
             raise _contradiction(
                 marks, row, f"the crosshead between {low:.4g} and {high:.4g} m",
-                hint="Correct the row, or the unit of the column, or unit and zero of "
+                hint="Correct the row, or the unit of the column, or column, unit and zero of "
                 "crosshead_position in the layout.",
             )  # fmt: skip
     rests = np.flatnonzero(standstills.is_rest)
@@ -207,7 +207,9 @@ def _check_unit(
         # without a hold in the log, ask only that all are in range in this unit and none as
         # declared
         fits = _meets(other, holds, allowance).all() or (outside.all() and inside.all())
-        if unit == declared or not fits:
+        # nearer to each other, or to zero, than the allowance they would fit any log near zero
+        spread = np.ptp(other) if other.size > 1 else other[0]
+        if unit == declared or not fits or spread <= allowance:
             continue
         row = int(rows[0])
         beside = float(holds[np.abs(holds - other[0]).argmin()]) if holds.size else other[0]
