@@ -121,8 +121,7 @@ def check_tape_against_crosshead(
             row = int(stretched[np.flatnonzero(outside)[0]])
             raise _contradiction(
                 marks, row, f"the crosshead between {low:.4g} and {high:.4g} m",
-                hint="Correct the row, or the unit of the column, or column, unit and zero of "
-                "crosshead_position in the layout.",
+                hint=_CORRECT,
             )  # fmt: skip
     rests = np.flatnonzero(standstills.is_rest)
     if rests.size:
@@ -190,6 +189,12 @@ def _check_slack(marks: SpliceMarks, rows: Integers, stood: float, allowance: fl
             )  # fmt: skip
 
 
+_CORRECT = (
+    "Correct the row, or the unit of the column, or column, unit and zero of crosshead_position in "
+    "the layout."
+)
+
+
 def _check_unit(
     marks: SpliceMarks,
     rows: Integers,
@@ -207,18 +212,18 @@ def _check_unit(
         # without a hold in the log, ask only that all are in range in this unit and none as
         # declared
         fits = _meets(other, holds, allowance).all() or (outside.all() and inside.all())
-        # nearer to each other, or to zero, than the allowance they would fit any log near zero
-        spread = np.ptp(other) if other.size > 1 else other[0]
-        if unit == declared or not fits or spread <= allowance:
+        if unit == declared or not fits:
             continue
         row = int(rows[0])
         beside = float(holds[np.abs(holds - other[0]).argmin()]) if holds.size else other[0]
         factor = UNITS[declared] / size
+        # nearer to each other, or to zero, than the allowance they fit any log near zero
+        is_told = (np.ptp(other) if other.size > 1 else other[0]) > allowance
         raise _contradiction(
             marks, row, f"the crosshead at {beside:.4g} m",
             hint=f"In {unit} all {rows.size} stretched marks of the test fit: is the header "
             f"far_thimble_{unit}? (Or the log's crosshead_position, stated {factor:.4g} times "
-            "too small.)",
+            "too small.)" if is_told else _CORRECT,
         )  # fmt: skip
     for stated, of_log in permutations(UNITS, 2):
         factor = UNITS[stated] / UNITS[of_log]
