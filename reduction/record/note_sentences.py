@@ -274,7 +274,8 @@ _OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             f"the cycles differ (90 % of their mean levels lie within {100 * mean:.0f} % of the"
             f" range of a cycle, 90 % of their ranges within a factor of {ratio:.2f}, and 90 % of"
             f" their periods within a factor of {of_periods:.2f}): a mean over them represents"
-            " none of them" + (f". Its levels are {steps}" if steps else "")
+            " none of them"
+            f". {f'Its levels are {steps}' if steps else 'Declare each level as a step of its own'}"
         ),
     ),
     "held-load-repeats": (
@@ -2044,7 +2045,7 @@ CAUSES = (
     "log-used-twice", "readings-used-twice", "marks-of-another", "marks-of-absent",
     "channels-alike", "specimens-swapped", "date-against-order",
     "column-of-another", "diameter-readings-apart", "stretched-diameters-apart",
-    "cycles-in-other-kind", "rate-not-as-stated", "level-not-as-stated",
+    "cycles-in-other-kind", "cycles-unlike", "rate-not-as-stated", "level-not-as-stated",
     "load-never-falls", "load-zero-drifts", "load-zero-wrong", "load-negative",
     "load-falls-with-stretch", "pushed-in-cycles", "reference-length-under-preload",
     "reference-length-elsewhere", "tension-far-below-strength", "extensometer-late",

@@ -10,6 +10,7 @@ from strangers import make
 from reduction.batch.survey import survey_campaign
 from reduction.campaign.load import load_campaign
 from reduction.campaign.plan import StepPlan
+from reduction.record.note_sentences import CAUSES
 
 LAW = "rope-creep-levels"
 
@@ -87,7 +88,10 @@ def test_a_stated_step_that_holds_several_levels_is_told(raw):
     campaign.tests[name] = replace(plan, steps=(whole,))
     (survey,) = survey_campaign(campaign).surveys
     assert [one.code for one in survey.remarks] == ["cycles-unlike"]
-    assert "cycles-unlike" in [one.code for one in survey.notes]
+    (said,) = [one for one in survey.notes if one.code == "cycles-unlike"]
+    assert str(said).endswith("Declare each level as a step of its own")
+    # the first line: a stiffness that "changes at a cycle" is that of another level
+    assert said.code in CAUSES
 
 
 def test_one_level_can_be_asked_for(command, raw, tmp_path):

@@ -532,6 +532,41 @@ def _count_over_gaps(
     return np.arange(1, first.size + 1) + np.cumsum(hidden)
 
 
+def _cycles_before(time: Floats, values: Floats, reversals: Indices, begin: int) -> int:
+    """Number of cycles before the first whole one, of its pace and half of its range or more.
+
+    Examples
+    --------
+    Slack, a sine that grows, of which the cycles from 7 on are whole:
+
+    >>> values = np.array([0.0, 0, 2, 3.6, 2.2, 3.8, 2.1, 4, 2, 4, 2, 4])[[0, *range(12)]]
+    >>> time = np.array([0.0, *range(20, 32)])
+    >>> print(_cycles_before(time, values, np.arange(2, 13), 9))
+    3
+    """
+    near = int(np.searchsorted(reversals, begin))
+    turns = np.concatenate([reversals[:near], [begin], reversals[near:]])
+    turns = turns[np.concatenate([[True], np.diff(turns) > 0])]
+    at = int(np.searchsorted(turns, begin))
+    lasts = np.diff(take_samples(time, turns))
+    ranges = np.abs(np.diff(take_samples(values, turns)))
+    n_found = 0
+    # the half cycles before it, from the last one back, beside those of its kind behind it
+    for place in range(at - 1, -1, -1):
+        own = slice(at + (at - place) % 2, at + 5, 2)
+        if not lasts[own].size:
+            break
+        pace, part = (one[place] / np.median(one[own]) for one in (lasts, ranges))
+        if not (abs(pace - 1) < _OFF_PACE and _LEAST_PART < part < _MOST_PART):
+            break
+        n_found += 1
+    return n_found // 2
+
+
+_OFF_PACE = 0.25  # of the time of a half cycle
+_LEAST_PART, _MOST_PART = 0.5, 1.3  # of its range
+
+
 def _check_rises(counts: Integers) -> None:
     """Refuse a channel that falls and rises as a cycle count cannot."""
     counts = counts[counts > 0]
@@ -1314,11 +1349,12 @@ def find_cycles(
             notes.append(note("cycles-in-gaps", n_cycles=first.size, n_hidden=n_hidden))
         elif odd.any():
             count, is_sure = np.flatnonzero(~odd) + 1 - int(odd[0]), True
-        if chosen.n_starting:
-            # creep, and softening, began with the cycles in which the machine started
+        # creep, and softening, began with the cycles in which the machine started
+        n_before = max(chosen.n_starting, _cycles_before(time, values, reversals, int(first[0])))
+        if n_before:
             if count is None:
                 count, is_sure = np.arange(1, first.size + 1), True
-            count = count + chosen.n_starting
+            count = count + n_before
     if first.size == 1:
         notes.append(note("one-cycle"))
     # the way to the cycles and from them is not a cycle
