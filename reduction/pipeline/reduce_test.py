@@ -75,6 +75,7 @@ from reduction.stages.cycles.periods import change_of_period
 from reduction.stages.cycles.reading_noise import vibration_beside_wave
 from reduction.stages.holds.hold_product import HoldResult
 from reduction.stages.holds.relaxation_and_creep import reduce_holds
+from reduction.stages.moduli.cycle_alignment import CLEAR_JUMP, jump_at_stop
 from reduction.stages.moduli.modulus_product import ModulusCurves
 from reduction.stages.moduli.slack_length import slack_crossings, slack_strain_at_unloading
 from reduction.stages.moduli.stepwise_test import greatest_step_strain, reduce_stepwise
@@ -488,18 +489,43 @@ _BEYOND_LAG = 2.0  # stated standard uncertainties
 
 
 def _with_drift_of_zero(
-    located: Located, instruments: Sequence[InstrumentErrors]
-) -> tuple[InstrumentErrors, ...]:
-    """Errors with the zero of a load cell uncertain by its drift during the log."""
+    located: Located, instruments: Sequence[InstrumentErrors], *, control: Control
+) -> tuple[tuple[InstrumentErrors, ...], list[Note]]:
+    """Errors with the zero of a load cell uncertain by its drift during the log, with notes."""
     rests = located.load_at_slack or (None,) * len(instruments)
-    moved = [
-        0.0 if rest is None else rest.drift_uncertainty(errors.tension_offset)
-        for errors, rest in zip(instruments, rests, strict=False)
+    found, notes = [], []
+    for index, (errors, rest) in enumerate(zip(instruments, rests, strict=False)):
+        stated = errors.tension_offset
+        moved = 0.0 if rest is None else rest.drift_uncertainty(stated)
+        jump = _jump_at_stop(located, index) if control == "position" else None
+        if jump is not None and jump[1] ** 2 > max(2 * stated, 3**0.5 * moved) ** 2:
+            number, size, explained = jump
+            moved = abs(size) / 3**0.5  # of a uniform distribution from zero to the step
+            if abs(size) > CLEAR_JUMP * explained:
+                name = located.record.specimens[index]
+                notes.append(note("zero-moves-at-stop", name, number=number, size=size,
+                                  explained=explained))  # fmt: skip
+        found.append(replace(errors, tension_offset=float(np.hypot(stated, moved))))
+    return tuple(found), notes
+
+
+def _jump_at_stop(located: Located, index: int) -> tuple[int, float, float] | None:
+    """Step of the mean tension of a specimen across a stop between two cycles."""
+    cycles, time = located.cycles, located.record.time
+    if cycles is None or cycles.n_cycles < 2:
+        return None
+    ends = np.column_stack([cycles.first, cycles.last]).ravel()[:-1]
+    load = located.tension[index][: cycles.last[-1]]
+    # a sum over a cycle changes with the reading at which it turns
+    middle = (np.maximum.reduceat(load, ends) + np.minimum.reduceat(load, ends))[::2] / 2
+    begin, end = (take_samples(time, one) for one in (cycles.first, cycles.last))
+    between = zip(cycles.last[:-1].tolist(), cycles.first[1:].tolist(), strict=True)
+    is_stop = [
+        bool(np.diff(time[last : first + 1]).max(initial=0) < (end[0] - begin[0]) / 2)
+        or located.standstills.covers(slice(last, first + 1)).any()
+        for last, first in between
     ]
-    return tuple(
-        replace(errors, tension_offset=float(np.hypot(errors.tension_offset, one)))
-        for errors, one in zip(instruments, moved, strict=True)
-    )
+    return jump_at_stop(begin, end, middle, np.array(is_stop, dtype=bool))
 
 
 def _with_readings(record: Record, readings: Sequence[InstrumentErrors]) -> Record:
@@ -1080,7 +1106,8 @@ def reduce_test(
     late = _late_extensometers(located, models, strain, instruments)
     record = replace(record, notes=(*record.notes, *late))
     located = replace(located, record=record)
-    instruments = _with_late_readings(record, _with_drift_of_zero(located, instruments))
+    drifting, of_zero = _with_drift_of_zero(located, instruments, control=settings.cycles.control)
+    instruments = _with_late_readings(record, drifting)
     lag, lag_notes = (
         (None, [])
         if cycles is None
@@ -1129,6 +1156,7 @@ def reduce_test(
     loop_notes = (
         (
             *of_wave,
+            *of_zero,
             *_unlike_waves(record.time, driven, cycles, unlike),
             *notes_of_loops(
                 cycle_parts["loops"], names=record.specimens, time_step=median_step(record.time),

@@ -733,6 +733,16 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             " waveform and order, and one step"
         ),
     ),
+    "zero-moves-at-stop": (
+        "warning",
+        lambda number, size, explained: (
+            f"the mean tension is {abs(size):.3g} N {'higher' if size > 0 else 'lower'} after the"
+            f" stop behind cycle {number} than before it, and stays so; relaxation may explain"
+            f" {explained:.2g} N: the zero of the load cell has moved, or something slipped. Means"
+            " of tension are uncertain by it; amplitudes and EA are not affected. Correct the log"
+            " for the step, or enter the cycles before and after the stop as steps"
+        ),
+    ),
     "tension-hums": (
         "warning",
         lambda frequency, size, effect: (
@@ -2061,8 +2071,8 @@ CAUSES = (
     "target-strain-missed", "density-outside-band", "strain-above-band",
     "extensometer-off-at-slack", "reference-tension-elsewhere", "length-jumps",
     "slipped-in-earlier-step", "strain-below-zero",
-    "wave-not-periodic", "wave-changes", "tension-hums", "tension-late", "tension-filtered",
-    "tension-behind-position",
+    "zero-moves-at-stop", "wave-not-periodic", "wave-changes", "tension-hums", "tension-late",
+    "tension-filtered", "tension-behind-position",
     "loops-give-work", "loops-not-of-a-sine", "hold-load-late",
 )  # fmt: skip
 """Errors in stated inputs, causes before their consequences."""

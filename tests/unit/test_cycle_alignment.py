@@ -6,9 +6,11 @@ import pytest
 from reduction.record.settings import ModulusSettings
 from reduction.stages.cycles.cycle_product import Cycles
 from reduction.stages.moduli.cycle_alignment import (
+    CLEAR_JUMP,
     aligned_strain,
     alignment_moves,
     is_shift_of_curve,
+    jump_at_stop,
     jump_of_mean,
     strain_shifts,
 )
@@ -179,3 +181,36 @@ def test_creep_in_a_pause_is_no_slip_and_a_slip_beside_the_pause_is_found():
         number, size = jump_of_mean(time, one + 4e-3 * (np.arange(20) >= 8), *steady)
         assert number == 8
         assert size == pytest.approx(4e-3, rel=0.05)
+
+
+def of_two_blocks(relax, *, level, jump=0.0, n=(30, 30), stop=40.0, seed=0):
+    """Cycles of 2 s with a stop at another level: a linear specimen that relaxes, and a load zero."""
+    begin = 2.0 * np.arange(sum(n)) + stop * (np.arange(sum(n)) >= n[0])
+    at = begin[:, None] + 1.0 - np.array([-3.0, 2.0 * n[0], 2.0 * n[0] + stop])
+    response = np.where(at > 0, relax(np.maximum(at, 0.0)), 0.0)
+    mean = 1000 * response @ [1, level - 1, 1 - level] + jump * (begin > 2.0 * n[0])
+    mean += np.random.default_rng(seed).normal(0, 0.3, mean.size)
+    return begin, begin + 2.0, mean, np.full(mean.size - 1, True)
+
+
+LAWS = [
+    lambda t: 1 - 0.02 * np.log10(1 + t / 0.1), lambda t: (1 + t / 0.3) ** -0.03,
+    lambda t: 0.8 + 0.1 * np.exp(-t / 2) + 0.1 * np.exp(-t / 12),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("level", [0.0, 0.6, 1.0, 1.4])
+@pytest.mark.parametrize("n", [(30, 30), (30, 100), (100, 30)])
+def test_relaxation_and_recovery_in_a_stop_are_no_clear_step_and_a_moved_zero_is(law, level, n):
+    found = jump_at_stop(*of_two_blocks(law, level=level, n=n))
+    assert found is None or abs(found[1]) < CLEAR_JUMP * found[2]
+    for jump in (80.0, -80.0):
+        number, size, explained = jump_at_stop(*of_two_blocks(law, level=level, n=n, jump=jump))
+        assert number == n[0] and abs(size - jump) < explained + 15
+
+
+def test_cycles_that_may_have_run_in_a_gap_of_the_log_tell_nothing_about_the_zero():
+    begin, end, mean, shown = of_two_blocks(LAWS[2], level=1.0, jump=80.0)
+    assert jump_at_stop(begin, end, mean, shown)[1] == pytest.approx(80, abs=5)
+    assert jump_at_stop(begin, end, mean, ~shown) is None

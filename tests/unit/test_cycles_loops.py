@@ -2044,3 +2044,20 @@ def test_a_run_that_ends_before_its_last_valley_lacks_as_much_of_the_tension_as_
     loops = close_loops(50 * turn, tension[None], strain[None], cycles)
     # by the way down of tension and the mean stroke of strain it was 2.7 % too small
     assert loops.apparent_spring_constant[0, 2] == pytest.approx(3e5, rel=0.01)
+
+
+@pytest.mark.parametrize("readings", [11.3, 24.04, 59.8])
+@pytest.mark.parametrize("second", [0.08, -0.05])
+def test_a_cycle_with_one_reading_more_has_the_same_fundamental(readings, second):
+    """A wave with a second harmonic; the fundamental is one by construction."""
+    wave = np.arange(int(40 * readings)) / readings
+    values = 3 - np.cos(2 * np.pi * wave) + second * np.cos(4 * np.pi * wave)
+    turns = np.round(np.arange(39) * readings).astype(np.intp)
+    basis = cycle_basis(
+        np.arange(wave.size) * 1.0, turns[:-1], turns[1:], period=np.full(38, readings)
+    )
+    cosine, sine, mean = fundamental(values, basis)
+    # to second order in a reading over a period
+    least = 3 * abs(second) / readings**2 + 0.01 * abs(second) / readings
+    np.testing.assert_allclose(np.hypot(cosine, sine), 1, atol=2 * least)
+    np.testing.assert_allclose(mean, 3, atol=least)

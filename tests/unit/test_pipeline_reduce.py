@@ -6,6 +6,7 @@ import pytest
 from reduction.archive.test_dataset import _sample_values
 from reduction.pipeline.located_test import locate
 from reduction.pipeline.reduce_test import reduce_test
+from reduction.record.contributions import InstrumentErrors
 from reduction.record.measurement import Quality, Record, Specimen
 from reduction.record.settings import ReductionSettings
 from reduction.stages.reduced_test import TestDescription
@@ -134,3 +135,33 @@ def test_cycles_of_two_sines_say_so_and_have_no_loss():
     assert note.severity == "warning" and "Its energy and loss are not given" in str(note)
     assert np.isnan(test.loops.hysteresis_energy).all()
     np.testing.assert_allclose(test.amplitude.apparent_spring_constant, [400], rtol=0.01)
+
+
+@pytest.mark.parametrize("step", [0.0, 20.0, -20.0])
+def test_a_zero_that_moves_while_the_machine_stands_is_told_and_in_the_mean_tension(step):
+    """Sixteen cycles of 4 s, 6 s at the valley, sixteen more: 400 N a unit strain, 120 +- 60 N."""
+    time = np.arange(0, 144, 0.05)
+    at = np.where(time < 69, np.clip(time - 5, 0, 64), np.maximum(time - 11, 64))
+    strain = np.interp(time, [0, 2, 5], [0, 0, 1]) * (
+        0.3 - 0.15 * np.cos(np.pi * np.minimum(at, 128) / 2)
+    )
+    tension = 400 * strain + step * (time > 72) + np.random.default_rng(3).normal(0, 0.1, time.size)
+    zeros = np.zeros((1, time.size), dtype=np.uint16)
+    record = Record("C-2", ("cord",), time, 1 + strain, tension[None], zeros, zeros[0])
+    settings = ReductionSettings()
+    test = reduce_test(
+        locate(record, kind="cyclic", settings=settings),
+        description=TestDescription("c", "C-2", "cyclic", "position", "sinusoidal", 1, {}),
+        specimens=(Specimen("cord", kind="elastomer", diameter=(DIAMETER,)),),
+        models=(
+            StrainModel("cord", "gauge-length", {"gauge_length": 1.0, "reference_position": 1.0}),
+        ),
+        history=None, sources=(), settings=settings, settings_json="{}",
+        instruments=(InstrumentErrors("cord", tension_instrument="A"),),
+    )  # fmt: skip
+    told = [one for one in test.loop_notes if one.code == "zero-moves-at-stop"]
+    assert [round(one.numbers["size"]) for one in told] == ([step] if step else [])
+    assert test.amplitude.mean_tension[0] == pytest.approx(120 + step / 2, abs=1)
+    if step:
+        shared = test.contributions.shared_standard_uncertainty("test_mean_tension")
+        np.testing.assert_allclose(shared, 20 / np.sqrt(3), rtol=0.02)

@@ -348,11 +348,13 @@ def _phase_turns(cosine: Floats, sine: Floats, basis: CycleBasis, time: Floats) 
 
 
 def fundamental(values: Floats, basis: CycleBasis) -> tuple[Floats, Floats, Floats]:
-    """Cosine and sine amplitude of the fundamental in each cycle, and its mean.
+    r"""Cosine and sine amplitude of the fundamental in each cycle, and its mean.
 
     Notes
     -----
-    A drift d over the cycle, linear in time, adds -d/pi to the sine: see `_mean_drift`.
+    A drift d over the cycle, linear in time, adds -d/pi to the sine: see `_mean_drift`.  Readings
+    that span :math:`\delta` periods too much add :math:`\delta` times the other harmonics at the
+    turn to the mean, and twice as much to the cosine, to first order.
 
     Examples
     --------
@@ -375,7 +377,13 @@ def fundamental(values: Floats, basis: CycleBasis) -> tuple[Floats, Floats, Floa
         axis=-1,
     )
     mean, cosine, sine = np.einsum("cij,cj->ic", basis.inverse, sums)
-    return cosine, sine, mean
+    # the readings of a cycle span a little more or less than a period: where the wave is no
+    # sine, its excess over the fundamental there counts for as much
+    end_cosine, end_sine = basis.end_cosine / basis.end_share, basis.end_sine / basis.end_share
+    beyond = np.arctan2(end_sine, end_cosine) / (2 * np.pi)
+    excess = values[first] + values[last] - 2 * mean - cosine * (1 + end_cosine) - sine * end_sine
+    excess *= np.where(np.abs(beyond) < _BEYOND_PERIOD, beyond, 0.0) / 2
+    return cosine - 2 * excess, sine, mean - excess
 
 
 def part_means(values: Floats, basis: CycleBasis, middles: Integers) -> Floats:
@@ -446,6 +454,9 @@ def without_turning(
     share = turned / (4 * np.pi)
     cosine, sine = cosine / (1 + share), sine / (1 - share)
     return cosine, sine, mean - 2 * share * cosine
+
+
+_BEYOND_PERIOD = 0.15  # of a period: a cycle of seven readings
 
 
 _OF_SETTLING_PHASE = 3.0  # greatest step of the phase over the next one

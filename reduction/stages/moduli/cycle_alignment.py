@@ -17,7 +17,7 @@ import scipy
 from numpy.typing import NDArray
 
 from reduction.record.errors import DataError
-from reduction.record.measurement import Floats, Integers
+from reduction.record.measurement import Bools, Floats, Integers
 from reduction.record.samples import empty_like, sample_blocks
 from reduction.stages.moduli.modulus_product import ModulusCurves
 
@@ -184,6 +184,68 @@ def _one_jump(place: int, change: Floats, lasts: Floats, rate: Floats) -> tuple[
     ])  # fmt: skip
     rest = float(beside.max() * lasts[first : last + 1].max())
     return first, last, max(rest, float(np.finfo(np.float64).tiny))
+
+
+def jump_at_stop(
+    begin: Floats, end: Floats, mean: Floats, is_stop: Bools
+) -> tuple[int, float, float] | None:
+    """Find the step in mean tension across a stop of the machine that relaxation explains least.
+
+    Parameters
+    ----------
+    begin, end, mean : ndarray, shape (n_cycles,)
+        Times of the ends of each cycle, and its mean tension. [s], [s], [N]
+    is_stop : ndarray of bool, shape (n_cycles - 1,)
+        Whether the log shows that no cycle ran between a cycle and the next one. [-]
+
+    Returns
+    -------
+    jump : tuple of int and float, or None
+        Number of the last cycle before it, from 1, its size, and what may be a change of the
+        specimen; None where that is as much. [N]
+
+    Raises
+    ------
+    ValueError
+        If the arrays differ in length.
+
+    Notes
+    -----
+    What relaxes or recovers in a stop passes again in the first cycles behind it.  After as many
+    cycles as before it, and as long as the stop, the mean is back where it was, but for what
+    it still changes over half of these cycles.  A zero of the load cell that has moved stays.
+
+    Examples
+    --------
+    >>> begin, shown = np.append(np.arange(12.0), 20 + np.arange(12.0)), np.full(23, True)
+    >>> mean = 500 + 20 * np.exp(-(begin % 20))
+    >>> found = jump_at_stop(begin, begin + 1, mean - 10.0 * (begin > 15), shown)
+    >>> print(jump_at_stop(begin, begin + 1, mean, shown), found[:2])
+    None (12, -10.0)
+    """
+    waits, period = begin[1:] - end[:-1], end - begin
+    ends = [0, *(np.flatnonzero((waits > period[:-1] / 2) & is_stop) + 1).tolist(), begin.size]
+    jumps = []
+    for first, stop, last in zip(ends, ends[1:], ends[2:], strict=False):
+        n = min(stop - first, last - stop)
+        if n < _AT_STOP or not waits[stop - 1] < n * period[stop]:
+            continue
+        sides = mean[stop - n : stop], mean[stop : stop + n]
+        before, after = (float(np.mean(one[-2:])) for one in sides)
+        later = [one[-(n // 2 + 1) :] for one in sides]
+        changes = sum(abs(float(np.mean(one[:2]) - np.mean(one[-2:]))) for one in later)
+        noise = np.sqrt(np.mean([np.mean(np.diff(one, n=2) ** 2) / 6 for one in later]))
+        jumps.append((stop, after - before, changes + _BEYOND_NOISE * float(noise)))
+    found = max(jumps, key=lambda one: abs(one[1]) - one[2], default=None)
+    return found if found is not None and abs(found[1]) > found[2] else None
+
+
+_AT_STOP = 6  # cycles on each side
+
+_BEYOND_NOISE = 3.0  # of the mean over one cycle
+
+CLEAR_JUMP = 4.0
+"""Times what may be a change of the specimen: a step of the mean that none explains."""
 
 
 def is_shift_of_curve(
