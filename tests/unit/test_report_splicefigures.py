@@ -11,6 +11,7 @@ FREE, SPLICES, COMPLIANCE, EXPONENT = 2.5, 1.2, 2e-3, 0.8
 TENSION = np.array([0.0, 200.0, 400.0, 800.0])
 STRAIN = np.array([0.0, 0.5, 1.0, 1.5])
 MISSED = np.array([0.001, -0.002, 0.0, 0.003])
+RATIO = 0.15
 S, C, M = "specimen", "coefficient_name", "mark"
 
 
@@ -28,6 +29,11 @@ def make_view(units="si", *, method="tension-driven", deviation=0.0):
         values = {"relaxed_free_length": FREE, "free_length_intercept": -0.4,
                   "free_length_slope": 0.8}  # fmt: skip
         position = np.array([3.625, 5.2, 6.75, 8.3])
+    elif method == "mixed":
+        values |= {"splice_offset": 0.0, "splice_strain_ratio": RATIO, "splice_limit": 0.0,
+                   "splice_strain_curvature": 0.0, "splice_strain_cubic": 0.0,
+                   "splice_saturation": 0.0}  # fmt: skip
+        position = FREE * (1 + STRAIN) + splices_at(TENSION) + SPLICES * RATIO * STRAIN
     else:
         position = FREE * (1 + STRAIN) + splices_at(TENSION)
     names = list(values)
@@ -105,6 +111,17 @@ def test_a_method_that_knows_no_tension_is_drawn_against_position():
     position = np.array(line["x"])
     assert line["y"] == pytest.approx(position - (-0.4 + 0.8 * position), abs=1e-4)
     assert figure.layout["shapes"][0]["x0"] == 8.5
+
+
+def test_a_method_by_tension_and_strain_is_drawn_at_the_tensions_of_the_marks():
+    # against position alone the law had the position for a tension: far below every mark
+    (figure,) = draw_splices(make_view(method="mixed"))
+    assert figure.layout["xaxis"]["title"]["text"] == "crosshead position at the marks [m]"
+    line = traces_of(figure, "y2")["mixed"]
+    own = [0, 1, 3]
+    expected = splices_at(TENSION[own]) + SPLICES * RATIO * STRAIN[own]
+    assert line["x"] == pytest.approx(FREE * (1 + STRAIN[own]) + expected, rel=1e-5)
+    assert line["y"] == pytest.approx(expected, rel=1e-5)
 
 
 def test_without_marks_or_without_a_length_of_the_splices_there_is_no_figure():

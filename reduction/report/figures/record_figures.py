@@ -315,7 +315,7 @@ def _flagged(
 
 _MARK, _METHOD, _OTHER = COLOURS[1], COLOURS[0], COLOURS[6]
 
-_LENGTH, _BY_TENSION = "relaxed_free_length", "tension-driven"
+_LENGTH, _BY_TENSION, _BY_BOTH = "relaxed_free_length", "tension-driven", "mixed"
 
 _STEPS = 120
 
@@ -386,14 +386,18 @@ def _upper(
     """Draw the length of the splices: of the method a line with its band, of the marks points."""
     is_by_tension = model.method == _BY_TENSION
     low = 0.0 if is_by_tension else float(reached.min())
-    along = np.linspace(low, float(reached.max()), _STEPS)
+    along = tension = np.linspace(low, float(reached.max()), _STEPS)
     # of a method by tension the length of the splices is the same at every position
     position = np.full(_STEPS, marks.position.max()) if is_by_tension else along
+    if model.method == _BY_BOTH:
+        # neither alone determines the splices: the line joins its lengths at the marks
+        order = np.argsort(marks.along, kind="stable")
+        along, position, tension = marks.along[order], marks.position[order], marks.tension[order]
     free = model.coefficients[_LENGTH]
-    strain = strain_by_model(model, position=position, tension=along)
+    strain = strain_by_model(model, position=position, tension=tension)
     splices = (position - free * (1 + strain)) * length.factor
     # that of the free length itself is in the strain, not in the splices
-    spread = _spread(model, position, along, left_out=_LENGTH)
+    spread = _spread(model, position, tension, left_out=_LENGTH)
     half = NORMAL * free * spread * length.factor
     x = along * across.factor
     read = (marks.position - free * (1 + marks.strain)) * length.factor
