@@ -47,6 +47,7 @@ from reduction.experiments.designs import (
     term_names,
 )
 from reduction.experiments.response_matrix import times
+from reduction.quantities.digits import fixed_number, places_of
 from reduction.record.arrays import as_finite, as_positive, as_same_shape
 from reduction.record.contributions import CONFIDENCE
 from reduction.record.errors import FitError, SettingsError
@@ -251,13 +252,14 @@ def _slack(sheet: RunSheet, names: Mapping[int, str], *, is_measured: bool) -> l
     if not runs:
         return []
     least = float(np.min(sheet.minimum_tension[chosen]))
+    in_newtons = fixed_number(least, places_of(least, 2))
     rounding = NEAR_ZERO * float(np.max(sheet.peak_tension))
     if least < -rounding:
-        goes = f"falls below zero, to {least:.4g} N"
+        goes = f"falls below zero, to {in_newtons} N"
     elif least <= rounding:
         goes = "reaches zero"
     else:
-        goes = f"falls to {least:.4g} N, which is no tension to a load cell"
+        goes = f"falls to {in_newtons} N, which is no tension to a load cell"
     when = "" if is_measured else " in every cycle"
     highest = float(np.max(sheet.peak_share[chosen]))
     share = (

@@ -39,6 +39,7 @@ from reduction.prediction.hose_product import HoseDesign, HoseEvent, HosePredict
 from reduction.prediction.hose_tension import find_events, predict_hose
 from reduction.prediction.hose_uncertainty import EventUncertainty, propagate_hose
 from reduction.prediction.measured_curve import CurveName, Loading, MeasuredCurve
+from reduction.quantities.digits import places_of
 from reduction.record.arrays import as_finite, as_same_shape
 from reduction.record.errors import DataError
 from reduction.record.measurement import Floats, Integers, read_only_arrays
@@ -950,13 +951,13 @@ def verdict_words(
     if not np.isfinite(validation.largest_ratio):
         return "not judged: neither the test nor the prediction has an uncertainty"
     if not validation.agrees:
-        difference = validation.ratio_difference
+        difference = factor * validation.ratio_difference
         way = "above" if difference > 0 else "below"
         return (
-            f"differs by {factor * difference:+.4g} {unit} at strain "
-            f"{validation.largest_ratio_strain:.4g}, {validation.largest_ratio:.1f} times its "
-            f"standard uncertainty ({validation.coverage_factor:.1f} expected at most): the "
-            f"prediction is {way} the test"
+            f"differs by {round(difference, places_of(difference, 4)):+,.9g} {unit} at"
+            f" {100 * validation.largest_ratio_strain:.4g} % strain,"
+            f" {validation.largest_ratio:.1f} times its standard uncertainty (a correct prediction"
+            f" stays below {validation.coverage_factor:.1f}): the prediction is {way} the test"
         )
     size = (
         f"{factor * validation.median_limit:.3g} {unit} or "

@@ -414,13 +414,13 @@ OF_RECORD: tuple[Quantity, ...] = (
         measured(
             "splice_compliance",
             "1",
-            "splice strain at a tension of 1 N: c in c F**n",
+            "splice strain at a tension of 1 N: c in c F^n",
             tables=("splice_coefficients",),
         ),
         measured(
             "splice_exponent",
             "1",
-            "exponent n of tension in the splice strain c F**n",
+            "exponent n of tension in the splice strain c F^n",
             tables=("splice_coefficients",),
         ),
         measured(

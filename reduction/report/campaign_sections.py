@@ -307,7 +307,9 @@ def _story(view: HoseView) -> str:
     )
 
 
-_TAKE_NONE = ". Other values fit as well; the intervals of the fitted values do not apply"
+_TAKE_NONE = (
+    ". Other values fit as well, and the intervals of the fitted values do not apply. Fit fewer"
+)
 
 
 def _make_comparison_section(view: ComparisonView) -> TestSection:

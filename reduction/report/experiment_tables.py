@@ -28,6 +28,7 @@ from reduction.experiments.surface_points import (
     evaluate_surfaces,
     extremes_in_box,
 )
+from reduction.quantities.digits import fixed_number, places_of
 from reduction.quantities.names import QUANTITIES, RESPONSES, SCALES
 from reduction.record.contributions import CONFIDENCE, coverage_factor, effective_degrees_of_freedom
 from reduction.record.measurement import Floats, Integers
@@ -349,6 +350,17 @@ def answer_table(view: ExperimentView, surfaces: ResponseSurfaces) -> PageTable 
         )
         for k, _, unit in kept
     ]  # fmt: skip
+
+    def extreme(values: Floats, k: int, unit: Shown) -> TableCell:
+        """Return a value with as many significant digits as that in the middle."""
+        half = float(highs[k, 0] - lows[k, 0]) / 2
+        if not (np.isfinite(half) and half > 0 and middle.value[k, 0]):
+            return number(float(values[k]), unit)
+        digits = places_of(half, 2) - places_of(float(middle.value[k, 0]), 1) + 1
+        value = float(values[k]) * unit.factor
+        text = fixed_number(value, places_of(value, min(max(digits, 2), 7)))
+        return TableCell(text, repr(float(values[k])), is_number=True)
+
     middles = ", ".join(
         f"{in_words(name)} {number_text(view.levels(place)[1], 3)} {view.factor_units[place].unit}"
         for place, name in enumerate(view.factors)
@@ -365,8 +377,8 @@ def answer_table(view: ExperimentView, surfaces: ResponseSurfaces) -> PageTable 
         )
         .cells("at the centre", [shown_ for shown_, _ in cells])
         .cells(f"{100 * CONFIDENCE:g} % interval", [ends for _, ends in cells])
-        .cells("minimum", [number(float(least[k]), unit) for k, _, unit in kept])
-        .cells("maximum", [number(float(greatest[k]), unit) for k, _, unit in kept])
+        .cells("minimum", [extreme(least, k, unit) for k, _, unit in kept])
+        .cells("maximum", [extreme(greatest, k, unit) for k, _, unit in kept])
         .table(
             f"Experiment {view.name}: responses from the fitted surfaces, at the centre of the"
             f" tested range ({middles}) and over the whole range.",
@@ -683,8 +695,7 @@ def experiment_findings(view: ExperimentView) -> list[SummaryFinding]:
     """Return what a reader must know about an experiment before its numbers."""
     name = f"experiment {view.name}"
     found = [
-        SummaryFinding("warning", (name,), row["caution"] + _of_runs(row))
-        for row in view.own_rows("caution")
+        SummaryFinding("warning", (name,), _caution_words(row)) for row in view.own_rows("caution")
     ]
     surfaces = view.surfaces
     if surfaces is not None:
@@ -882,9 +893,11 @@ def _p(value: float) -> str:
     return "p < 0.0001" if value < 1e-4 else f"p = {value:.4f}"
 
 
-def _of_runs(row: Mapping[str, str]) -> str:
-    runs = row.get("caution_runs", "")
-    return f" ({runs})" if runs else ""
+def _caution_words(row: Mapping[str, str]) -> str:
+    """Return a caution with its runs, unless it names them, and with what to do."""
+    said, runs, hint = row["caution"], row.get("caution_runs", ""), row.get("caution_hint", "")
+    of_runs = f" ({runs})" if runs and runs not in said else ""
+    return f"{said}{of_runs}{f'. {hint}' if hint else ''}"
 
 
 def _lower(text: str) -> str:

@@ -28,6 +28,7 @@ from reduction.experiments.outcome_groups import (
 )
 from reduction.experiments.outcomes import SnapLevels
 from reduction.experiments.strength_statistics import strength_after, summarise_snap_loading
+from reduction.quantities.digits import fixed_number, places_of
 from reduction.record.measurement import Floats
 from reduction.report.figure_data import Figure, Trace, axis, band, line, make_figure, plain_numbers
 from reduction.report.product_views import (
@@ -51,7 +52,6 @@ from reduction.report.text_style import (
     marker,
     measured,
     number,
-    number_text,
     plot_text,
     shown,
     source_words,
@@ -445,8 +445,9 @@ def _least_to_greatest(view: RopeView, name: str, unit: Shown) -> TableCell:
     rows = view.rows_of(name)
     values = view.array(kind)[rows]
     if len(rows) > 1:
-        ends = [number_text(unit.factor * end) for end in (values.min(), values.max())]
-        return TableCell(" to ".join(ends), is_number=True)
+        ends = unit.factor * values.min(), unit.factor * values.max()
+        text = " to ".join(fixed_number(end, places_of(end, 4)) for end in ends)
+        return TableCell(text, is_number=True)
     if not rows:
         return number(float("nan"))
     spread = expanded_property(view, kind)
@@ -518,7 +519,7 @@ def level_table(view: RopeView) -> PageTable | None:
         ("cycles", "dynamic_cycles"),
         ("dynamic stiffness", "dynamic_stiffness"),
         ("over strength", "dynamic_stiffness_over_strength"),
-        ("change a cycle", "dynamic_stiffness_drift"),
+        ("change per cycle", "dynamic_stiffness_drift"),
     )  # fmt: skip
 
 

@@ -142,8 +142,8 @@ def _coefficient_table(view: TestView) -> PageTable | None:
     for name in COEFFICIENTS.values():
         if np.isfinite(sheet.of(name)).any():
             one = QUANTITIES[name]
-            # c of c F**n belongs to a force in newton; another unit would change its meaning
-            unit = "length" if one.unit == "m" else Shown(one.unit, 1.0)
+            # c of c F^n belongs to a force in newton; another unit would change its meaning
+            unit = "length" if one.unit == "m" else Shown(superscript(one.unit), 1.0)
             spread = expand(sheet.of(f"{name}_standard_uncertainty"))
             sheet.measured(one.long_name, name, unit, spread)
     ranges: tuple[tuple[str, Unit, int], ...] = (("position", "length", 2), ("tension", None, 0))

@@ -427,7 +427,7 @@ def _is_stated(view: TestView) -> bool:
 
 
 def _rows(units: UnitSystem) -> tuple[tuple[str, str, Shown], ...]:
-    force, length = shown("tension", units), shown("length", units)
+    force = shown("tension", units)
     small, time = shown("small length", units), Shown("ms", 1e3)
     return (
         ("tension_gain", "gain of tension", _PERCENT),
@@ -435,8 +435,8 @@ def _rows(units: UnitSystem) -> tuple[tuple[str, str, Shown], ...]:
         ("tension_reversibility", "reversibility of tension", _PERCENT),
         ("tension_reading", "one reading of tension", force),
         ("position_gain", "gain of position", _PERCENT),
-        ("position_offset", "zero of position", length),
-        ("position_reading", "one reading of position", length),
+        ("position_offset", "zero of position", small),
+        ("position_reading", "one reading of position", small),
         ("lag", "lag between the channels", time),
         ("diameter", "mean diameter", small),
         ("area", "area before stretch, where no diameter is stated", _PERCENT),

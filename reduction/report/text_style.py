@@ -527,7 +527,7 @@ FROM_READINGS = frozenset(
 )
 """Sources that follow from readings of the tests, not from stated instrument errors."""
 
-_NAMES = {"window": "regression window"}
+_NAMES = {"window": "regression window", "quasi_static_fit": "fit of the slow pull"}
 
 _MEANINGS = {
     RANDOM: "scatter between cycles, noise, regression",

@@ -200,7 +200,7 @@ def chord_of_first_rise(one):
 def test_properties_are_those_of_the_law_that_made_the_log(whole):
     (original,) = properties(whole, "original stiffness")
     near(original, "property_stiffness", chord_of_first_rise(original))
-    assert "held on its way" in original["property_remark"]
+    assert "paused in a hold" in original["property_remark"]
     (static,), (working,) = (
         properties(whole, "static stiffness"),
         properties(whole, "working strain"),

@@ -82,7 +82,7 @@ def test_1325_is_flagged_and_1205_is_creep():
         "1325"
     ]
     assert [c for c, bad in zip(result.clock, result.is_creep, strict=True) if bad] == ["1205"]
-    (note,) = [text for text in map(str, result.notes) if text.startswith("1325")]
+    (note,) = [text for text in map(str, result.notes) if text.startswith("reading 1325")]
     assert "390.5 mm would agree (the eye-to-eye length supports the elongation)" in note
     assert "0.62 and 0.33 MPa" in note  # 90 and 48 psi
 

@@ -63,7 +63,7 @@ def test_a_difference_is_named_with_its_place_sign_and_size():
     wrong[30] += 55
     found = validate_curve(wrong, test, input_error=exact(test))
     assert not found.agrees and found.largest_ratio == pytest.approx(5.5, rel=1e-3)
-    assert found.verdict.startswith("differs by +55 N at strain 0.3, 5.5 times its standard unc")
+    assert found.verdict.startswith("differs by +55 N at 30 % strain, 5.5 times its standard unc")
     assert "the prediction is above the test" in found.verdict
     low = validate_curve(2000 - wrong, test, input_error=exact(test))
     assert low.verdict.startswith("differs by -55 N") and "below the test" in low.verdict
@@ -125,7 +125,7 @@ def test_a_reader_in_pounds_gets_pounds():
     test = pulled(1000 + 0 * STROKE, tension_offset=10.0)
     apart = validate_curve(1044.482 + 0 * test.strain, test, input_error=exact(test))
     words = verdict_words(apart, unit="lbf", factor=1 / 4.4482216)
-    assert words.startswith("differs by +10 lbf at strain") and " N" not in words
+    assert words.startswith("differs by +10 lbf at 0 % strain") and " N" not in words
     near = validate_curve(1005 + 0 * test.strain, test, input_error=exact(test))
     assert verdict_words(near) == near.verdict
     of_reader = verdict_words(near, unit="lbf", factor=1 / 4.4482216)

@@ -79,7 +79,7 @@ def test_creep_at_one_weight_is_flagged_and_gives_no_modulus():
     assert np.isnan(result.interval_modulus).tolist() == [False, True, False]
     (of_creep,) = (one for one in result.notes if one.code == "reading-again")
     assert of_creep.severity == "note"
-    assert str(of_creep) == "0920: read again after 10 min under the same weight: +4.5 mm"
+    assert str(of_creep) == "reading 0920: read again after 10 min under the same weight: +4.5 mm"
     assert result.made[0].startswith("gauge length ")
 
 
@@ -108,7 +108,7 @@ def test_a_misread_length_is_kept_with_its_flag():
     assert result.strain[2] == pytest.approx(strain[2] + 0.02 / GAUGE)
     assert np.isnan(result.interval_modulus[1:3]).all()
     assert np.isnan(result.secant_modulus[2])
-    (note,) = [text for text in map(str, result.notes) if text.startswith("0920")]
+    (note,) = [text for text in map(str, result.notes) if text.startswith("reading 0920")]
     assert (
         "would agree, and the moduli of the adjacent intervals would be 0.80 and 0.80 MPa" in note
     )
@@ -183,7 +183,7 @@ def test_a_length_off_the_others_is_named_and_gives_no_modulus(place):
     assert np.flatnonzero(result.is_odd).tolist() == [place]
     assert np.isnan(result.interval_modulus[max(place - 1, 0) : place + 1]).all()
     (said,) = (one for one in result.notes if one.code == "reading-of-odd-length")
-    assert said.subject == log.clock[place]
+    assert said.subject == f"reading {log.clock[place]}"
     off = said.numbers["length"] - said.numbers["expected"]
     assert off == pytest.approx(0.2 * GAUGE, rel=0.2)
 

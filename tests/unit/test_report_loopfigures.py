@@ -48,7 +48,7 @@ def test_a_cycle_stands_in_the_legend_once_and_says_its_number_in_both_panels():
     for axis_name in ("y", "y2"):
         numbers = [trace["meta"]["cycle"] for trace in panel(figure, axis_name).values()]
         assert numbers == [1, 1, 2, 2, 3, 3]
-    assert figure.layout["yaxis"]["title"]["text"] == "less the line [MPa]"
+    assert figure.layout["yaxis"]["title"]["text"] == "less the chord [MPa]"
 
 
 def test_a_branch_of_one_strain_has_a_level_line():

@@ -87,7 +87,7 @@ def test_what_the_method_misses_stands_below_in_points_of_strain():
 def test_the_bands_are_95_percent_of_the_coefficients():
     (figure,) = draw_splices(make_view(deviation=0.01))
     upper, lower = traces_of(figure, "y2"), traces_of(figure, "y")
-    # s = s0 (1 + c F**n): at slack all of the deviation of s0
+    # s = s0 (1 + c F^n): at slack all of the deviation of s0
     above_slack = upper["of the method"]["y"][0] - SPLICES
     assert above_slack == pytest.approx(1.959964 * 0.01, rel=1e-4)
     assert max(y for y in lower["95 %"]["y"] if y is not None) == pytest.approx(

@@ -97,7 +97,7 @@ def draw_loops(view: TestView) -> list[Figure]:
                 " chord of the first branch, which makes the loops visible.",
                 data, synthetic=view.is_synthetic, height=520,
                 xaxis=axis(in_strain.label("strain"), anchor="y"),
-                yaxis=axis(in_load.label("less the line"), domain=[0.0, 0.4], zeroline=True),
+                yaxis=axis(in_load.label("less the chord"), domain=[0.0, 0.4], zeroline=True),
                 yaxis2=axis(in_load.label(words), domain=[0.48, 1.0]),
             )
         )  # fmt: skip

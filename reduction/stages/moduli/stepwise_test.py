@@ -371,7 +371,7 @@ def _inconsistency_note(
     modulus = _interval_slopes(readings.tension, strain, area=area)[1]
     return note(
         "reading-inconsistent",
-        readings.clock[row],
+        f"reading {readings.clock[row]}",
         length=float(length[row]),
         strain=float(length[row] / gauge - 1),
         recorded=float(printed[row]),
@@ -387,7 +387,11 @@ def _odd_readings(
     """Branches of the readings, mask of the odd ones, and notes on them."""
     is_odd = _find_odd_weights(readings.tension, readings.length)
     notes = [
-        note("reading-of-odd-weight", readings.clock[row], weight=float(readings.tension[row]))
+        note(
+            "reading-of-odd-weight",
+            f"reading {readings.clock[row]}",
+            weight=float(readings.tension[row]),
+        )
         for row in np.flatnonzero(is_odd)
     ]
     order = np.arange(is_odd.size)
@@ -403,7 +407,7 @@ def _odd_readings(
         notes.append(
             note(
                 "reading-of-odd-length",
-                readings.clock[row],
+                f"reading {readings.clock[row]}",
                 length=float(readings.length[row]),
                 expected=length,
             )
@@ -552,7 +556,7 @@ def reduce_stepwise(
         notes.append(
             note(
                 "reading-of-creep" if weight_change[row - 1] else "reading-again",
-                readings.clock[row],
+                f"reading {readings.clock[row]}",
                 elapsed=float(readings.time[row] - readings.time[row - 1]),
                 **({"weight": float(weight_change[row - 1])} if weight_change[row - 1] else {}),
                 growth=float(growth[row - 1]),

@@ -367,7 +367,7 @@ def _on_first_rise(rise: FirstRise | None, cycles: BeddingCycles) -> StepNumber 
     )
 
 
-_HELD = "the rise was held on its way: what it gained meanwhile is in it"
+_HELD = "the first loading paused in a hold: the strain gained in it is included"
 
 _NO_RISE = (
     "the first step has no curve of its first loading: its log must begin slack and, unless it is "
