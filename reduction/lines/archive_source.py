@@ -700,7 +700,8 @@ def _checks_of_runs(runs: Sequence[LineSource]) -> tuple[str, ...]:
     if not doubted:
         return ()
     first = doubted[0][0].replace(" has the status check", "", 1)
-    return (f"{len(doubted)} of {len(runs)} runs have the status check; {first}",)
+    has = "has" if len(doubted) == 1 else "have"
+    return (f"{len(doubted)} of {len(runs)} runs {has} the status check; {first}",)
 
 
 def ropes_with_pulls(folder: Path) -> list[LineSource]:

@@ -460,10 +460,14 @@ def _of_points(values: tuple[ConsistentValues, ...]) -> tuple[str, ...]:
     def of(numbers: Floats) -> str:
         return f"{plain_number(numbers.ravel()[worst], 4)} N"
 
+    def lower_by(one: ConsistentValues) -> str:
+        z = float((one.excess / one.excess_uncertainty).ravel()[worst])
+        # unknown where the page has no scatter of a surface
+        return f"; {_shown(z)} standard errors lower" if np.isfinite(z) else ""
+
     sums = " or ".join(
-        f"{of(one.quasi_static_spring_constant + one.of_surfaces[K_1])} ({one.slow_pull}; "
-        f"{_shown(float((one.excess / one.excess_uncertainty).ravel()[worst]))} standard errors"
-        " lower)"
+        f"{of(one.quasi_static_spring_constant + one.of_surfaces[K_1])} ({one.slow_pull}"
+        f"{lower_by(one)})"
         for one in values
     )
     solved = " or ".join(of(one.dissipation_spring_constant) for one in values)

@@ -275,6 +275,13 @@ def test_a_look_up_warns_at_the_point_and_not_where_the_numbers_hold():
     assert look_up(line, TAU, **at).warnings == ()
 
 
+def test_a_surface_without_a_scatter_gives_no_number_of_standard_errors():
+    # K_1 of the 1 1/4 in line; the warning had "nan standard errors lower"
+    line = published_sources()["nylon-double-braid-1.25in-new"]
+    said = look_up(line, K_AP, frequency=0.3, mean_tension=17793.0, tension_amplitude=7562.0)
+    assert "K_0 + K_1 is 749200 N (cubic of K_0, Table 6) or" in said.warnings[0]
+
+
 def test_the_slow_pull_of_appendix_d_is_told_and_not_applied():
     line = published_sources()[PLAITED]
     # T = 1209.6 lb, Table 7 with its sign of C: 1.214e4 lb (by hand)
