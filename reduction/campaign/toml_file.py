@@ -273,6 +273,23 @@ def _meant_by(place: tuple[str, ...], model: type[BaseModel], *, is_table: bool)
 _MOST_PLACES = 3  # suggested tables for a key known in others
 
 
+def _name_words(pattern: str) -> str:
+    """Say which characters a name may have, by its pattern.
+
+    Examples
+    --------
+    >>> _name_words("^[A-Za-z0-9][A-Za-z0-9_ -]{0,99}$").split(",")[0]
+    'a name has unaccented letters'
+    """
+    if not pattern.startswith("^[A-Za-z0-9]"):
+        return "a name has at most 100 characters, without [ ] * ^ , ; and without # or space first"
+    space = ", spaces" if " " in pattern else ""
+    return (
+        f"a name has unaccented letters, digits, - and _{space}, at most 100, the first a letter"
+        " or digit; write it in another script in a note or title"
+    )
+
+
 def faults_of(
     error: ValidationError, table: object, model: type[BaseModel] | None = None
 ) -> list[_Fault]:
@@ -288,6 +305,8 @@ def faults_of(
             place += (str(cause.facts["key"]),) if "key" in cause.facts else ()
             values[place] = [(str(cause), "")]
         needed = _WORDS.get(entry["type"], entry["msg"].removeprefix("Value error, "))
+        if entry["type"] == "string_pattern_mismatch":
+            needed = _name_words(str(entry["ctx"]["pattern"]))
         if entry["type"] == "extra_forbidden":
             unknown[place] = isinstance(entry["input"], dict)
         shown = "" if is_missing else _shown(entry["input"])

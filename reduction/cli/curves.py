@@ -32,6 +32,7 @@ from reduction.lines.cycle_stiffness import LEAST_COVER
 from reduction.lines.deck_formats import export_table
 from reduction.lines.export_sources import assembly_table, composite_table, ranges_of
 from reduction.lines.published_source import published_piece_sources, published_sources
+from reduction.quantities.digits import fixed_number, places_of
 from reduction.record.contributions import Component, coverage_factor
 from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import Floats
@@ -228,7 +229,9 @@ def _show(source: PieceSource, curve: CompositeCurve, output: CommandOutput) -> 
             flags.append(f"moved {change:+.3g} to keep the curve rising")
         table.add_row(
             short(100 * float(curve.strain[place]), 4),
-            short(factor * float(curve.tension[place])),
+            _within(
+                *(factor * float(one[place]) for one in (curve.tension, curve.standard_uncertainty))
+            ),
             short(factor * float(curve.standard_uncertainty[place]), 3),
             short(float(shared[place]), 3),
             curve.piece_words[curve.piece[place]] if curve.piece[place] >= 0 else "-",
@@ -496,6 +499,19 @@ def _model(path: Path, case: AssemblyCase, source: PieceSource) -> StrainModel:
     return stated_model(case.splices, length, name=source.name)
 
 
+def _within(value: float, standard_uncertainty: float) -> str:
+    """Return a number to the place of the third digit of its standard uncertainty.
+
+    Examples
+    --------
+    >>> _within(44.1012, 18.2), _within(7.9e-6, 13.6), _within(0.0, 0.0)
+    ('44.1', '0.0', '0')
+    """
+    if not 0 < standard_uncertainty < np.inf:
+        return short(value)
+    return fixed_number(value, places_of(standard_uncertainty, 3), mark="")
+
+
 def _splices_in_words(case: AssemblyCase, model: StrainModel) -> str:
     where = "stated" if case.splices is not None else f"as tested ({model.marks_from})"
     numbers = ", ".join(
@@ -540,7 +556,12 @@ def _show_assembly(line: DeployedLine, output: CommandOutput) -> None:
         load, strain = assembly.tether_tension[:, place], assembly.tether_strain[:, place]
         table.add_row(
             short(per_metre * float(assembly.total_length[place])),
-            short(per_newton * float(tension[place])),
+            _within(
+                *(
+                    per_newton * float(one[place])
+                    for one in (tension, assembly.standard_uncertainty)
+                )
+            ),
             short(per_newton * float(assembly.standard_uncertainty[place]), 3),
             short(float(shared[place]), 3),
             *(
