@@ -183,11 +183,12 @@ def tiles(
     # the cycles of a part are also in the log of the whole test
     whole = {view.id for view in tests}
     n_cycles = sum(view.n_cycles for view in tests if view.attribute("part_of") not in whole)
-    found = [
-        _tile(n_tests, "test", "tested"),
-        _tile(n_specimens, "specimen", "tested"),
-        _tile(n_cycles, "cycle", "answer"),
-    ]
+    found = [_tile(n_tests, "test", "tested")]
+    if tests:  # otherwise how many is unknown
+        found += [
+            _tile(n_specimens, "specimen", "tested"),
+            _tile(n_cycles, "cycle", "answer"),
+        ]
     return [*found, _tile(n_failures, "failure", "wrong", is_bad=True)] if n_failures else found
 
 

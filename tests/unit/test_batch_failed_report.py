@@ -24,4 +24,8 @@ def test_where_every_test_failed_the_page_says_that_and_why(tmp_path):
     assert found.report == page
     text = page.read_text(encoding="utf-8")
     assert "T01" in text and "no number" in text and "Failures" in text
+    # it had an empty table, "0 specimens", and spoke of sections that are not there
+    assert "No test could be reduced, so there are no results." in text
+    assert "in its section" not in text and "specimens</a>" not in text
+    assert "Specimens before their first test" not in text
     assert found.tables == ()

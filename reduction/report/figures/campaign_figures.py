@@ -384,7 +384,7 @@ def draw_specimens_together(tests: Sequence[TestView]) -> list[Figure]:
     rest = f" Not shown: {shorten(', '.join(left), 100)}." if left else ""
     return [
         make_figure(
-            "campaign-together", f"Modulus of {shorten(' and '.join(names), 40)}, all tests",
+            "campaign-together", f"Modulus of {_of_specimens(names)}, all tests",
             "Mean tangent modulus of each test. One colour per specimen; ascending solid,"
             " descending dashed. Shaded: range over all cycles and both branches."
             f"{rest}",
@@ -394,6 +394,28 @@ def draw_specimens_together(tests: Sequence[TestView]) -> list[Figure]:
             yaxis=axis(in_stress.label("tangent modulus"), rangemode="tozero"),
         )
     ]  # fmt: skip
+
+
+def _of_specimens(names: Sequence[str]) -> str:
+    """Return the names of the specimens, or how many where they need more than a title has.
+
+    Examples
+    --------
+    >>> _of_specimens(["s0", "s1", "s2"]), _of_specimens(["a" * 30, "b" * 30])
+    ('s0, s1 and s2', '2 specimens')
+    """
+    *others, last = names
+    said = f"{', '.join(others)} and {last}" if others else last
+    return (
+        said
+        if len(said) <= _TITLE
+        else f"{len(names)} specimens"
+        if others
+        else shorten(said, _TITLE)
+    )
+
+
+_TITLE = 40
 
 
 def _test_curves(view: TestView, specimen: str, order: int, *, is_first: bool) -> list[Trace]:
