@@ -406,13 +406,9 @@ def _of_specimens(names: Sequence[str]) -> str:
     """
     *others, last = names
     said = f"{', '.join(others)} and {last}" if others else last
-    return (
-        said
-        if len(said) <= _TITLE
-        else f"{len(names)} specimens"
-        if others
-        else shorten(said, _TITLE)
-    )
+    if len(said) <= _TITLE:
+        return said
+    return f"{len(names)} specimens" if others else shorten(said, _TITLE)
 
 
 _TITLE = 40
