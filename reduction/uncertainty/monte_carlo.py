@@ -98,7 +98,6 @@ def _draw_line(
     covariance: ArrayLike,
     degrees_of_freedom: ArrayLike,
     contribution: ArrayLike,
-    n_draws: int = N_DRAWS,
 ) -> _LineDraws:
     """Propagate the distributions of the inputs of a line.
 
@@ -136,9 +135,9 @@ def _draw_line(
     known = np.isfinite(centre).all(axis=1) & np.isfinite(random).all(axis=(1, 2))
     known &= np.isfinite(shared).all(axis=(0, 2)) & (freedom > 0)
     generator = np.random.default_rng(_SEED)
-    own = generator.standard_normal((n_draws, n_inputs))
-    common = generator.standard_normal((n_draws, shared.shape[0]))
-    uniform = generator.random(n_draws)
+    own = generator.standard_normal((N_DRAWS, n_inputs))
+    common = generator.standard_normal((N_DRAWS, shared.shape[0]))
+    uniform = generator.random(N_DRAWS)
     result = {
         name: np.full((len(PARAMETERS), n_specimens), np.nan)
         for name in ("linear_standard_uncertainty", "standard_uncertainty", "low", "high")
