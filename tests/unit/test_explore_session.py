@@ -18,10 +18,10 @@ from reduction.archive.product_files import CAMPAIGN_PLACE
 from reduction.archive.write import write_archive
 from reduction.campaign.load import find_campaign
 from reduction.pages.explorer_campaign import (
+    _BY_KEY,
     SETTINGS,
     CampaignText,
     Session,
-    _setting_of,
     settings_of_kind,
 )
 from reduction.pages.explorer_server import _campaign_document, _change_document, _save_document
@@ -269,7 +269,7 @@ def test_a_strain_method_keeps_the_marks(tmp_path, text, method, made):
 def test_a_text_is_written_as_campaign_toml_has_it(tmp_path, key, text, line):
     found = of_text(tmp_path, "[tests.T]\n").changed("T", {key: text}, control="position")
     assert found.text == f"[tests.T]\n{line}\n"
-    setting = _setting_of(key)
+    setting = _BY_KEY[key]
     assert found.written("T", setting).place == "test"
     assert found.changed("T", {key: ""}, control="position").text == "[tests.T]\n"
 
@@ -284,7 +284,7 @@ def test_ends_of_a_step_are_moved(tmp_path):
 def test_what_stands_in_the_table_of_tests_is_changed_there(tmp_path):
     (tmp_path / "tests.csv").write_text("id,file,method\nT,a.csv,marks\n", encoding="utf-8")
     text = of_text(tmp_path, '[campaign]\ntests = "tests.csv"\n')
-    assert text.written("T", _setting_of("strain.method")).place == "table"
+    assert text.written("T", _BY_KEY["strain.method"]).place == "table"
     with pytest.raises(SettingsError, match="is set in the table of tests"):
         text.changed("T", {"strain.method": "marks"}, control="position")
 
