@@ -1932,8 +1932,8 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "specimens-swapped": (
         "warning",
         "its peak is {ratio:.3g} times that of {other}, and {usual:.3g} times in their {n_others}"
-        " other tests: the two are swapped. Check the order of `specimens` of this test, and of the"
-        " load columns of its log",
+        " other tests: the two seem to be swapped. Check the order of `specimens` of this test, and"
+        " of the load columns of its log",
     ),
     "date-against-order": (
         "warning",
