@@ -125,7 +125,8 @@ def _write_change_in_length(
             continue
         found[name] = change_in_length(
             given.steps,
-            loaded_before=_loaded_before(specimen, own, given.steps),
+            loaded_before=_loaded_before(name, specimen, own, given.steps),
+            loaded_in_step=_loaded_in_step(name, own),
             is_ordered=is_ordered,
             missing="; ".join(given.missing),
             rated_break_strength=specimen.rated_break_strength or float("nan"),
@@ -171,8 +172,19 @@ def _in_order(surveys: Sequence[Survey], name: str) -> tuple[list[Survey], bool]
     return own, is_ordered
 
 
+_STATE_IT = ": state that part as a step before it, of kind quasi-static if it has no cycles"
+
+
+def _loaded_in_step(name: str, own: Sequence[Survey]) -> str:
+    """Load in the first step, before its first cycle, that is above the foot of this cycle."""
+    peak, is_before_step = own[0].loaded_before.get(name, (0.0, True))
+    if is_before_step:
+        return ""
+    return f"{own[0].plan.id} loads it to {peak:.4g} N before its first cycle{_STATE_IT}"
+
+
 def _loaded_before(
-    specimen: Specimen, own: Sequence[Survey], steps: Sequence[StepOfProgramme]
+    name: str, specimen: Specimen, own: Sequence[Survey], steps: Sequence[StepOfProgramme]
 ) -> str:
     """Loads on a rope before its first step with numbers; empty for a new rope."""
     first = own[0].plan
@@ -181,6 +193,9 @@ def _loaded_before(
         return f"it had carried {count} cycles before the first test"
     if not steps or steps[0].name != first.id:
         return f"{first.id} came first, and gave no archive"
+    peak, is_before_step = own[0].loaded_before.get(name, (0.0, False))
+    if is_before_step:
+        return f"the log loads it to {peak:.4g} N before {first.id}{_STATE_IT}"
     return ""
 
 

@@ -162,7 +162,8 @@ class Survey:
     [s]; ``broken`` names the specimens that broke, as stated or according to the log of a pull,
     and ``slips`` holds the splice slips by specimen that matter to a later test.
     ``n_cycles_between`` is the number of cycles counted by the machine between those of the
-    log.
+    log.  ``loaded_before`` is, by specimen, the greatest tension [N] in the log before the first
+    cycle of a step, if it went back from there, and whether that was before the step.
     """
 
     plan: TestPlan
@@ -181,6 +182,7 @@ class Survey:
     extremes: Extremes = field(default_factory=Extremes)
     levels: TestLevels | None = None
     broken: frozenset[str] = frozenset()
+    loaded_before: dict[str, tuple[float, bool]] = field(default_factory=dict)
     found: dict[str, Any] = field(default_factory=dict)
     remarks: tuple[Note, ...] = ()
     notes: tuple[Note, ...] = ()
@@ -227,6 +229,7 @@ def _read_test(campaign: Campaign, plan: TestPlan, *, reader: Reader = read_reco
             located = _with_load_at_slack(located, located, campaign, plan)
             survey = _located(plan, located, sources)
             survey.remarks = remarks
+            survey.loaded_before = _loaded_before(located, located)
             _find_zero_strain(survey, located, campaign, plan)
             _measure_marks(survey, located, campaign)
             return [survey]
@@ -261,12 +264,35 @@ def _read_test(campaign: Campaign, plan: TestPlan, *, reader: Reader = read_reco
                 located = replace(located, record=told)
             survey = _located(part, located, sources)
             survey.remarks = remarks
+            survey.loaded_before = _loaded_before(whole, located)
         except ReductionError as error:
             survey = Survey(part, sources, n_rows=record.n_samples, error=error)
         _find_zero_strain(survey, whole, campaign, plan)
         surveys.append(survey)
     _measure_marks(surveys[0], whole, campaign)
     return surveys
+
+
+_WENT_BACK = 0.1  # of the greatest tension of a step
+
+
+def _loaded_before(whole: Located, step: Located) -> dict[str, tuple[float, bool]]:
+    """Greatest tension [N] in the log before the first cycle of a step, by specimen.
+
+    Of specimens whose load went back from there; with whether that was before the step.
+    """
+    time, begin = whole.record.time, step.record.time
+    found = {}
+    for name, loads, own in zip(whole.record.specimens, whole.tension, step.tension, strict=True):
+        _, top = finite_extremes(own)
+        firsts = [0] if step.cycles is None else [0, int(step.cycles.first[0])]
+        for first in firsts:
+            _, peak = finite_extremes(loads[: np.searchsorted(time, begin[first])])
+            level = own[first:][np.isfinite(own[first:])][:1].sum()
+            if peak > level + _WENT_BACK * top:
+                found[name] = (peak, first == 0)
+                break
+    return found
 
 
 def _layouts(campaign: Campaign, plan: TestPlan) -> list[Layout]:

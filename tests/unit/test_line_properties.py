@@ -2,10 +2,12 @@
 
 import dataclasses
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from reduction.batch.survey import _loaded_before
 from reduction.record.errors import SettingsError
 from reduction.stages.three_parameter_line.change_in_length import (
     PROPERTY_NAMES,
@@ -127,6 +129,39 @@ def test_what_is_of_a_new_rope_is_absent_of_one_loaded_before(name):
     (lost,) = named([whole], name, is_ordered=False)
     assert math.isnan(lost.value)
     assert "order of the tests is not stated" in lost.reason
+
+
+@pytest.mark.parametrize("name", ["original stiffness", "construction strain"])
+def test_cycles_after_a_pull_in_their_step_are_not_those_of_a_new_rope(name):
+    # ISO 18692: a pull to half of the strength and a hold come before the cycles
+    (one,) = named([bedding()], name, loaded_in_step="B loads it to 125 N")
+    assert math.isnan(one.value)
+    assert "loads it to 125 N" in one.reason
+    whole = bedding(first_rise=rise(20, 40, 60, 80))
+    (on_rise,) = named([whole], name, loaded_in_step="B loads it to 125 N")
+    assert on_rise.value > 0
+
+
+@pytest.mark.parametrize(
+    ("pulled", "begin", "found"),
+    [
+        (0.0, 20, {}),
+        (60.0, 20, {"rope": (60.0, True)}),
+        (60.0, 0, {"rope": (60.0, False)}),
+        (12.0, 0, {}),  # the ramp stops a little above the valley
+    ],
+)
+def test_a_load_before_the_first_cycle_from_which_it_went_back_is_found(pulled, begin, found):
+    time = np.arange(60.0)
+    load = np.interp(time, [0, 10, 20, 30, 40, 50, 59], [0, pulled, 0, 10, 50, 10, 50])
+
+    def located(part, **more):
+        record = SimpleNamespace(time=time[part], specimens=("rope",))
+        return SimpleNamespace(record=record, tension=load[None, part], **more)
+
+    cycles = SimpleNamespace(first=np.array([30 - begin]))
+    step = located(slice(begin, None), cycles=cycles)
+    assert _loaded_before(located(slice(None)), step) == found
 
 
 def test_a_rope_loaded_in_an_earlier_step_has_no_construction_strain():

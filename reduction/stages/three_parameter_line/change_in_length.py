@@ -277,7 +277,9 @@ def _together(contribution: Floats, random: float) -> float:
     return float(np.sqrt(np.sum(contribution**2) + random**2))
 
 
-def _construction_strain(steps: Sequence[StepOfProgramme], before: str) -> ChangeInLength:
+def _construction_strain(
+    steps: Sequence[StepOfProgramme], before: str, before_cycles: str
+) -> ChangeInLength:
     """Strain left by bedding-in at equal tension, on the first rise and in the cycles.
 
     Notes
@@ -289,7 +291,7 @@ def _construction_strain(steps: Sequence[StepOfProgramme], before: str) -> Chang
 
     Examples
     --------
-    >>> print(_construction_strain([], "").reason)
+    >>> print(_construction_strain([], "", "").reason)
     no step beds the rope in
     """
     absent = ChangeInLength("construction strain")
@@ -307,7 +309,10 @@ def _construction_strain(steps: Sequence[StepOfProgramme], before: str) -> Chang
     found = absent.with_number(cycles.permanent_strain)
     reason = "of the cycles alone: the first rise does not pass the tension of their valleys"
     at_valley = _on_first_rise(one.first_rise, cycles)
-    if at_valley is not None and np.isnan(at_valley.value):
+    on_rise = at_valley is not None and np.isfinite(at_valley.value)
+    if before_cycles and not on_rise:
+        return replace(absent, reason=before_cycles)
+    if at_valley is not None and not on_rise:
         reason = "the first foot is taken to be on the first rise, which was held there"
     elif at_valley is not None:
         reason = ""
@@ -383,6 +388,7 @@ def change_in_length(
     steps: Sequence[StepOfProgramme],
     *,
     loaded_before: str = "",
+    loaded_in_step: str = "",
     is_ordered: bool = True,
     missing: str = "",
     rated_break_strength: float = _NAN,
@@ -411,10 +417,10 @@ def change_in_length(
             )  # fmt: skip
     before = loaded_before if is_ordered else _NO_ORDER
     found = (
-        _original(steps, before),
+        _original(steps, before, loaded_in_step),
         *_static(steps),
         *_dynamic(steps),
-        _construction_strain(steps, before),
+        _construction_strain(steps, before, loaded_in_step),
         *_polymer(steps),
         *_working(steps, is_ordered),
     )
@@ -450,7 +456,7 @@ def _with_note(one: ChangeInLength, missing: str) -> ChangeInLength:
 _LEAST_OF_RISE = 0.5
 
 
-def _original(steps: Sequence[StepOfProgramme], before: str) -> ChangeInLength:
+def _original(steps: Sequence[StepOfProgramme], before: str, before_cycles: str) -> ChangeInLength:
     absent = ChangeInLength("original stiffness")
     if before:
         return replace(absent, reason=f"{before}: the first rise may not be in the logs")
@@ -491,6 +497,8 @@ def _original(steps: Sequence[StepOfProgramme], before: str) -> ChangeInLength:
         )
     if cycles is None:
         return replace(absent, reason=_NO_RISE)
+    if before_cycles:
+        return replace(absent, reason=before_cycles)
     return replace(
         absent.with_number(cycles.first_stiffness),
         low_tension=cycles.valley_tension,
