@@ -15,6 +15,7 @@ from reduction.stages.cycles.fundamental import (
     cycle_basis,
     fundamental,
     part_means,
+    sine_period,
     sums_over_cycles,
 )
 from reduction.stages.cycles.loop_energy import energy_by_chance, loop_energy
@@ -2061,3 +2062,30 @@ def test_a_cycle_with_one_reading_more_has_the_same_fundamental(readings, second
     least = 3 * abs(second) / readings**2 + 0.01 * abs(second) / readings
     np.testing.assert_allclose(np.hypot(cosine, sine), 1, atol=2 * least)
     np.testing.assert_allclose(mean, 3, atol=least)
+
+
+def period_of(wave, first, readings):
+    """Period by the phase of a sampled wave whose cycles begin at given readings."""
+    n = round(readings)
+    pair = np.column_stack([first, first + n // 2])
+    cycles = Cycles(
+        first, first + n, pair, pair + n // 2, np.ones((first.size, 2)),
+        np.zeros(wave.size, np.int32), np.zeros(wave.size, np.int8), np.zeros(wave.size, bool), 0.1,
+    )  # fmt: skip
+    time = np.arange(wave.size) * 1.0
+    return sine_period(time, wave, cycles, np.full(first.size, 1.0 * n))[0]
+
+
+def test_the_period_of_blocks_of_three_sines_does_not_depend_on_where_their_readings_lie():
+    """Cycles of 60.1 readings, in blocks of three with a rest at the valley between them."""
+    readings, at = 60.1, np.arange(1600.0)
+    within = at % 200
+    wave = -np.cos(2 * np.pi * np.minimum(within, 3 * readings) / readings)
+    first = (200 * np.arange(8)[:, None] + 60 * np.arange(3)).ravel()
+    np.testing.assert_allclose(period_of(wave, first, 60), readings, rtol=4e-6)
+
+
+def test_the_period_of_a_wave_that_grows_all_the_time_is_that_of_all_its_cycles():
+    at, readings = np.arange(1261.0), 60.0
+    wave = (1 + 0.14 * at / readings) * -np.cos(2 * np.pi * at / readings)
+    np.testing.assert_allclose(period_of(wave, 60 * np.arange(20), 60), readings, rtol=2e-5)

@@ -295,6 +295,9 @@ def steady_cycles(*amplitudes: Floats) -> Bools:
     return kept
 
 
+_STEADY = 3  # cycles after the first: the turn at the end of a last one is not read
+
+
 _GROWING = 0.03  # of the amplitude, from one cycle to the next
 
 
@@ -324,7 +327,7 @@ def mean_period(
         # in a growing wave the turns are early or late, depending on its phase
         begin = np.maximum(place[np.argmax(steady)], starts)
         end = np.minimum(place[::-1][np.argmax(steady[::-1])], stops)
-        starts, stops = np.where(begin <= end, (begin, end), (starts, stops))
+        starts, stops = np.where(end - begin >= _STEADY, (begin, end), (starts, stops))
     centre = np.clip(place, starts[run], stops[run])
     low = np.maximum(centre - _AROUND, starts[run])
     high = np.minimum(centre + _AROUND, stops[run])
@@ -462,7 +465,7 @@ _BEYOND_PERIOD = 0.15  # of a period: a cycle of seven readings
 _OF_SETTLING_PHASE = 3.0  # greatest step of the phase over the next one
 
 
-_PASSES = 4  # each divides the error by the number of cycles
+_PASSES = 12  # each divides the error by the number of cycles of a run, which may be two
 
 
 def sine_period(
@@ -487,6 +490,10 @@ def sine_period(
         phased[block] = _phase_turns(cosine, sine, basis, time[low:high])
 
     run_blocks(find, blocks, samples=(time, driven), longest=cycles.longest)
+    # a wave that grows by g within a cycle seems to turn g / (4 pi) early
+    follows = cycles.last[:-1] == cycles.first[1:]
+    grows = turn_over_cycle(np.log(amplitude), np.append(False, follows))
+    phased += np.nan_to_num(grows) / (4 * np.pi) * period / (2 * np.pi)
     # a wrong period rotates the phase about the middle of the cycle, where it has no effect
     middle = (take_samples(time, cycles.first) + take_samples(time, cycles.last)) / 2
     # the last cycle of a run is taken to end at the period of the others
