@@ -271,19 +271,35 @@ def on_curve(
 TENSION_TOLERANCE = 0.01
 
 
-def _tension_variation(time: ArrayLike, tension: ArrayLike) -> float:
+def _tension_variation(time: ArrayLike, tension: ArrayLike, *, settled: float = 0.0) -> float:
     """Largest departure of tension from its mean over a hold, as a fraction of the mean.
+
+    Before ``settled``, from which on readings count, a load may swing as it arrives: the mean of
+    its departure over that time counts, since a specimen forgets it as it forgets the ramp.
 
     Examples
     --------
     >>> print(_tension_variation([1.0, 10.0, 100.0], [100.0, 102.0, 98.0]))
     0.02
+    >>> t = np.arange(1.0, 1000.0)
+    >>> swings = np.where(t < 2, 104.0, 100.0)
+    >>> for settled in (0.0, 20.0):
+    ...     print(_tension_variation(t, swings, settled=settled) > 0.01)
+    True
+    False
     """
     blocks = logarithmic_blocks(time, tension, per_decade=20)
-    mean = float(np.mean(blocks.value))
+    is_later = blocks.elapsed >= settled
+    later = blocks.value[is_later] if is_later.any() else blocks.value
+    mean = float(np.mean(later))
     if mean <= 0:
         raise DataError("creep under no tension", found=f"{mean:.3g} N", needed="tension above 0")
-    return float(np.max(np.abs(blocks.value - mean))) / mean
+    departure = float(np.max(np.abs(later - mean)))
+    if later.size < blocks.value.size:
+        early = np.abs(blocks.value[~is_later] - mean)
+        lasts = np.diff(blocks.elapsed[~is_later], prepend=0.0)
+        departure = max(departure, float(early @ lasts) / settled)
+    return departure / mean
 
 
 def creep_rate(
@@ -304,7 +320,8 @@ def creep_rate(
     """
     seconds = as_increasing("time", time)
     seconds, stretch, load = as_same_shape(time=seconds, strain=strain, tension=tension)
-    variation = _tension_variation(seconds, load)
+    settled = RAMP_TIMES_LEFT_OUT * ramp_duration
+    variation = _tension_variation(seconds, load, settled=settled)
     if variation > TENSION_TOLERANCE:
         raise DataError(
             f"tension is not constant: it strays {variation:.1%} from its mean",
