@@ -2089,3 +2089,29 @@ def test_the_period_of_a_wave_that_grows_all_the_time_is_that_of_all_its_cycles(
     at, readings = np.arange(1261.0), 60.0
     wave = (1 + 0.14 * at / readings) * -np.cos(2 * np.pi * at / readings)
     np.testing.assert_allclose(period_of(wave, 60 * np.arange(20), 60), readings, rtol=2e-5)
+
+
+@pytest.mark.parametrize("readings", [4, 5, 6, 7])
+@pytest.mark.parametrize("shift", [0.1, 0.45])
+def test_few_readings_in_step_with_a_sine_do_not_tell_its_range(readings, shift):
+    """Tension with harmonics of 6 and 2 %, whose range is that of the series on a fine grid."""
+
+    def tension(phase):
+        return 5 - np.cos(phase) + 0.06 * np.cos(2 * phase) - 0.02 * np.cos(3 * phase + 0.4)
+
+    phase = 2 * np.pi * (np.arange(30 * readings) + shift) / readings
+    first = readings * np.arange(28) + (0 if shift < 0.5 else 1)
+    pair = np.column_stack([first, first + readings // 2])
+    cycles = Cycles(
+        first, first + readings, pair, np.column_stack([pair[:, 1], first + readings]),
+        np.ones((28, 2)), np.zeros(phase.size, np.int32), np.zeros(phase.size, np.int8),
+        np.zeros(phase.size, bool), 0.1,
+    )  # fmt: skip
+    loops = close_loops(
+        np.arange(phase.size) * 1.0, tension(phase)[None], (1 - 0.1 * np.cos(phase))[None], cycles,
+        waveform="sinusoidal",
+    )  # fmt: skip
+    found = summarise_amplitude(loops, area=[1.0])
+    true = np.ptp(tension(np.linspace(0, 2 * np.pi, 9999))) / 0.2
+    error = abs(found.apparent_spring_constant[0] - true)
+    assert error < 2.5 * found.uncertainty["apparent_spring_constant"][0] < 0.3 * true

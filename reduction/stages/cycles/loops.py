@@ -406,6 +406,9 @@ class _Shape:
 _MOST_HARMONICS = 16
 
 
+_MOST_OF_SHAPE = 0.06  # of an amplitude: what its harmonics add to the half range of a sine
+
+
 _FINEST = 1e-3  # of a cycle, between phases
 
 
@@ -500,7 +503,7 @@ def _shape_of_wave(
     read = np.concatenate(phases) / (2 * np.pi) % 1
     order = min(_MOST_HARMONICS, int(1 / max(step_that_fills(read), _FINEST) - 2) // 2)
     if order < 2:
-        return _Shape()
+        return _Shape(missed=2 * _MOST_OF_SHAPE)
     orders = np.arange(1, order + 1)
 
     def terms(phase: Floats) -> Floats:
@@ -537,7 +540,9 @@ def _shape_of_wave(
     missed = 2 * float(np.abs(half[-1] - half).max())
     rounded = WITHIN_STEP * per_harmonic * np.sqrt(1 + np.count_nonzero(is_kept))
     by_noise = WITHIN_STEP * spread * np.sqrt(np.count_nonzero(is_kept & (orders % 2 == 1)))
-    missed = float(np.linalg.norm([missed, rounded, by_noise]))
+    # a third harmonic that the readings do not show may be as large as the second
+    not_shown = 2 * float(size[1]) if order == 2 else 0.0
+    missed = float(np.linalg.norm([missed, rounded, by_noise, not_shown]))
     return _Shape(half[-1], (high[-1] + low[-1]) / 2, missed)
 
 
