@@ -605,7 +605,7 @@ def _stiffness_in_words(state: WorkingState, share: float, output: CommandOutput
     span = "the cycle" if state.level.tension_amplitude else around
     used = state.used
     if not used:
-        return f"no EA: no test covers {LEAST_COVER:.0%} of {span}"
+        return f"no EA: no test covers {100 * LEAST_COVER:.0f} % of {span}"
     tests = ", ".join(f"{one.words} {per_newton * one.spring_constant:.4g}" for one in used)
     nearest = f", of which {state.nearest} is nearest in mean and amplitude" if used[1:] else ""
     own = next(one for one in used if one.words == state.nearest)

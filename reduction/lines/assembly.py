@@ -1065,9 +1065,11 @@ def _doubts_of_slope(
     """Why EA of a cycle is unknown, or why EA of the curve differs from that of the tests."""
     if not np.isfinite(least):
         nearest = sorted(tests, key=lambda one: -one.covered)[:_NEAREST_NAMED]
-        names = ", ".join(f"{one.words} {one.covered:.0%}" for one in nearest if one.covered > 0)
+        names = ", ".join(
+            f"{one.words} {100 * one.covered:.0f} %" for one in nearest if one.covered > 0
+        )
         return [
-            f"no test covers {LEAST_COVER:.0%} of the cycle, so EA is unknown: "
+            f"no test covers {100 * LEAST_COVER:.0f} % of the cycle, so EA is unknown: "
             + (f"nearest are {names}" if names else "no test reaches it")
         ]
     if (1 - _LITTLE) * least <= joined <= (1 + _LITTLE) * greatest:

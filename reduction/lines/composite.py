@@ -738,7 +738,7 @@ def _quality_warning(blend: _Blend) -> tuple[str, Bools]:
     far = float(blend.farthest[worst])
     return (
         f"the curve is up to {share[worst]:.3g} standard uncertainties from a piece: {far:.4g} N "
-        f"({far / blend.tension[worst]:.1%}) at strain {blend.strain[worst]:.4g}"
+        f"({100 * (far / blend.tension[worst]):.1f} %) at strain {blend.strain[worst]:.4g}"
     ), is_far
 
 
@@ -774,23 +774,24 @@ def _notes_of(
     if not between:
         notes.append("no two pieces of one kind overlap: the scatter between them is unknown")
     notes += [
-        f"{kind} pieces differ by {one:.1%} of tension where they overlap"
+        f"{kind} pieces differ by {100 * one:.1f} % of tension where they overlap"
         for kind, one in between.items()
     ]
     if not np.isnan(blend.beside_loops):
         notes.append(
-            f"first loadings differ by up to {blend.beside_loops:.1%} from the pieces of higher"
-            " precedence; their uncertainty includes this where they are alone"
+            f"first loadings differ by up to {100 * blend.beside_loops:.1f} % from the pieces of"
+            " higher precedence; their uncertainty includes this where they are alone"
         )
     if moved.any():
         share = change / blend.tension
         worst = int(np.argmax(np.abs(change)))
         notes.append(
-            f"the mean of the pieces falls where one ends and the next begins: {moved.mean():.0%}"
+            "the mean of the pieces falls where one ends and the next begins:"
+            f" {100 * moved.mean():.0f} %"
             " of the nodes were moved to keep the curve from being softer than"
             f" {rule.least_slope:g} of the softest piece there, by "
             f"{np.sqrt(np.mean(change**2)):.4g} N rms, most by {change[worst]:+.4g} N "
-            f"({share[worst]:+.1%}) at strain {strain[worst]:.4g}"
+            f"({100 * share[worst]:+.1f} %) at strain {strain[worst]:.4g}"
         )
         # over all nodes: near slack a local share means nothing
         off = float(np.sqrt(np.sum(change**2) / np.sum(blend.tension**2)))
@@ -798,8 +799,8 @@ def _notes_of(
         if off > apart:
             several = len({one.kind for one in pieces}) > 1
             notes.append(
-                f"the curve is {off:.1%} off the mean of its pieces, which differ by {apart:.1%} "
-                "where they overlap: "
+                f"the curve is {100 * off:.1f} % off the mean of its pieces, which differ by"
+                f" {100 * apart:.1f} % where they overlap: "
                 + (
                     "they do not belong to one curve, such as loops of a rope and its slow pull;"
                     " name the kinds that you want"

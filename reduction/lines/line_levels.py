@@ -206,8 +206,8 @@ def _unsettled(levels: LineLevels, rows: Sequence[int], *, half: float) -> Itera
         if abs(off * levels.value[row]) > half:
             yield (
                 f"{levels.tests[row]} had not settled: the mean over the last half of its cycles is"
-                f" {abs(off):.1%} {'higher' if off > 0 else 'lower'}"
-            ).replace("%", " %")
+                f" {100 * abs(off):.1f} % {'higher' if off > 0 else 'lower'}"
+            )
 
 
 def _is_log(levels: LineLevels) -> Bools:

@@ -98,7 +98,7 @@ def _unequal(first: Specimen, other: Specimen, index: int, history: History | No
     is_known = np.isfinite(strain)
     if is_known[0] != is_known[1] or np.ptp(strain) > _SAME_STRAIN * np.max(strain):
         told = " against ".join(
-            f"{value:.0%}" if known else "none known"
+            f"{100 * value:.0f} %" if known else "none known"
             for value, known in zip(strain, is_known, strict=True)
         )
         softer = "; rubber is softer below what it has seen" if other.is_rubber else ""

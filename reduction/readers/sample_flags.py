@@ -1190,7 +1190,7 @@ def _no_length(position: Floats, flags: _Flags) -> Bools:
     if share > _IMPOSSIBLE_SHARE:
         raise DataError(
             "a pin-to-pin length is not positive",
-            found=f"{share:.0%} of the samples at or below 0 m, least "
+            found=f"{100 * share:.0f} % of the samples at or below 0 m, least "
             f"{finite_extremes(position)[0]:.4g} m",
             needed="the distance between the pins",
             hint='Set datum = "displacement", with a reference_length where one is known, or '

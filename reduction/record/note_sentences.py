@@ -65,7 +65,8 @@ def _unknown_mass(mass: float, usual: float, effect: float, cell: str) -> str:
     )
     return (
         f"{lacks}: {mass:.3g} kg at a moving load cell would change EA by one standard"
-        f" uncertainty, {usual:g} kg (a grip for 22 kN) by {effect:+.2%}; a load cell on the fixed"
+        f" uncertainty, {usual:g} kg (a grip for 22 kN) by {100 * effect:+.2f} %; a load cell on"
+        " the fixed"
         " frame is not affected. State load_cell_at and attached_mass in the layout"
     )
 
@@ -79,7 +80,7 @@ def _slip_in_words(length: float) -> str:
 
 
 def _share(error: float) -> str:
-    return "below 0.05%" if error < 5e-4 else f"{error:.1%}"
+    return "below 0.05 %" if error < 5e-4 else f"{100 * error:.1f} %"
 
 
 def _slack_growth(growth: float, effect: float) -> str:
@@ -94,8 +95,9 @@ def _slack_growth(growth: float, effect: float) -> str:
 def _unknown_friction(size: float, of_energy: float, of_constant: float) -> str:
     return (
         "no mark was read during unloading: if friction makes the extension of the splices"
-        f" {size:.0%} larger there than during loading, the hysteresis energy is too large by"
-        f" {of_energy:.0%} and EA by {of_constant:.1%}. Read marks during unloading"
+        f" {100 * size:.0f} % larger there than during loading, the hysteresis energy is too"
+        " large by"
+        f" {100 * of_energy:.0f} % and EA by {100 * of_constant:.1f} %. Read marks during unloading"
         ' (hold "centre down"), or state splice_friction in [uncertainty]'
     )
 
@@ -105,7 +107,7 @@ def _unknown_compliance(compliance: float, usual: float, effect: float) -> str:
     return (
         f"the compliance of frame, load cell and grips is not stated: {compliance:.3g} m/N would"
         f" change EA by one standard uncertainty, {usual:.2g} m/N (a frame for 100 kN, without"
-        f" grips) by {effect:+.2%}. State machine_compliance in the layout"
+        f" grips) by {100 * effect:+.2f} %. State machine_compliance in the layout"
     )
 
 
@@ -113,7 +115,8 @@ def _unknown_hysteresis(reversibility: float, play: float | None) -> str:
     """Effect of a load cell or a position that reads other values on the way down."""
     or_play = "" if play is None else f", or {1000 * play:.2g} mm of play in the position,"
     return (
-        f"the hysteresis of the load cell is not stated: {reversibility:.2%} at half its load"
+        f"the hysteresis of the load cell is not stated: {100 * reversibility:.2f} % at half its"
+        " load"
         f"{or_play} would change the hysteresis energy by one standard uncertainty. State"
         " reversibility in [uncertainty.tension], from the calibration"
     )
@@ -717,7 +720,8 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "wave-not-periodic": (
         "warning",
         lambda share, is_open: (
-            f"the wave does not repeat from cycle to cycle (it differs by {share:.0%} of half its"
+            f"the wave does not repeat from cycle to cycle (it differs by {100 * share:.0f} % of"
+            " half its"
             " range), as when two frequencies are combined: a cycle is not a closed loop, and its"
             " stiffness does not belong to one frequency"
             + (". Its energy and loss are not given" if is_open else "")
@@ -747,7 +751,8 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "warning",
         lambda frequency, size, effect: (
             f"tension oscillates at {frequency:.3g} Hz by {size:.3g} N beside its wave (mains hum,"
-            f" or a vibration): its extremes are off by up to {effect:.1%} of the tension amplitude"
+            f" or a vibration): its extremes are off by up to {100 * effect:.1f} % of the"
+            " tension amplitude"
             ", and EA with them. Remove the cause, or filter both channels alike before the run"
         ),
     ),
@@ -796,7 +801,7 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "warning",
         lambda energy, closed, effect: (
             f"the loop area as logged is {closed:.4g} J/m, of which {closed - energy:+.3g} J/m"
-            f" ({effect:+.1%} of the result) is due to drift of the"
+            f" ({100 * effect:+.1f} % of the result) is due to drift of the"
             f" cycles: the hysteresis energy of {energy:.4g} J/m excludes it"
         ),
     ),
@@ -855,7 +860,8 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "inertia-left-at-turns": (
         "warning",
         lambda force, effect: (
-            f"the inertia that is not corrected at the reversals is {force:.3g} N, {effect:.1%} of"
+            f"the inertia that is not corrected at the reversals is {force:.3g} N,"
+            f" {100 * effect:.1f} % of"
             " the tension amplitude: the machine reverses faster than the log resolves. EA, energy"
             " and the moduli near the reversals may be off by this share. Test with a sine, or with"
             " a load cell at the fixed end, or log faster"
@@ -866,7 +872,8 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         lambda share, effect: (
             f"the test ran at {share:.2g} of the resonance frequency of the specimen (from its"
             " stated mass), and higher at sharp reversals: waves run along it, and even after the"
-            f" correction for its mass EA and energy may be off by {effect:.1%}. Test more slowly,"
+            f" correction for its mass EA and energy may be off by {100 * effect:.1f} %. Test"
+            " more slowly,"
             " or with a sine"
         ),
     ),
@@ -958,9 +965,9 @@ _OF_MODULI: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "warning",
         lambda effect, error, is_coarse, of_lag, is_of_turns: (
             "the difference between the mean slopes of the two branches does not match the tension"
-            f" lost over a cycle: residual {effect:+.1%} of the modulus (standard error"
+            f" lost over a cycle: residual {100 * effect:+.1f} % of the modulus (standard error"
             f" {_share(error)}). "
-            + (f"The stated channel lag explains up to {of_lag:.1%} of it" if of_lag else
+            + (f"The stated channel lag explains up to {100 * of_lag:.1f} % of it" if of_lag else
                "The readings at the reversals explain it: in all cycles the reversal lies between"
                " the same two readings" if is_of_turns else
                "Possible causes: channel lag, a dwell at the reversals, slip or slack"
@@ -976,7 +983,8 @@ _OF_MODULI: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             f"the splices slipped at {cycles}, by {_slip_in_words(length)} in all"
             + ("" if excess != excess else
                f": from there on, and in later tests without marks of their own, strain is at least"
-               f" {100 * excess:.1f} percentage points too large ({effect:.1%} of the mean strain),"
+               f" {100 * excess:.1f} percentage points too large ({100 * effect:.1f} % of the"
+               " mean strain),"
                " and the intervals allow for three times that")
             + ". Read the marks after the test, or use the cycles before the slip"
         ),
@@ -988,7 +996,8 @@ _OF_MODULI: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             " marks were read in it"
             + ("" if excess != excess else
                f": strain is at least {100 * excess:.1f} percentage points too large"
-               f" ({effect:.1%} of the mean strain), and the intervals allow for three times that")
+               f" ({100 * effect:.1f} % of the mean strain), and the intervals allow for three"
+               " times that")
             + ". Read marks in this test"
         ),
     ),

@@ -9,12 +9,24 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from math import isfinite
+from string import Formatter
 from typing import Any
 
 from reduction.record.note_sentences import CAUSES, SENTENCES, UNSTATED, Severity
 
 SEVERITIES: tuple[Severity, ...] = ("warning", "refusal", "note")
 """Most serious first."""
+
+
+class _SpaceBeforePercent(Formatter):
+    """Format as `str.format`, with the space that a unit has before a percent sign."""
+
+    def format_field(self, value: Any, format_spec: str) -> str:
+        text = str(super().format_field(value, format_spec))
+        return f"{text[:-1]} %" if format_spec.endswith("%") else text
+
+
+_WITH_SPACE = _SpaceBeforePercent()
 
 
 @dataclass(frozen=True)
@@ -50,8 +62,10 @@ class Note:
         if self.text:
             return self.text
         template = SENTENCES[self.code][1]
-        compose = template.format if isinstance(template, str) else template
-        said = compose(**self.numbers)
+        if isinstance(template, str):
+            said = _WITH_SPACE.vformat(template, (), self.numbers)
+        else:
+            said = template(**self.numbers)
         return f"{self.subject}: {said}" if self.subject else said
 
 

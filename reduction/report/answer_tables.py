@@ -294,7 +294,8 @@ def _sets_of_breaks(tests: Sequence[TestView]) -> list[str]:
         texts = [number(one, force).text for one in (mean, deviation, float(loads.min()))]
         found.append(
             f"Breaks of {loads.size} specimens ({of}): mean {texts[0]} {force.unit}, standard"
-            f" deviation {texts[1]} {force.unit} ({deviation / mean:.1%}), least {texts[2]}"
+            f" deviation {texts[1]} {force.unit} ({100 * (deviation / mean):.1f} %), least"
+            f" {texts[2]}"
             f" {force.unit}. Breaks in a splice or grip are included; a table of outcomes"
             " separates them."
         )
@@ -778,12 +779,8 @@ def _cycles_in_words(single: Floats, first: int, mean: float, half: float) -> st
     off = late_change(single)
     if not (np.isfinite(off) and half > 0):
         return f" ({numbers})"
-    is_settled = abs(off) <= half
-    return (
-        f" ({numbers}; {'settled' if is_settled else f'not settled, {off / mean:+.1%}'})".replace(
-            "%", " %"
-        )
-    )
+    settled = "settled" if abs(off) <= half else f"not settled, {100 * off / mean:+.1f} %"
+    return f" ({numbers}; {settled})"
 
 
 RULES: dict[DecisionRule, str] = {

@@ -13,6 +13,7 @@ import xarray as xr
 from reduction.archive.open import Opener, in_memory, reading
 from reduction.experiments.fit_results import FIT_REASONS, ResponseSurfaces
 from reduction.experiments.outcome_groups import odd_outcomes
+from reduction.quantities.digits import fixed_number, places_of
 from reduction.quantities.units import UnitSystem
 from reduction.record.errors import ArchiveError
 from reduction.record.notes import Note, urgency
@@ -291,7 +292,8 @@ def _story(view: HoseView) -> str:
     events = view.events
 
     def at(name: str) -> str:
-        load = number_text(force.factor * events[name].tension, 3)
+        tension = force.factor * events[name].tension
+        load = fixed_number(tension, places_of(tension, 3))
         return f"{100 * events[name].strain:.1f}\N{NO-BREAK SPACE}% ({load} {force.unit})"
 
     start = (

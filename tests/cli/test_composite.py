@@ -108,7 +108,7 @@ def test_text_flags_joins_and_gaps_in_the_units_that_were_asked_for(command):
     done = command("composite", "rubber-tether-used", "--units", "us")
     assert "tension [lbf]" in done.stdout
     assert "gap" in done.stdout and "join, moved" in done.stdout
-    assert re.search(r"cyclic pieces differ by 1[4-9]\.\d% of tension", done.stdout)
+    assert re.search(r"cyclic pieces differ by 1[4-9]\.\d % of tension", done.stdout)
     assert command("composite", "rubber-tether-used", "--quiet").stdout == ""
 
 

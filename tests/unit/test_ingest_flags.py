@@ -136,7 +136,7 @@ def test_an_uneven_rate_is_a_note():
     time = np.cumsum(np.tile(6 * [0.1] + 2 * [0.15], TIME.size // 8))
     (note,) = map(str, flagged(record(time=time)).notes)
     assert note == (
-        "the sampling rate is not constant: 500 of 1999 time steps differ by more than 20% from "
+        "the sampling rate is not constant: 500 of 1999 time steps differ by more than 20 % from "
         "their median 0.1 s (0.1 to 0.15 s, not counting gaps)"
     )
 
@@ -192,7 +192,7 @@ def test_a_length_of_zero_is_flagged_where_it_is_rare_and_refused_where_it_is_no
     position[100:115] = 0.0
     along = flagged(record(position=position)).crosshead_position_quality_flag
     assert where(along, Quality.SPIKE) == list(range(100, 115))
-    with pytest.raises(DataError, match=r"length is not positive; found 100% .* least -\d"):
+    with pytest.raises(DataError, match=r"length is not positive; found 100 % .* least -\d"):
         flagged(record(position=position - 9.0))
     shifted = record(position=position - 9.0, position_is_length=False)
     assert not where(flagged(shifted).crosshead_position_quality_flag, ~np.uint16(0))

@@ -242,7 +242,7 @@ def test_an_uncertain_rest_spring_is_noted():
         quasi_static_spring_constant=[rest],
         quasi_static_standard_uncertainty=[0.1 * rest],
     )
-    assert any("uncertainty of K_0 exceeds 30% of K_1" in note for note in map(str, line.notes))
+    assert any("uncertainty of K_0 exceeds 30 % of K_1" in note for note in map(str, line.notes))
 
 
 def test_a_spring_constant_that_does_not_fit_is_refused():

@@ -130,7 +130,7 @@ class TestFailure:
         lasted = cycles_to_failure(loops, rated_break_strength=200.0)
         assert (lasted.cycles, lasted.failed) == (4, True)
         assert lasted.peak_tension == 100 and lasted.peak_tension_over_strength == 0.5
-        assert lasted.how[0].startswith("the peak falls below 50% of its median")
+        assert lasted.how[0].startswith("the peak falls below 50 % of its median")
 
     def test_one_low_peak_among_sound_ones_is_no_failure(self):
         loops = loops_with((1, 6), peak_tension=[90.0, 110, 8, 100, 100, 100])

@@ -291,7 +291,7 @@ class TestPull:
     def test_cycles_in_place_of_a_pull_are_refused(self):
         turn = np.linspace(0, 20 * np.pi, 2000)
         load = 1000 - 400 * np.cos(turn) + turn
-        with pytest.raises(DataError, match="tension falls by 9.% of its rise on the way"):
+        with pytest.raises(DataError, match="tension falls by 9. % of its rise on the way"):
             fit_pull(turn, load / 1e4, load)
 
     @pytest.mark.parametrize("lost", [0.0, 0.2])
@@ -477,7 +477,9 @@ def test_a_curve_that_is_no_cubic_is_named_as_none_to_design_by():
     pull = fit_pull(np.arange(2000.0), strain, kinked, waiting="a day", reference_length=1.0)
     (note,) = (one for one in map(str, pull.notes) if "cubic misses" in one)
     assert pull.misfit_share > 0.01
-    assert note.startswith(f"a cubic misses the load-strain curve by {pull.misfit_share:.1%}")
+    assert note.startswith(
+        f"a cubic misses the load-strain curve by {100 * pull.misfit_share:.1f} %"
+    )
     time, strain, load = rising(seed=3, noise=5.0)
     smooth = fit_pull(time, strain, load, waiting="a day", reference_length=1.0)
     assert smooth.misfit_share < 0.001 and tuple(map(str, smooth.notes)) == ()

@@ -189,7 +189,7 @@ def test_rises_from_slack_that_differ_leave_the_cycles_as_certain_as_they_were()
     spread = [np.interp(inner, one.strain, one.standard_uncertainty) for one in (alone, both)]
     assert spread[1] == pytest.approx(spread[0], rel=1e-3)
     assert both.between_pieces == pytest.approx(alone.between_pieces, rel=1e-4)
-    assert any("first-loading pieces differ by 70.7%" in note for note in both.notes)
+    assert any("first-loading pieces differ by 70.7 %" in note for note in both.notes)
 
 
 def test_a_kind_that_stands_twice_is_refused():
@@ -233,7 +233,7 @@ def test_a_first_loading_has_no_say_where_loops_reach_and_carries_what_it_differ
     spread = np.interp(0.75, curve.strain, curve.standard_uncertainty)
     assert spread == pytest.approx(60 * 20 / 90, rel=1e-3)
     assert any(
-        "first loadings differ by up to 22.2% from the pieces" in note for note in curve.notes
+        "first loadings differ by up to 22.2 % from the pieces" in note for note in curve.notes
     )
     words = [curve.piece_words[place] for place in curve.piece[curve.piece >= 0]]
     assert (words[0], words[-1]) == ("T-2 first loading", "T-1 cycles")

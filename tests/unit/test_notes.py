@@ -28,8 +28,8 @@ SAID = replace(
 )
 # what a reader may be told, and whether it could move an answer
 FACTS = {
-    "Prony series not given: the drop, 0.03%, is less than three times its standard uncertainty, "
-    "0.11%": (REFUSED, "refusal"),
+    "Prony series not given: the drop, 0.03 %, is less than three times its standard uncertainty, "
+    "0.11 %": (REFUSED, "refusal"),
     "the printed diameters contradict each other": (SAID, "note"),
     "400 rows read, 400 kept, flagged: tension of new spike 3. Saturated and stuck readings and "
     "spikes are not used. Look at them (quality_flag of the archive): where they are sound, raise "
@@ -68,7 +68,7 @@ FACTS = {
         ),
         "note",
     ),
-    "new: 3 of 10 cycles drift by more than 20% of their range; the drift affects their "
+    "new: 3 of 10 cycles drift by more than 20 % of their range; the drift affects their "
     "amplitudes, slopes and energies": (
         note("cycles-drift", "new", n_far=3, n_cycles=10, limit=0.2), "warning",
     ),
@@ -79,7 +79,7 @@ FACTS = {
     "R05: the line goes slack in every cycle": (
         note("run-slack", "R05", cycles="every cycle"), "warning",
     ),
-    "tau drifts with run order: its residuals change by +0.2 per run, +4.00% of the response (p 0.01)": (
+    "tau drifts with run order: its residuals change by +0.2 per run, +4.00 % of the response (p 0.01)": (
         note("response-drifts", response="tau", slope=0.2, share=0.04, p=0.01), "warning",
     ),
     "stiffness forms of mooring codes not given: no strength": (
@@ -158,3 +158,8 @@ def test_what_is_only_not_stated_of_a_machine_comes_behind_what_the_log_shows():
     wrong = note("reference-length-under-preload", stated=0.0, found=900.0, specimen="a")
     ordered = by_severity([unstated, shown, wrong])
     assert [one.code for one in ordered] == [wrong.code, shown.code, unstated.code]
+
+
+def test_a_percent_sign_has_a_space_before_it_and_a_name_is_left_as_it_is():
+    found = note("cycles-drift", "a 10%-test", n_far=3, n_cycles=10, limit=0.2)
+    assert "a 10%-test: 3 of 10 cycles drift by more than 20 % of" in str(found)

@@ -62,7 +62,7 @@ def test_unequal_flexing_is_named_and_softening_is_said_of_rubber_alone():
     found = remarks(*hoses, past)
     assert found == [
         "ratio b/a: different test histories: not known against 1000000 earlier flex cycles",
-        "ratio b/a: different test histories: maximum earlier strain 130% against 100%",
+        "ratio b/a: different test histories: maximum earlier strain 130 % against 100 %",
     ]
     assert remarks(Specimen("a"), Specimen("b"), past)[-1].endswith(
         "rubber is softer below what it has seen"
@@ -86,8 +86,8 @@ def test_equal_histories_leave_nothing_to_say():
     ("past", "told"),
     [
         (history([1.2, 1.2], [10.0, 30.0]), "30 earlier cycles against 10"),
-        (history([1.2, 1.8], [10.0, 10.0]), "maximum earlier strain 180% against 120%"),
-        (history([np.nan, 1.8], [0.0, 0.0]), "maximum earlier strain 180% against none known"),
+        (history([1.2, 1.8], [10.0, 10.0]), "maximum earlier strain 180 % against 120 %"),
+        (history([np.nan, 1.8], [0.0, 0.0]), "maximum earlier strain 180 % against none known"),
         (None, "is not known: no order is given"),
     ],
 )

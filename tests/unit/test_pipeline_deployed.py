@@ -39,7 +39,7 @@ def test_nothing_is_said_of_the_stiffness_below_the_first_strain_that_was_tested
     assert not any(name for name, is_low in zip(straight.nearest_test, low, strict=True) if is_low)
     (state,) = straight.working
     assert np.isnan(state.secant_spring_constant) and state.nearest == ""
-    assert state.note == ("no test covers 70% of the cycle, so EA is unknown: no test reaches it")
+    assert state.note == ("no test covers 70 % of the cycle, so EA is unknown: no test reaches it")
     assert straight.strain == pytest.approx(straight.assembly.total_length / 3.0 - 1)
     assert not straight.working[0].point.is_tested
     assert straight.free_length == (2.0,) * 3
@@ -174,7 +174,7 @@ def test_a_test_counts_from_seventy_percent_of_the_cycle(high, has_stiffness):
     assert state.tests[1].covered == pytest.approx(0.4)
     assert np.isfinite(state.secant_spring_constant) == has_stiffness
     if not has_stiffness:
-        assert "EA is unknown: nearest are T-1 cycles 68%, T-2 cycles 40%" in state.doubt
+        assert "EA is unknown: nearest are T-1 cycles 68 %, T-2 cycles 40 %" in state.doubt
 
 
 def test_kinds_behind_that_which_covers_the_cycle_have_no_say():

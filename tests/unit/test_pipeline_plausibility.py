@@ -67,7 +67,7 @@ def test_cycles_that_are_mostly_drift_are_counted(notes_of):
     samples = np.arange(notes_of.strain.size)
     # 500 N a cycle beside a range of 1000 N
     (note,) = map(str, notes_of(1000 * notes_of.strain + 5.0 * samples))
-    assert note.startswith("new: 10 of 10 cycles drift by more than 20% of their range")
+    assert note.startswith("new: 10 of 10 cycles drift by more than 20 % of their range")
     # a jump to a tenth: beside it the drift is more than what is left of the range
     jump = np.where(samples < 410, 1.0, 0.1)
     (note,) = map(str, notes_of(1000 * notes_of.strain * jump))
@@ -121,7 +121,7 @@ def test_hum_is_in_the_extremes_of_ramps_and_not_in_a_fundamental(hum, waveform,
     assert len(told) == is_told
     if is_told:
         assert told[0].startswith("new: tension oscillates at 50 Hz by 2 N")
-        assert "4.0% of the tension amplitude" in told[0]
+        assert "4.0 % of the tension amplitude" in told[0]
 
 
 def test_snap_loads_go_slack_and_a_line_that_stays_taut_is_named(notes_of):
@@ -181,7 +181,7 @@ def test_a_line_that_turns_at_a_low_load_is_not_slack(valley, level):
 def test_little_at_a_constant_rate_asks_for_the_waveform(notes_of, share, n_notes):
     notes = tuple(map(str, notes_of(share=share)))
     assert len(notes) == n_notes
-    assert all("only 49% of the branches run at a constant rate" in note for note in notes)
+    assert all("only 49 % of the branches run at a constant rate" in note for note in notes)
     assert tuple(map(str, notes_of(share=share, waveform="other"))) == ()
 
 

@@ -272,7 +272,7 @@ def test_breaks_of_one_kind_have_their_mean_deviation_and_least():
     (found,) = (one for one in pull_table(views).remarks if one.startswith("Breaks of"))
     # deviations of -100, 0 and 100 N over n - 1
     assert found.startswith(
-        "Breaks of 3 specimens (rope, nylon): mean 1,000 N, standard deviation 100.0 N (10.0%),"
+        "Breaks of 3 specimens (rope, nylon): mean 1,000 N, standard deviation 100.0 N (10.0 %),"
         " least 900.0 N."
     )
 
@@ -293,7 +293,7 @@ def test_a_slow_pull_of_a_rope_has_k_0_half_way():
 
 
 MISSED = {
-    "note": ("note", ["new: a cubic misses the load-strain curve by 2.9% of its strain"]),
+    "note": ("note", ["new: a cubic misses the load-strain curve by 2.9 % of its strain"]),
     "note_stage": ("note", ["test"]), "note_code": ("note", ["pull-misfit"]),
     "note_severity": ("note", ["note"]), "note_effect": ("note", [NAN]),
     "tension_grid": ("tension_grid", [100.0, 200.0, 300.0]),

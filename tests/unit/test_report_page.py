@@ -550,6 +550,6 @@ def test_what_moves_an_answer_most_is_named_first_over_all_tests(report, rich_te
     large = replace(renamed(rich_test, "T-2"), notes=(note("stiffness-not-settled", "new",
                                                            effect=0.3, n_cycles=10),))  # fmt: skip
     text = "".join(report(small, large).text)
-    assert text.index("has not settled: it changes by +30.0%") < text.index(
+    assert text.index("has not settled: it changes by +30.0 %") < text.index(
         "the loop area as logged is"
     )

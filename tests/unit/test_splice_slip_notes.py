@@ -48,7 +48,7 @@ def test_a_slip_is_a_warning_where_the_strain_moves_beyond_its_interval(spread, 
     assert (
         "new: the splices slipped at cycles 601 and 1,501, by about 100 mm or more in all" in words
     )
-    assert ("4.0 percentage points too large (2.5% of the mean strain)" in words) == (
+    assert ("4.0 percentage points too large (2.5 % of the mean strain)" in words) == (
         method is None
     )
 
@@ -84,7 +84,7 @@ def test_a_slip_before_the_test_is_told_like_one_in_it(spread, severity):
     assert found.severity == severity
     assert "before this test the splices slipped by about 100 mm or more" in str(found)
     # 100 mm over a free length of 2.5 m
-    assert "4.0 percentage points too large (2.5% of the mean strain)" in str(found)
+    assert "4.0 percentage points too large (2.5 % of the mean strain)" in str(found)
 
 
 def test_a_hold_after_a_slip_has_the_same_excess():
@@ -99,7 +99,7 @@ def test_a_hold_after_a_slip_has_the_same_excess():
     )
     (found,) = splice_slip_notes(test)
     assert found.severity == "warning"
-    assert "4.0 percentage points too large (2.5% of the mean strain)" in str(found)
+    assert "4.0 percentage points too large (2.5 % of the mean strain)" in str(found)
 
 
 @pytest.mark.parametrize("stated", [0.0, 1e-12])

@@ -886,7 +886,7 @@ def _hint(time: Floats, values: Floats) -> str:
     top = float(np.nanmax(values))
     share = float(np.mean(values > top - _AT_TOP * (top - float(np.nanmin(values)))))
     cut_off = (
-        f"{share:.0%} of the samples stand at {top:.6g}, the greatest value: the channel is"
+        f"{100 * share:.0f} % of the samples stand at {top:.6g}, the greatest value: the channel is"
         " saturated there, or the machine dwells. "
     )
     return (

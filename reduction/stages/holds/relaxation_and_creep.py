@@ -650,9 +650,8 @@ def _with_shape_of_ramp(fit: PronyFit, hold: Hold) -> PronyFit | None:
     )  # fmt: skip
     off = np.abs(own - fit.tension)
     if np.any(off > LARGEST_SHARE * fit.tension):
-        found = (
-            f"a term changes by {float((off / fit.tension).max()):.0%} with the shape of its ramp"
-        )
+        change = 100 * float((off / fit.tension).max())
+        found = f"a term changes by {change:.0f} % with the shape of its ramp"
         reason = "the ramp is not of constant rate"
         hold.refusals.append(note("no-prony-series", reason=reason, found=found))
         return None

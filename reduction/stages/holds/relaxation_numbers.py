@@ -324,7 +324,7 @@ def creep_rate(
     variation = _tension_variation(seconds, load, settled=settled)
     if variation > TENSION_TOLERANCE:
         raise DataError(
-            f"tension is not constant: it strays {variation:.1%} from its mean",
-            needed=f"{TENSION_TOLERANCE:.0%} or less",
+            f"tension is not constant: it strays {100 * variation:.1f} % from its mean",
+            needed=f"{100 * TENSION_TOLERANCE:.0f} % or less",
         )
     return rate_per_decade(logarithmic_blocks(seconds, stretch), ramp_duration=ramp_duration)

@@ -437,7 +437,9 @@ def cycles_to_failure(
         if shown:
             how.append("slack at a position at which it was taut")
         elif fell:
-            how.append(f"the peak falls below {failure_share:.0%} of its median and stays there")
+            how.append(
+                f"the peak falls below {100 * failure_share:.0f} % of its median and stays there"
+            )
         elif stated is None:
             how.append(
                 "no failure in any complete cycle: a run-out, or a failure after the last one"

@@ -772,7 +772,7 @@ def fit_pull(
     fall = _fall_beyond_noise(load) / (high - low)
     if fall > _FALL_REFUSED:
         raise DataError(
-            f"tension falls by {fall:.0%} of its rise on the way to the peak",
+            f"tension falls by {100 * fall:.0f} % of its rise on the way to the peak",
             needed="a loading in one direction",
             hint="Give the slow pull alone, by a step with its own from and to.",
         )
@@ -794,8 +794,9 @@ def fit_pull(
     if stop - start < 2 * _SHORTEST_RANGE:
         raise FitError(
             "strain does not rise with tension in the slow pull",
-            found=f"a positive slope over {(stop - start) / 2:.0%} of the range of tension",
-            needed=f"{_SHORTEST_RANGE:.0%} or more",
+            found=f"a positive slope over {100 * ((stop - start) / 2):.0f} % of the range of"
+            " tension",
+            needed=f"{100 * _SHORTEST_RANGE:.0f} % or more",
             hint="Check the signs of strain and tension.",
         )
     centre, half = (low + high) / 2, (high - low) / 2
