@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from math import isfinite
-from string import Formatter
 from typing import Any
 
 from reduction.record.note_sentences import CAUSES, SENTENCES, UNSTATED, Severity
@@ -18,15 +17,12 @@ SEVERITIES: tuple[Severity, ...] = ("warning", "refusal", "note")
 """Most serious first."""
 
 
-class _SpaceBeforePercent(Formatter):
-    """Format as `str.format`, with the space that a unit has before a percent sign."""
+class _Number(float):
+    """A number that is formatted with the space that a unit has before a percent sign."""
 
-    def format_field(self, value: Any, format_spec: str) -> str:
-        text = str(super().format_field(value, format_spec))
+    def __format__(self, format_spec: str, /) -> str:
+        text = super().__format__(format_spec)
         return f"{text[:-1]} %" if format_spec.endswith("%") else text
-
-
-_WITH_SPACE = _SpaceBeforePercent()
 
 
 @dataclass(frozen=True)
@@ -63,7 +59,11 @@ class Note:
             return self.text
         template = SENTENCES[self.code][1]
         if isinstance(template, str):
-            said = _WITH_SPACE.vformat(template, (), self.numbers)
+            shown = {
+                name: _Number(one) if isinstance(one, float) else one
+                for name, one in self.numbers.items()
+            }
+            said = template.format(**shown)
         else:
             said = template(**self.numbers)
         return f"{self.subject}: {said}" if self.subject else said
