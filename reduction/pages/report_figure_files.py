@@ -207,6 +207,8 @@ def _draw_lines(axes: Any, figure: ReportFigure, scales: Sequence[_Scale]) -> No
     bars = "xerr" if figure.is_flipped else "yerr"
     named: set[str] = set()
     own = sum(one.is_own for one in figure.series)
+    # dashes that mean nothing else tell the lines apart in grey
+    is_plain = not any(one.dash for one in figure.series)
     for one in figure.series:
         at = [scale.factor * values for scale, values in zip(scales, (one.x, one.y), strict=True)]
         name, colour = _name(one), _colour(one)
@@ -216,7 +218,7 @@ def _draw_lines(axes: Any, figure: ReportFigure, scales: Sequence[_Scale]) -> No
             name, colour = f"own: {own} series, see the table", "#00000080"
         look: dict[str, Any] = {"color": colour, "label": None if name in named else name}
         if one.form == "curve":
-            dash = _DASHES[one.dash % len(_DASHES)]
+            dash = _DASHES[(one.colour if is_plain else one.dash) % len(_DASHES)]
             axes.plot(*at[::turn], linestyle=dash, linewidth=2.2 if one.is_own else 1.5, **look)
             named.add(name)
             continue

@@ -168,6 +168,13 @@ def own_line(notes=()):
     )
 
 
+def test_lines_that_differ_by_colour_alone_have_dashes_that_tell_them_apart_in_grey(tmp_path):
+    svg, *_ = write_figure(drawn("CG-D-39-80", "8"), tmp_path, "us").paths
+    # K_0 of four diameters: one solid line and three patterns of dashes
+    patterns = re.findall(r"stroke-dasharray: ([\d., ]+)", svg.read_text(encoding="utf-8"))
+    assert len(set(patterns)) == 3
+
+
 def test_an_own_line_is_drawn_where_it_has_the_quantity_and_synthetic_data_say_so(tmp_path):
     figure = drawn("CG-D-39-80", "8", [own_line(("synthetic data",))])
     (own,) = (one for one in figure.series if one.is_own)

@@ -141,7 +141,7 @@ function moreTables(line, found, at, system) {
   const pulls = Object.entries(line.slow_pulls);
   if (found.quantity === REST && pulls.length > 1) {
     return [{
-      intro: "", heads: [`mean tension\n[${force}]`, "K_0 by", `K_0\n[${force}]`, "greatest z\nof printed K_1"],
+      intro: "", heads: [`mean tension\n[${force}]`, "K_0 from", `K_0\n[${force}]`, "greatest z\nof printed K_1"],
       rows: pulls.map(([of, curve]) => [
         asGiven(scale * at.mean_tension), of, short(scale * evaluateCurve(curve, at.mean_tension).value),
         short(numbersOf(line.greatest_z[of] ?? null), 3)]),
@@ -160,7 +160,7 @@ function moreTables(line, found, at, system) {
     intro: line.is_printed
       ? "K_1 and tau as printed, and solved from K_ap, H and K_0 by the three-parameter model:"
       : "K_1 and tau of their own surfaces, and solved from K_ap, H and K_0 by the three-parameter model:",
-    heads: [...levels.map((one) => one[0]), "K_0 by", `K_ap\n[${force}]`, `K_0\n[${force}]`,
+    heads: [...levels.map((one) => one[0]), "K_0 from", `K_ap\n[${force}]`, `K_0\n[${force}]`,
       `K_1 ${stated}\n[${force}]`, `K_1 solved\n[${force}]`, `tau ${stated}\n[s]`, "tau solved\n[s]", "remark"],
     rows: values.map((one) => [
       ...levels.map((cell) => cell[1]), one.of,
