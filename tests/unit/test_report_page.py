@@ -494,6 +494,16 @@ def test_what_to_check_stands_before_the_answers_and_leads_to_the_whole_list(ric
     assert text.index("the last cycle is broken", first + 1) > text.index("Problems found", first)
 
 
+def test_the_section_of_a_test_begins_with_the_reasons_for_check_and_status_stays_in_sight(rich_page):
+    text = "".join(rich_page.text)
+    section = text[text.index("Across the tests" if "Across the tests" in text else "T-1") :]
+    assert section.index("the last cycle is broken") < section.index("All notes on this test")
+    bad = [a for tag, a in rich_page.elements if tag == "p" and a.get("class") == "remark bad"]
+    assert bad
+    # a column of its own class, which the style keeps at the edge of a table that scrolls
+    assert any(tag == "td" and a.get("class") == "status" for tag, a in rich_page.elements)
+
+
 def test_the_notes_of_a_test_stand_under_headings_most_serious_first(rich_page):
     text = "".join(rich_page.text)
     text = text[text.index("All notes on this test") :]
