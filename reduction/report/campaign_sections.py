@@ -16,6 +16,7 @@ from reduction.experiments.outcome_groups import odd_outcomes
 from reduction.quantities.digits import fixed_number, places_of
 from reduction.quantities.units import UnitSystem
 from reduction.record.errors import ArchiveError
+from reduction.record.note_sentences import CAUSES
 from reduction.record.notes import Note, urgency
 from reduction.report.campaign_summary import SummaryFinding, Tile
 from reduction.report.experiment_tables import (
@@ -357,7 +358,9 @@ def _comparison_findings(view: ComparisonView) -> list[SummaryFinding]:
     of = (f"comparison {view.name}",)
     found = []
     if view.short_verdict == "differs":
-        found.append(SummaryFinding("warning", of, f"The prediction {view.verdict}."))
+        share = float(np.nan_to_num(view.judged_scalar("tension_relative_rms")))
+        place = (len(CAUSES), -share)
+        found.append(SummaryFinding("warning", of, f"The prediction {view.verdict}.", place))
     elif view.short_verdict != "agrees":
         found.append(SummaryFinding("note", of, f"{view.verdict[:1].upper()}{view.verdict[1:]}."))
     if view.is_identified is False:

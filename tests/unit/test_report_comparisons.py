@@ -26,6 +26,7 @@ from reduction.report.campaign_sections import (
     _comparison_tiles,
     _make_comparison_section,
 )
+from reduction.report.campaign_summary import SummaryFinding
 from reduction.report.figures.hose_figures import (
     draw_all_comparisons,
     draw_comparison,
@@ -381,6 +382,8 @@ def test_what_differs_is_a_warning_at_the_top():
     findings = _comparison_findings(view(differing()))
     assert findings[0].severity == "warning"
     assert findings[0].tests == ("comparison apart",)
+    # as urgent as its size: before warnings without an effect on a number
+    assert findings[0].urgency < SummaryFinding("warning", (), "").urgency
     assert findings[0].text == f"The prediction {differing().comparison.validation.verdict}."
     assert not [one for one in _comparison_findings(view(agreeing())) if one.severity == "warning"]
 

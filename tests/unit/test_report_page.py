@@ -494,7 +494,9 @@ def test_what_to_check_stands_before_the_answers_and_leads_to_the_whole_list(ric
     assert text.index("the last cycle is broken", first + 1) > text.index("Problems found", first)
 
 
-def test_the_section_of_a_test_begins_with_the_reasons_for_check_and_status_stays_in_sight(rich_page):
+def test_the_section_of_a_test_begins_with_the_reasons_for_check_and_status_stays_in_sight(
+    rich_page,
+):
     text = "".join(rich_page.text)
     section = text[text.index("Across the tests" if "Across the tests" in text else "T-1") :]
     assert section.index("the last cycle is broken") < section.index("All notes on this test")
