@@ -102,6 +102,10 @@ def load_train_notes(test: ReducedTest, instruments: Sequence[InstrumentErrors])
                 play=of_energy * length / (2 * float(summary.tension_amplitude[index]))
                 if is_crosshead
                 else None,
+                # of a sine, whose phase it turns
+                lag=None
+                if index < len(instruments) and instruments[index].lag > 0
+                else of_energy / (2 * np.pi**2 * float(summary.frequency[index]) * stroke),
             )
 
 

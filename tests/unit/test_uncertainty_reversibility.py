@@ -105,5 +105,15 @@ def test_the_hysteresis_that_moves_the_energy_by_its_uncertainty_is_told_where_n
     assert ("instrument-hysteresis-unknown" in codes) == (not stated)
     if not stated:
         assert codes["instrument-hysteresis-unknown"].numbers == pytest.approx(
-            {"reversibility": 0.03, "play": 4e-4}, rel=1e-6
+            # 20.3 ms turn the phase at 0.1 Hz by 0.0127, times pi x 500 N x 0.01
+            {"reversibility": 0.03, "play": 4e-4, "lag": 0.2 / (0.1 * 2 * np.pi**2 * 5)},
+            rel=1e-6,
         )
+        told = str(codes["instrument-hysteresis-unknown"])
+        assert "or 20 ms between the two channels" in told
+        (known,) = [
+            one
+            for one in load_train_notes(test, [InstrumentErrors("rope", lag=1e-3)])
+            if one.code == "instrument-hysteresis-unknown"
+        ]
+        assert "ms between" not in str(known)
