@@ -15,8 +15,8 @@ import numpy as np
 from reduction.record.measurement import Bools, Floats, Integers, read_only_arrays
 from reduction.record.samples import finite_extremes, first_sample, sample_blocks, take_samples
 from reduction.stages.cycles.cycle_product import Cycles
-from reduction.stages.cycles.cycle_search import find_reversals
 from reduction.stages.cycles.loop_sense import waveform_of_log
+from reduction.stages.cycles.reversals import find_reversals
 from reduction.stages.load_at_slack import stands_at_slack_length
 from reduction.stages.standstills import Standstills
 

@@ -12,12 +12,9 @@ import pytest
 from measured_logs import LOGS, needs_measured_logs
 
 from reduction.record.settings import CycleSettings, PhaseSettings
-from reduction.stages.cycles.cycle_search import (
-    _counted_cycles,
-    _first_pass,
-    find_cycles,
-    find_reversals,
-)
+from reduction.stages.cycles.cycle_search import find_cycles
+from reduction.stages.cycles.machine_counter import counted_cycles
+from reduction.stages.cycles.reversals import find_reversals, first_pass
 from reduction.stages.standstills import find_standstills
 
 FOLDER = LOGS / "instron-elastomer"
@@ -92,7 +89,7 @@ def test_the_notes_say_which_cycles_the_log_lacks_and_which_have_no_stroke(name)
 def test_the_stop_log_gives_its_row_of_the_trends_to_all_digits(name):
     stop, trends = read(name, "Stop"), read(name, "steps.trends")
     stop = stop[stop["Step"] == 1].reset_index(drop=True)
-    first, last, *_, numbers = _counted_cycles(
+    first, last, *_, numbers = counted_cycles(
         stop["Total Time (s)"].to_numpy(),
         stop["Position (mm)"].to_numpy(),
         stop["Total Cycles"].to_numpy(),
@@ -110,7 +107,7 @@ def test_the_stop_log_gives_its_row_of_the_trends_to_all_digits(name):
 def test_reversals_alone_find_the_peaks_of_every_row_with_a_stroke(name):
     tracking, trends = read(name, "steps.tracking"), read(name, "steps.trends")
     position = tracking["Position (mm)"].to_numpy()
-    reversals, _ = _first_pass(position)
+    reversals, _ = first_pass(position)
     peaks = reversals[1:][np.diff(position[reversals]) > 0]
     moving = trends[trends["Step"] == 1]
     cycle_of_peak = tracking["Total Cycles"].to_numpy()[peaks]

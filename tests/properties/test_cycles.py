@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from reduction.record.settings import CycleSettings, PhaseSettings
-from reduction.stages.cycles.cycle_search import find_cycles, find_reversals
+from reduction.stages.cycles.cycle_search import find_cycles
+from reduction.stages.cycles.reversals import find_reversals
 from reduction.stages.standstills import find_standstills
 
 # eighths and powers of two: scaling and shifting them rounds nothing

@@ -11,19 +11,20 @@ from reduction.stages.cycles import cycle_search
 from reduction.stages.cycles.levels import find_levels
 from reduction.stages.cycles.loop_sense import unlike_neighbours
 from reduction.stages.cycles.loops import close_loops
+from reduction.stages.cycles.machine_counter import counted_cycles
 from reduction.stages.moduli.loop_balance import check_identity
 from reduction.stages.standstills import find_standstills
 
 
-def _counted_cycles(counter, values):
-    return cycle_search._counted_cycles(np.arange(float(values.size)), values, counter)
+def counted(counter, values):
+    return counted_cycles(np.arange(float(values.size)), values, counter)
 
 
 def test_branches_lie_between_the_extremes_of_the_counted_samples():
     # the count changes before the valley, as the crosshead lags behind the command
     position = np.array([2.0, 1, 0, 1, 2, 3, 2, 1, 0.5, 1, 2, 3, 2, 1])
     counter = np.array([1, 1, 1, 1, 1, 1, 1, 2, 2, 2, 2, 2, 2, 2])
-    first, last, begin, end, number = _counted_cycles(counter, position)
+    first, last, begin, end, number = counted(counter, position)
     assert (first.tolist(), last.tolist(), number.tolist()) == ([0, 7], [7, 13], [1, 2])
     assert begin.tolist() == [[2, 5], [8, 11]]
     assert end.tolist() == [[5, 7], [11, 13]]
@@ -32,7 +33,7 @@ def test_branches_lie_between_the_extremes_of_the_counted_samples():
 def test_a_cycle_ends_with_its_count_where_the_log_has_a_gap():
     time = np.array([0.0, 1, 2, 3, 50, 51, 52, 53])
     counter = np.array([1, 1, 1, 1, 20, 20, 20, 20])
-    first, last, *_ = cycle_search._counted_cycles(time, np.tile([0.0, 2, 1, 0.1], 2), counter)
+    first, last, *_ = counted_cycles(time, np.tile([0.0, 2, 1, 0.1], 2), counter)
     assert (first.tolist(), last.tolist()) == ([0, 4], [3, 7])
 
 
@@ -80,31 +81,31 @@ def test_numbers_go_on_over_gaps_of_the_log_that_hold_cycles():
 
 
 def test_samples_before_the_first_count_are_outside():
-    first, *_ = _counted_cycles(np.array([0, 0, 1, 1, 0]), np.arange(5.0))
+    first, *_ = counted(np.array([0, 0, 1, 1, 0]), np.arange(5.0))
     assert first.tolist() == [2]
 
 
 def test_a_cycle_without_samples_has_branches_of_one_sample():
     position = np.array([0.0, 1, 0, np.nan, np.nan, np.nan])
-    _, _, begin, end, _ = _counted_cycles(np.array([1, 1, 1, 2, 2, 2]), position)
+    _, _, begin, end, _ = counted(np.array([1, 1, 1, 2, 2, 2]), position)
     assert begin[1].tolist() == [3, 3] and end[1].tolist() == [3, 5]
 
 
 def test_missing_samples_are_passed_over():
     position = np.array([np.nan, 0, 1, np.nan, 2, 1, np.nan])
-    _, _, begin, end, _ = _counted_cycles(np.ones(7, dtype=int), position)
+    _, _, begin, end, _ = counted(np.ones(7, dtype=int), position)
     assert begin.tolist() == [[1, 4]] and end.tolist() == [[4, 5]]
 
 
 def test_a_count_that_runs_backward_is_refused():
     counter = np.array([0, 1, 1, 3, 3, 2, 2, 4, 3])
     with pytest.raises(DataError, match="counter runs backward 2 times; found 2 after 3"):
-        _counted_cycles(counter, np.arange(9.0))
+        counted(counter, np.arange(9.0))
 
 
 def test_a_count_may_begin_again_with_one_and_stand_at_zero_between():
     counter = np.array([1, 1, 1, 2, 2, 2, 0, 0, 1, 1, 1, -1])
-    *_, number = _counted_cycles(counter, np.tile([0.0, 1, 0], 4))
+    *_, number = counted(counter, np.tile([0.0, 1, 0], 4))
     assert number.tolist() == [1, 2, 1]
 
 

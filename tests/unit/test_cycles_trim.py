@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from reduction.record.errors import SettingsError
-from reduction.stages.cycles.cycle_search import _constant_rate_span, _stroke_span
+from reduction.stages.cycles.branch_span import _constant_rate_span, _stroke_span
 
 
 def soft_triangle(n_cycles, *, rate=10.0, half=5.0, speed=0.2, turn=0.5, noise=0.0):

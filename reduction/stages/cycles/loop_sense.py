@@ -171,7 +171,7 @@ def unlike_neighbours(
     Examples
     --------
     >>> from reduction.record.settings import CycleSettings, PhaseSettings
-    >>> from reduction.stages.cycles.cycle_search import find_cycles
+    >>> from reduction.stages.cycles.cycle_search import (find_cycles)
     >>> from reduction.stages.standstills import find_standstills
     >>> time = np.arange(0, 120, 0.05)
     >>> def told(wave):
@@ -258,7 +258,7 @@ def change_of_wave(time: Floats, driven: Floats, cycles: Cycles) -> tuple[float,
     Examples
     --------
     >>> from reduction.record.settings import CycleSettings, PhaseSettings
-    >>> from reduction.stages.cycles.cycle_search import find_cycles
+    >>> from reduction.stages.cycles.cycle_search import (find_cycles)
     >>> from reduction.stages.standstills import find_standstills
     >>> time = np.arange(0, 120, 0.05)
     >>> wave = np.where(time < 60, 1 - 2 * np.abs(time / 6 % 2 - 1), -np.cos(np.pi * time / 6))
@@ -416,7 +416,7 @@ def waveform_of_log(
     Examples
     --------
     >>> from reduction.record.settings import CycleSettings, PhaseSettings
-    >>> from reduction.stages.cycles.cycle_search import find_cycles
+    >>> from reduction.stages.cycles.cycle_search import (find_cycles)
     >>> from reduction.stages.standstills import find_standstills
     >>> time = np.arange(0, 60, 0.1)
     >>> def told(wave):

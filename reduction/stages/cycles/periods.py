@@ -509,7 +509,7 @@ def change_of_period(time: Floats, driven: Floats, cycles: Cycles) -> float:
     Examples
     --------
     >>> from reduction.record.settings import CycleSettings, PhaseSettings
-    >>> from reduction.stages.cycles.cycle_search import find_cycles
+    >>> from reduction.stages.cycles.cycle_search import (find_cycles)
     >>> from reduction.stages.standstills import find_standstills
     >>> time = np.arange(0, 400, 0.1)
     >>> def changes(wave):

@@ -116,7 +116,7 @@ def vibration_beside_wave(time: Floats, values: Floats, cycles: Cycles) -> tuple
     Examples
     --------
     >>> from reduction.record.settings import CycleSettings, PhaseSettings
-    >>> from reduction.stages.cycles.cycle_search import find_cycles
+    >>> from reduction.stages.cycles.cycle_search import (find_cycles)
     >>> from reduction.stages.standstills import find_standstills
     >>> time = np.arange(0, 50, 0.005)
     >>> wave = 100 * np.abs((time / 2.5) % 2 - 1) + np.random.default_rng(1).normal(0, 0.1, 10_000)
