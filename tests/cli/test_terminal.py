@@ -109,7 +109,9 @@ def test_quiet_at_a_terminal_says_nothing(at_terminal, tmp_path):
 def test_a_pipe_has_one_line_a_test_and_progress_beside_it(tmp_path):
     done = reduction("run", CAMPAIGN, *places(tmp_path), FORCE_COLOR="1")
     assert "\x1b" not in done.stdout + done.stderr
-    assert done.stderr.startswith("1/1 static check: 1325: a length of 416.1 mm gives 167 %")
+    assert done.stderr.startswith(
+        "1/1 static check: reading 1325: a length of 416.1 mm gives 167 %"
+    )
     lines = done.stdout.splitlines()
     assert lines[0].startswith("Pulls and weights. Strain: ")
     assert lines[lines.index("Check:") + 1].startswith("  static: 1325: ")
