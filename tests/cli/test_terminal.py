@@ -114,7 +114,7 @@ def test_a_pipe_has_one_line_a_test_and_progress_beside_it(tmp_path):
     )
     lines = done.stdout.splitlines()
     assert lines[0].startswith("Pulls and weights. Strain: ")
-    assert lines[lines.index("Check:") + 1].startswith("  static: 1325: ")
+    assert lines[lines.index("Check:") + 1].startswith("  static: reading 1325: ")
     place = next(number for number, line in enumerate(lines) if line.startswith("specimen "))
     head, row = lines[place : place + 2]
     columns = re.split(r"  +", head)
