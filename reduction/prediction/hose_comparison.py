@@ -507,8 +507,10 @@ def _load_of_intervals(
     cords = loads_at(numbers, stretch, cord_stretch, numbers.load_scale * above)
     whole = cords.cord_axial_load if load == "tension" else cords.fill_pressure
     interval = np.searchsorted(cord.point[1:-1], of_cord)
-    own = whole[[names.index(name) for name, _ in where]]
-    return np.where(interval == np.array([[place] for _, place in where]), own, 0.0)
+    curve, place = np.array(
+        [(names.index(name), place) for name, place in where], dtype=np.intp
+    ).reshape(-1, 2).T  # fmt: skip
+    return np.where(interval == place[:, None], whole[curve], 0.0)
 
 
 def _other_curves(points: CordCurve, strain: Floats) -> dict[str, Floats]:

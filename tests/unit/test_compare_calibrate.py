@@ -1,3 +1,4 @@
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
@@ -533,3 +534,12 @@ def test_slopes_in_closed_form_are_those_of_differences(load):
     size, off = np.abs(apart).max(axis=0), np.abs(closed - apart)
     assert np.all(off.mean(axis=0) <= 3e-4 * size) and np.all(off <= 0.02 * size)
     assert np.all(size[: len(names)] > 0)
+
+
+@pytest.mark.parametrize("n_points", [2, 3])
+def test_a_cord_of_two_or_three_points_has_no_other_curve(n_points):
+    at = np.linspace(0, 0.2, n_points)
+    rows, where = _cord_curve_errors(
+        replace(TRUTH.design(), cord=CordCurve(at, 650 * at)), np.array([0.5, 1.0])
+    )
+    assert rows.shape == (0, 2) and where == ()
