@@ -36,7 +36,6 @@ from reduction.batch.campaign_status import (
 from reduction.batch.finished_run import finished_run, keep_finished
 from reduction.batch.run_lock import run_lock
 from reduction.batch.workers import Workers, keep_freed_memory, local_workers
-from reduction.campaign.load import load_campaign
 from reduction.cli.output import CommandOutput
 from reduction.cli.progress import campaign_progress
 from reduction.record.errors import ArchiveError, SettingsError
@@ -652,6 +651,8 @@ def _demo_campaigns() -> Path:
 
 def run_demo(folder: Path, output: CommandOutput) -> None:
     """Copy each campaign to ``raw`` in a folder and run it; existing files are not replaced."""
+    from reduction.campaign.load import load_campaign
+
     raw = folder / "raw"
     standing = [name for name in _DEMO_NAMES if (raw / name).exists()]
     if standing:
