@@ -53,6 +53,12 @@ OF_A_SURFACE = (
     "apparent_spring_constant", "hysteresis_energy", "dissipation_spring_constant",
     "relaxation_time",
 )  # fmt: skip
+# its name in the archive, and in the truth
+OF_A_HOLD = {
+    "relaxation_drop": "drop_to_end",
+    "hold_initial_tension": "peak",
+    "long_time_tension": "equilibrium_settled",
+}
 N_POINTS = 40
 NO_TESTS = ("surfaces", "comparisons", "predictions", "catalogue", "change_in_length")
 NORMAL = 1.959964
@@ -111,6 +117,14 @@ def judge_run(into: Realisation, archive: xr.Dataset, place: int, true: dict[str
             continue
         spread = archive[f"{key}_standard_uncertainty"].to_numpy()[place]
         into.add(name, archive[key].to_numpy()[place], true[name], NORMAL * spread)
+
+
+def judge_hold(into: Realisation, archive: xr.Dataset, true: dict[str, Any]) -> None:
+    """Drop of the one hold of a test, and the tensions between which it lies."""
+    for name, key in OF_A_HOLD.items():
+        if key in true and name in archive:
+            spread = archive[f"{name}_standard_uncertainty"].to_numpy()
+            into.add(name, archive[name].to_numpy(), true[key], NORMAL * spread)
 
 
 def judge_surfaces(into: Realisation, folder: Path, truth: Truth) -> None:
@@ -177,6 +191,7 @@ def realise(law: str, seed: int) -> Realisation:
                 n_judged += 1
                 judge_curves(found, archive, place, truth, f"{log}/{piece}/")
                 judge_run(found, archive, place, true)
+                judge_hold(found, archive, true)
         judge_surfaces(found, folder / "p", truth)
         found.n_refused = found.n_tests - n_judged
         return found
