@@ -58,14 +58,12 @@ class Note:
         if self.text:
             return self.text
         template = SENTENCES[self.code][1]
-        if isinstance(template, str):
-            shown = {
-                name: _Number(one) if isinstance(one, float) else one
-                for name, one in self.numbers.items()
-            }
-            said = template.format(**shown)
-        else:
-            said = template(**self.numbers)
+        shown = {
+            name: _Number(one) if isinstance(one, float) else one
+            for name, one in self.numbers.items()
+        }
+        compose = template.format if isinstance(template, str) else template
+        said = compose(**shown)
         return f"{self.subject}: {said}" if self.subject else said
 
 

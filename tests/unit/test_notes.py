@@ -163,3 +163,5 @@ def test_what_is_only_not_stated_of_a_machine_comes_behind_what_the_log_shows():
 def test_a_percent_sign_has_a_space_before_it_and_a_name_is_left_as_it_is():
     found = note("cycles-drift", "a 10%-test", n_far=3, n_cycles=10, limit=0.2)
     assert "a 10%-test: 3 of 10 cycles drift by more than 20 % of" in str(found)
+    # also in a sentence that a function composes
+    assert "differ by 7 % of" in str(note("wave-changes", share=0.07, last=4, first=5, begin=12.0))
