@@ -34,7 +34,7 @@ from reduction.record.settings import CycleSettings, ModulusSettings, PhaseSetti
 from reduction.stages.cycles.cycle_search import find_cycles
 from reduction.stages.cycles.loop_energy import loop_energy
 from reduction.stages.cycles.loops import close_loops
-from reduction.stages.cycles.reversals import first_pass
+from reduction.stages.cycles.reversals import reversals_of_typical_cycles
 from reduction.stages.moduli.secant_modulus import chord_modulus, end_moduli
 from reduction.stages.moduli.tangent_modulus import tangent_curves
 from reduction.stages.standstills import find_standstills
@@ -69,7 +69,7 @@ def signals(cycles: int, samples: int, noise: float) -> tuple[np.ndarray, np.nda
 
 def three_steps(strain: np.ndarray, tension: np.ndarray) -> Answer:
     """What the other package gives, no more."""
-    reversals, _ = first_pass(strain)
+    reversals, _ = reversals_of_typical_cycles(strain)
     with np.errstate(divide="ignore", invalid="ignore"):
         # at each sample; at a turn it is none, as there
         np.divide(tension[2:] - tension[:-2], strain[2:] - strain[:-2])

@@ -18,7 +18,7 @@ from reduction.batch.survey import Survey
 from reduction.campaign.plan import Campaign, ExperimentPlan, TestPlan
 from reduction.experiments.designs import engineering_levels
 from reduction.experiments.run_sheet import NOT_OF_PLAN
-from reduction.pipeline.reduce_test import greatest_strain
+from reduction.pipeline.extremes import greatest_strain
 from reduction.prediction.hose_comparison import loading_of
 from reduction.prediction.hose_product import HoseDesign
 from reduction.prediction.hose_tension import predict_hose

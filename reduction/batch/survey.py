@@ -14,8 +14,8 @@ from reduction.batch.run_lock import RunLock
 from reduction.batch.step_detection import FOUND, find_steps, remark_on_cycles
 from reduction.batch.workers import Task, Workers, work_on
 from reduction.campaign.plan import Campaign, StepPlan, TestPlan, cycles_of_kind
+from reduction.pipeline.extremes import Extremes, extremes_of_readings, extremes_of_test
 from reduction.pipeline.located_test import Located, locate, slips_of, tension_at_marks
-from reduction.pipeline.reduce_test import Extremes, extremes_of_readings, extremes_of_test
 from reduction.readers.layout import Layout
 from reduction.readers.raw_log import unreadable
 from reduction.readers.read_log import read_record, read_step_readings

@@ -18,7 +18,7 @@ import numpy as np
 
 from reduction.batch.survey import Survey, as_reduction_error
 from reduction.campaign.plan import Campaign
-from reduction.pipeline.reduce_test import (
+from reduction.pipeline.extremes import (
     greatest_strain,
     growth_of_slack_length,
     judge_strain,

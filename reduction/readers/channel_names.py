@@ -359,20 +359,54 @@ def _side_by_side(columns: Sequence[SeenColumn]) -> int:
     return n_tests if width > 1 and names == names[:width] * n_tests else 1
 
 
-def propose_channels(columns: Sequence[SeenColumn]) -> _Proposal:
+def propose_channels_table(columns: Sequence[SeenColumn]) -> _Proposal:
     """Lines of a layout's ``channels`` table for the columns of a log."""
-    lines: list[str] = []
-    keys: list[str] = []
-    remarks: list[str] = []
-    used: set[int] = set()
-    chosen: dict[str, tuple[SeenColumn, str]] = {}
     seen, n_tests = columns, _side_by_side(columns)
+    remarks: list[str] = []
     if n_tests > 1:
         columns = columns[: len(columns) // n_tests]
         remarks.append(
             f"guess: {n_tests} tests are side by side: this layout is for the first, columns 1 to"
             f" {len(columns)}; each of the others needs a layout with its own columns"
         )
+    chosen, of_choice = _choose_columns(columns)
+    lines, of_lines = _lines_of_channels(chosen, seen)
+    remarks += of_choice + of_lines
+    if "tension.2" in chosen:
+        remarks.append("guess: each load column is one position of a specimen, in file order")
+    is_blind = not {"crosshead_position", "tension.1"} & set(chosen)
+    for key, more in (("crosshead_position", f', datum = "{UNKNOWN}"'), ("tension.1", "")):
+        if key not in chosen:
+            text = _line(key, f'"{UNKNOWN}"', UNKNOWN, more)
+            is_commented = not is_blind or len(chosen) > 1
+            lines.append(f"# {text}" if is_commented else text)
+            remarks.append(f"unknown: which column is {key}, if one is")
+    extremes = [column for column in columns if _EXTREME.search(column.name)]
+    if len(extremes) > 1 and all(
+        _EXTREME.search(column.name)
+        for key, (column, _) in chosen.items()
+        if key == "crosshead_position" or key.startswith("tension.")
+    ):
+        remarks.append(
+            f"guess: by their names, {_label(extremes[0])} and {_label(extremes[1])} are extremes"
+            " of each cycle: such a table has no loops, so use the log of the readings"
+        )
+    used = {column.number for column, _ in chosen.values()}
+    lines += [
+        f"# not used: column {column.number}{_described(column)}"
+        for column in seen
+        if column.number not in used
+    ]
+    return _Proposal(tuple(lines), tuple(chosen), tuple(remarks))
+
+
+def _choose_columns(
+    columns: Sequence[SeenColumn],
+) -> tuple[dict[str, tuple[SeenColumn, str]], list[str]]:
+    """Column and unit of each channel, by name or by unit, with the reasons."""
+    chosen: dict[str, tuple[SeenColumn, str]] = {}
+    remarks: list[str] = []
+    used: set[int] = set()
     first = columns[0] if columns and not any(column.name for column in columns) else None
     if first is not None and first.values.size > 1 and np.all(np.diff(first.values) > 0):
         unit = _unit(first, "time") or UNKNOWN
@@ -416,6 +450,15 @@ def propose_channels(columns: Sequence[SeenColumn]) -> _Proposal:
         others = [_label(column) for column, _ in candidates if column.number not in used]
         if others and key not in _MANY:
             remarks.append(f"guess: {key} may also be column {', '.join(others)}")
+    return chosen, remarks
+
+
+def _lines_of_channels(
+    chosen: dict[str, tuple[SeenColumn, str]], seen: Sequence[SeenColumn]
+) -> tuple[list[str], list[str]]:
+    """One line of the table for each chosen channel, with the reasons for its settings."""
+    lines: list[str] = []
+    remarks: list[str] = []
     start = _Start.of(chosen)
     for key, (column, unit) in chosen.items():
         more, said = start.settings(key, unit) if start is not None else ("", [])
@@ -425,36 +468,11 @@ def propose_channels(columns: Sequence[SeenColumn]) -> _Proposal:
             more, said = f', datum = "{UNKNOWN}"', ["unknown: whether the position is pin-to-pin or"
                                                    " a displacement (datum)"]  # fmt: skip
         lines.append(_line(key, _reference(column, seen), unit, more))
-        keys.append(key)
         remarks += said
         if key == "crosshead_position":
             lines.append("# datum: pin-to-pin, or displacement with a reference_length, the length"
                          " from pin to pin where it reads 0")  # fmt: skip
-    if "tension.2" in chosen:
-        remarks.append("guess: each load column is one position of a specimen, in file order")
-    is_blind = not {"crosshead_position", "tension.1"} & set(keys)
-    for key, more in (("crosshead_position", f', datum = "{UNKNOWN}"'), ("tension.1", "")):
-        if key not in keys:
-            text = _line(key, f'"{UNKNOWN}"', UNKNOWN, more)
-            is_commented = not is_blind or bool(keys[1:])
-            lines.append(f"# {text}" if is_commented else text)
-            remarks.append(f"unknown: which column is {key}, if one is")
-    extremes = [column for column in columns if _EXTREME.search(column.name)]
-    if len(extremes) > 1 and all(
-        _EXTREME.search(column.name)
-        for key, (column, _) in chosen.items()
-        if key == "crosshead_position" or key.startswith("tension.")
-    ):
-        remarks.append(
-            f"guess: by their names, {_label(extremes[0])} and {_label(extremes[1])} are extremes"
-            " of each cycle: such a table has no loops, so use the log of the readings"
-        )
-    lines += [
-        f"# not used: column {column.number}{_described(column)}"
-        for column in seen
-        if column.number not in used
-    ]
-    return _Proposal(tuple(lines), tuple(keys), tuple(remarks))
+    return lines, remarks
 
 
 _STILL = 0.01  # of the sampled range of a channel: smaller movement is rest

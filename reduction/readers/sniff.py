@@ -26,7 +26,7 @@ from reduction.readers.channel_names import (
     FOREIGN_WORDS,
     SeenColumn,
     is_unit,
-    propose_channels,
+    propose_channels_table,
 )
 from reduction.readers.columns import CLOCK_TEXT, ColumnTable, matrix_table, plain_date
 from reduction.readers.delimited import without_comment_name
@@ -835,7 +835,7 @@ def sniff_layout(path: Path, *, name: str = "log", sheet: str | None = None) -> 
         seen = _look(path, sheet, watch)
     if not seen.columns:
         raise LogError(path, "no columns of numbers are found", needed="a log")
-    proposal = propose_channels(seen.columns)
+    proposal = propose_channels_table(seen.columns)
     lines = [f"[layouts.{name}]", f'format = "{seen.format}"']
     lines += [f"{key} = {toml_text(value)}" for key, value in seen.settings.items()]
     remarks = [*seen.remarks, *proposal.remarks]
@@ -850,7 +850,7 @@ def sniff_layout(path: Path, *, name: str = "log", sheet: str | None = None) -> 
 
 def unknown_layout() -> SniffedLayout:
     """Propose a layout for a file without a recognised table: every line is a question."""
-    proposal = propose_channels([])
+    proposal = propose_channels_table([])
     lines = ["[layouts.log]", f'format = "{UNKNOWN}"', "[layouts.log.channels]", *proposal.lines]
     remark = "unknown: no table of numbers was found; docs/layouts.md lists the formats"
     return SniffedLayout("\n".join([*lines, ""]), (remark,), ())

@@ -14,7 +14,7 @@ from measured_logs import LOGS, needs_measured_logs
 from reduction.record.settings import CycleSettings, PhaseSettings
 from reduction.stages.cycles.cycle_search import find_cycles
 from reduction.stages.cycles.machine_counter import counted_cycles
-from reduction.stages.cycles.reversals import find_reversals, first_pass
+from reduction.stages.cycles.reversals import find_reversals, reversals_of_typical_cycles
 from reduction.stages.standstills import find_standstills
 
 FOLDER = LOGS / "instron-elastomer"
@@ -107,7 +107,7 @@ def test_the_stop_log_gives_its_row_of_the_trends_to_all_digits(name):
 def test_reversals_alone_find_the_peaks_of_every_row_with_a_stroke(name):
     tracking, trends = read(name, "steps.tracking"), read(name, "steps.trends")
     position = tracking["Position (mm)"].to_numpy()
-    reversals, _ = first_pass(position)
+    reversals, _ = reversals_of_typical_cycles(position)
     peaks = reversals[1:][np.diff(position[reversals]) > 0]
     moving = trends[trends["Step"] == 1]
     cycle_of_peak = tracking["Total Cycles"].to_numpy()[peaks]

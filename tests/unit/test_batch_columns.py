@@ -14,7 +14,7 @@ from reduction.batch.plausibility import (
     _of_swapped,
     _off_other_specimens,
 )
-from reduction.pipeline.reduce_test import Extremes
+from reduction.pipeline.extremes import Extremes
 from reduction.readers.layout import Layout
 from reduction.record.measurement import Specimen, SpliceMarks
 

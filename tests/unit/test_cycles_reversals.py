@@ -8,7 +8,11 @@ import pytest
 from reduction.record.errors import DataError
 from reduction.record.settings import CycleSettings, PhaseSettings
 from reduction.stages.cycles.cycle_search import find_cycles
-from reduction.stages.cycles.reversals import _typical_range, find_reversals, first_pass
+from reduction.stages.cycles.reversals import (
+    _typical_range,
+    find_reversals,
+    reversals_of_typical_cycles,
+)
 from reduction.stages.standstills import find_standstills
 
 
@@ -69,7 +73,7 @@ def test_3000_noisy_cycles_have_exactly_6000_half_cycles():
     values = triangle(3000, 400, noise=0.002)
     reversals = find_reversals(values, band=0.1)
     assert reversals.size - 1 == 6000
-    assert first_pass(values)[0].size - 1 == 6000
+    assert reversals_of_typical_cycles(values)[0].size - 1 == 6000
 
 
 @pytest.mark.parametrize("band", [0.02, 0.1, 0.5, 0.9])
@@ -130,30 +134,32 @@ def test_typical_range_is_that_of_the_cycles_and_not_of_the_way_to_them():
 
 
 def test_band_is_a_tenth_of_the_stroke_above_small_noise_and_the_noise_above_large():
-    assert first_pass(triangle(30, 400, noise=0.001))[1] == pytest.approx(0.1, rel=0.02)
+    assert reversals_of_typical_cycles(triangle(30, 400, noise=0.001))[1] == pytest.approx(
+        0.1, rel=0.02
+    )
     noisy = triangle(30, 400, noise=0.03)
-    reversals, band = first_pass(noisy)
+    reversals, band = reversals_of_typical_cycles(noisy)
     assert band == pytest.approx(12 * 0.03, rel=0.1)
     assert reversals.size - 1 == 60
 
 
 def test_backward_slips_do_not_lower_the_band():
     values = triangle(30, 400) + 0.05 * (np.arange(30 * 400) // 50 % 2)
-    reversals, band = first_pass(values)
+    reversals, band = reversals_of_typical_cycles(values)
     assert reversals.size - 1 == 60
     assert band == pytest.approx(0.1, rel=0.1)
 
 
 def test_band_of_a_hold_is_its_noise():
     level = np.random.default_rng(0).normal(5, 0.01, 5000)
-    reversals, band = first_pass(level)
+    reversals, band = reversals_of_typical_cycles(level)
     assert reversals.size == 0
     assert band == pytest.approx(0.12, rel=0.1)
 
 
 def test_a_band_needs_samples():
     with pytest.raises(DataError, match="too few samples to tell noise from movement"):
-        first_pass([1.0, 2.0, np.nan])
+        reversals_of_typical_cycles([1.0, 2.0, np.nan])
 
 
 @pytest.mark.parametrize(

@@ -5,8 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from reduction.pipeline.located_test import Located
-from reduction.pipeline.reduce_test import (
+from reduction.pipeline.extremes import (
     Extremes,
     _outermost,
     _Samples,
@@ -15,6 +14,7 @@ from reduction.pipeline.reduce_test import (
     greatest_strain,
     growth_of_slack_length,
 )
+from reduction.pipeline.located_test import Located
 from reduction.record.measurement import Record, StepReadings
 from reduction.stages.standstills import _describe_standstills
 from reduction.stages.strain.strain_model import StrainModel

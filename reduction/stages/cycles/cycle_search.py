@@ -50,8 +50,8 @@ from reduction.stages.cycles.reversals import (
     Indices,
     drop_jumps,
     find_reversals,
-    first_pass,
-    small_pass,
+    reversals_of_small_cycles,
+    reversals_of_typical_cycles,
     turning_points,
 )
 from reduction.stages.standstills import Standstills, median_step
@@ -327,9 +327,9 @@ def _paired_cycles(
     if settings.band is not None:
         found = pair((find_reversals(values, band=settings.band), settings.band))
     else:
-        found = pair(first_pass(values))
+        found = pair(reversals_of_typical_cycles(values))
     if settings.band is None and not is_counted and not found.branch_first.size:
-        small = pair(small_pass(values))
+        small = pair(reversals_of_small_cycles(values))
         if _are_alike(time, values, small.branch_first, small.branch_last):
             ends = take_samples(values, small.branch_last) - take_samples(
                 values, small.branch_first
@@ -556,11 +556,11 @@ def find_cycles(
 
     Notes
     -----
-    Reversals are found by a hysteresis band (`first_pass` where none is stated; `small_pass`
-    where that gives no cycle and this gives five similar ones), half cycles by the rules of
-    `find_half_cycles`. An ascending half cycle with the descending one after it is a
-    cycle; a run that begins at a peak loses its first half cycle. A pair whose branches have
-    different amplitudes is left out (`whole_cycles`). At a dwell the
+    Reversals are found by a hysteresis band (`reversals_of_typical_cycles` where none is stated;
+    `reversals_of_small_cycles` where that gives no cycle and this gives five similar ones), half
+    cycles by the rules of `find_half_cycles`. An ascending half cycle with the descending one after
+    it is a cycle; a run that begins at a peak loses its first half cycle.
+    A pair whose branches have different amplitudes is left out (`whole_cycles`). At a dwell the
     branches end where the crosshead arrives and begin where it leaves. A sample shared by two
     branches or cycles is labelled with the later cycle and with the earlier branch of a
     cycle; a peak gets the later branch where only that has its rate (`_own_begin`).

@@ -171,7 +171,7 @@ def _typical_range(values: ArrayLike) -> float:
     return float(ranges[np.searchsorted(travel, travel[-1] / 2)])
 
 
-def first_pass(values: ArrayLike) -> tuple[NDArray[np.intp], float]:
+def reversals_of_typical_cycles(values: ArrayLike) -> tuple[NDArray[np.intp], float]:
     """Reversals of a record without a stated band, and the band found: between noise and cycles.
 
     Notes
@@ -185,7 +185,7 @@ def first_pass(values: ArrayLike) -> tuple[NDArray[np.intp], float]:
     Examples
     --------
     >>> stroke = np.tile(np.concatenate([np.arange(0, 1, 0.01), np.arange(1, 0, -0.01)]), 5)
-    >>> reversals, band = first_pass(stroke)
+    >>> reversals, band = reversals_of_typical_cycles(stroke)
     >>> print(reversals.size, round(band, 2))
     11 0.1
     """
@@ -202,7 +202,7 @@ def first_pass(values: ArrayLike) -> tuple[NDArray[np.intp], float]:
     return reversals, band
 
 
-def small_pass(values: Floats) -> tuple[Indices, float]:
+def reversals_of_small_cycles(values: Floats) -> tuple[Indices, float]:
     """Reversals of small cycles in a record dominated by large pulls, and the band.
 
     The band is a tenth of the range of the most numerous movements.
@@ -212,7 +212,7 @@ def small_pass(values: Floats) -> tuple[Indices, float]:
     A move of 12 in and out, and ten cycles of 0.5:
 
     >>> wave = np.interp(np.arange(0, 24, 0.01), np.arange(24), [0, 12, *[11.5, 12] * 10, 6, 0])
-    >>> first_pass(wave)[0].size, small_pass(wave)[0].size
+    >>> reversals_of_typical_cycles(wave)[0].size, reversals_of_small_cycles(wave)[0].size
     (3, 23)
     """
     band = noise_range(values)
