@@ -97,20 +97,10 @@ def reading(path: Path) -> Iterator[xr.Dataset]:
     For a small archive of a test all values are read at once, which is faster than a query of each
     variable in the netCDF library.
 
-    Parameters
-    ----------
-    path : pathlib.Path
-        A file written by `write_archive`.
-
     Yields
     ------
     dataset : xarray.Dataset
         Dataset as from `open_archive`.
-
-    Raises
-    ------
-    ArchiveError
-        As `open_archive`, and if the library fails on reading in the block.
     """
     own = _read_own(path)
     with failing_reads(str(path)), open_archive(path) if own is None else nullcontext(own) as found:
@@ -211,13 +201,7 @@ def place_of(path: Path) -> tuple[str, float]:
 def variables_if(
     path: Path, attributes: Mapping[str, str], names: Collection[str]
 ) -> xr.Dataset | None:
-    """Return a few variables of a test archive; None if an attribute has another text.
-
-    Raises
-    ------
-    OSError
-        If the file or one of its variables cannot be read.
-    """
+    """Return a few variables of a test archive; None if an attribute has another text."""
     schema = TEST_SCHEMA | STEPWISE_SCHEMA
     found: dict[str, tuple[tuple[str, ...], NDArray[Any]]] = {}
     try:
@@ -310,16 +294,6 @@ def _values_of(stored: _Stored, row: Quantity) -> NDArray[Any]:
 @contextmanager
 def failing_reads(what: str) -> Iterator[None]:
     """Convert netCDF library errors in a block to archive errors.
-
-    Parameters
-    ----------
-    what : str
-        Name of the file or files read in the block, for the message.
-
-    Raises
-    ------
-    ArchiveError
-        If the library fails; other errors are passed on.
 
     Notes
     -----

@@ -44,20 +44,7 @@ from reduction.uncertainty.surface_errors import with_shared_at_points
 
 
 def effect_values(effects: ScreeningEffects, response_names: Sequence[str]) -> Values:
-    """Return the effects of the factors, followed by those of the dummies without a test.
-
-    Parameters
-    ----------
-    effects : ScreeningEffects
-        Effects on the responses.
-    response_names : sequence of str
-        Names in the order of the effects.
-
-    Returns
-    -------
-    values : dict of str to ndarray
-        Values by names of `reduction.quantities.names`.
-    """
+    """Return the effects of the factors, followed by those of the dummies without a test."""
     values: Values = {
         "effect_error_from": np.array(effects.error_from),
         "effect_degrees_of_freedom": np.array(effects.degrees_of_freedom),
@@ -85,17 +72,7 @@ def effect_values(effects: ScreeningEffects, response_names: Sequence[str]) -> V
 def alias_values(plan: Floats, factor_names: Sequence[str]) -> Values:
     """Return the share of each two-factor interaction in the effect of each column.
 
-    Parameters
-    ----------
-    plan : ndarray, shape (n_runs, n_columns)
-        Coded levels of the factors, then of the dummies; balanced and orthogonal.
-    factor_names : sequence of str
-        Names of the first columns.
-
-    Returns
-    -------
-    values : dict of str to ndarray
-        Values by names of `reduction.quantities.names`; empty for a single factor.
+    Values by names of `reduction.quantities.names`; empty for a single factor.
 
     Notes
     -----
@@ -151,18 +128,8 @@ _LABELS = {
 def _stiffness_values(forms: Sequence[StiffnessForm], quality: FormQuality) -> Values:
     """Return the forms of one response, compared with the quadratic surface of the same runs.
 
-    Parameters
-    ----------
-    forms : sequence of StiffnessForm
-        Forms of one response.
-    quality : FormQuality
-        Quality of those forms in order, followed by others.
-
-    Returns
-    -------
-    values : dict of str to ndarray
-        Values by names of `reduction.quantities.names`, without the dimension ``experiment``; a
-        form without coefficients of its own has only its quality.
+    Values by names of `reduction.quantities.names`, without the dimension ``experiment``; a form
+    without coefficients of its own has only its quality.
     """
     n_forms = len(quality.forms)
     size = max(len(form.coefficient_names) for form in forms)
@@ -200,22 +167,7 @@ def _stiffness_values(forms: Sequence[StiffnessForm], quality: FormQuality) -> V
 def point_values(
     surfaces: ResponseSurfaces, plan: Floats, shared: SharedSurfaces | None = None
 ) -> Values:
-    """Return every surface at the centre, the plan points and the corners.
-
-    Parameters
-    ----------
-    surfaces : ResponseSurfaces
-        Fitted surfaces.
-    plan : ndarray, shape (n_runs, n_factors)
-        Planned coded levels.
-    shared : SharedSurfaces, optional
-        Errors shared by the runs; none if omitted.
-
-    Returns
-    -------
-    values : dict of str to ndarray
-        Values by names of `reduction.quantities.names`.
-    """
+    """Return every surface at the centre, the plan points and the corners."""
     points = plan_points(plan)
     found = evaluate_surfaces(surfaces, points.coded, units="coded", outside="flag", plan=plan)
     both = with_shared_at_points(surfaces, found, *_rows(surfaces, shared))
@@ -249,22 +201,7 @@ def point_values(
 
 
 def _both_parts(name: str, random: Floats, rows: Floats | None) -> Values:
-    """Return the uncertainty of a quantity with its parts; a single part is not repeated.
-
-    Parameters
-    ----------
-    name : str
-        Name of the quantity.
-    random : ndarray, shape (...)
-        Its random part. [any]
-    rows : ndarray, shape (n_components, ...), or None
-        Contributions of shared errors; None if nothing is shared. [as random]
-
-    Returns
-    -------
-    values : dict of str to ndarray
-        Values by the name with `reduction.quantities.row.SUFFIXES`.
-    """
+    """Return the uncertainty of a quantity with its parts; a single part is not repeated."""
     if rows is None:
         return {f"{name}_standard_uncertainty": random}
     return {
@@ -312,23 +249,7 @@ _SINGLE_TIME = {
 
 
 def _experiment_values(result: ExperimentResult) -> Values:
-    """Return all numbers and texts of an experiment except notes and stiffness forms.
-
-    Parameters
-    ----------
-    result : ExperimentResult
-        Result with responses from `reduction.quantities.names.RESPONSES`.
-
-    Returns
-    -------
-    values : dict of str to ndarray
-        Values by names of `reduction.quantities.names`.
-
-    Raises
-    ------
-    ArchiveError
-        If a response is unknown, or the surfaces belong to other runs.
-    """
+    """Return all numbers and texts of an experiment except notes and stiffness forms."""
     fitted = () if result.surfaces is None else result.surfaces.response_names
     strange = sorted({*result.response_names, *fitted} - set(SURFACE_NAMES))
     if strange:
@@ -525,26 +446,7 @@ def _single_time_values(check: SingleTimeCheck) -> Values:
 
 
 def surfaces_to_dataset(results: Sequence[ExperimentResult], *, origin: Origin) -> xr.Dataset:
-    """Convert experiments to the archive dataset, without writing a file.
-
-    Parameters
-    ----------
-    results : sequence of ExperimentResult
-        One or more from the same campaign.
-    origin : Origin
-        Campaign, source files and method of the experiments.
-
-    Returns
-    -------
-    dataset : xarray.Dataset
-        Names, dimensions and attributes from `reduction.quantities.names`, with encoding. Equal
-        inputs give equal datasets.
-
-    Raises
-    ------
-    ArchiveError
-        If a response is not in the vocabulary.
-    """
+    """Convert experiments to the archive dataset, without writing a file."""
     names = [result.name for result in results]
     values = _stacked([_values_of(result) for result in results])
     values |= {"experiment": texts(names)} | _note_values(results) | _caution_values(results)
@@ -649,22 +551,7 @@ def is_share_of_mean(level: Floats, mean: Floats, amplitude: Floats) -> bool:
 def surface_names(dataset: xr.Dataset, experiment: str) -> tuple[str, ...]:
     """Return the responses of an experiment with a surface, transformed ones last.
 
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        An archive of experiments.
-    experiment : str
-        Name of an experiment.
-
-    Returns
-    -------
-    names : tuple of str
-        Names from `reduction.quantities.names.SURFACE_NAMES`; empty for a screening.
-
-    Raises
-    ------
-    ArchiveError
-        If the archive lacks the experiment.
+    Names from `reduction.quantities.names.SURFACE_NAMES`; empty for a screening.
     """
     row = _row_of(dataset, experiment)
     return tuple(
@@ -680,24 +567,7 @@ def surfaces_of(
 ) -> ResponseSurfaces:
     """Return the fitted surfaces; `reduction.experiments` accepts them like new ones.
 
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        An archive of experiments.
-    experiment : str
-        Name of an experiment.
-    responses : sequence of str, optional
-        Names from `surface_names`; default all.
-
-    Returns
-    -------
-    surfaces : ResponseSurfaces
-        Surfaces in the requested order, each with its own pattern.
-
-    Raises
-    ------
-    ArchiveError
-        If the archive lacks the experiment, or the experiment lacks a surface.
+    Surfaces in the requested order, each with its own pattern.
     """
     known = surface_names(dataset, experiment)
     names = known if responses is None else tuple(responses)

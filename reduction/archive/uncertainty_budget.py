@@ -64,22 +64,7 @@ _COUNTS = {"tangent_modulus": "tangent_modulus_count", "branch_tension": "branch
 def cycles_averaged(archive: xr.Dataset, name: str) -> Floats:
     """Number of cycles in the mean of a quantity over a test: with a value and after break-in.
 
-    Parameters
-    ----------
-    archive : xarray.Dataset
-        Archive of a reduced test.
-    name : str
-        Name of the mean in the archive.
-
-    Returns
-    -------
-    count : ndarray, shape (n_specimens,), or a single number
-        By specimen if the archive keeps single cycles, else one value for all. [1]
-
-    Raises
-    ------
-    ValueError
-        If the settings of the archive are not JSON.
+    By specimen if the archive keeps single cycles, else one value for all.
 
     Notes
     -----
@@ -114,22 +99,7 @@ def _stated_break_in(settings: str) -> int:
 def random_freedom(archive: xr.Dataset, name: str) -> Floats:
     """Degrees of freedom of the random part of a quantity.
 
-    Parameters
-    ----------
-    archive : xarray.Dataset
-        Archive of a reduced test, or of experiments.
-    name : str
-        Name in the archive.
-
-    Returns
-    -------
-    freedom : ndarray, in the shape of the quantity or a single number
-        Degrees of freedom, at least 1. [1]
-
-    Raises
-    ------
-    ValueError
-        If the settings of the archive are not JSON.
+    Degrees of freedom, at least 1.
 
     Notes
     -----
@@ -184,23 +154,8 @@ def random_freedom(archive: xr.Dataset, name: str) -> Floats:
 def effective_freedom(archive: xr.Dataset, name: str) -> Floats:
     """Degrees of freedom of the combined uncertainty of a quantity.
 
-    Parameters
-    ----------
-    archive : xarray.Dataset
-        Archive of a reduced test, or of experiments.
-    name : str
-        Name in the archive.
-
-    Returns
-    -------
-    freedom : ndarray, in the shape of the quantity
-        Of the random and shared parts combined; without separate parts in the archive, the whole
-        uncertainty counts as random. [1]
-
-    Raises
-    ------
-    KeyError
-        If the archive lacks the quantity.
+    Of the random and shared parts combined; without separate parts in the archive, the whole
+    uncertainty counts as random.
 
     Notes
     -----
@@ -279,23 +234,6 @@ def place_name(dim: str) -> str:
 def parse_place(name: str, text: str) -> str:
     """Label of a place for `_find_place`: a strain as a number, a tension in newtons.
 
-    Parameters
-    ----------
-    name : str
-        User name of the dimension: ``branch``, ``strain``.
-    text : str
-        Text with a unit or percent sign for a strain or a tension.
-
-    Returns
-    -------
-    label : str
-        Label in SI.
-
-    Raises
-    ------
-    SettingsError
-        If a strain or a tension cannot be parsed.
-
     Examples
     --------
     >>> parse_place("strain", "125 %"), parse_place("branch", " ascending")
@@ -321,29 +259,8 @@ def words_of(
 ) -> str:
     """Description of an entry, for a reader who does not know its number.
 
-    Parameters
-    ----------
-    archive : xarray.Dataset
-        Archive of a reduced test, of experiments, of properties or of comparisons.
-    dim : str
-        Name of the dimension.
-    index : int
-        Index of the entry.
-    place : mapping of str to int
-        Other indices, if the entry depends on them.
-    on_axis : float, optional
-        Requested value between the points of an axis.
-
-    Returns
-    -------
-    words : str
-        Such as ``dynamic stiffness of R01``, or a number with its unit; empty if the label is
-        sufficient.
-
-    Raises
-    ------
-    IndexError
-        If there is no such entry.
+    Such as ``dynamic stiffness of R01``, or a number with its unit; empty if the label is
+    sufficient.
     """
     if dim in archive.variables and archive.variables[dim].dtype.kind == "f":
         at = float(archive.variables[dim].values[index])
@@ -386,29 +303,7 @@ def _number(value: float, variable: xr.Variable) -> str:
 def _find_place(
     archive: xr.Dataset, dim: str, text: str | None, others: Mapping[str, int] | None = None
 ) -> int:
-    """Index of a requested place along a dimension.
-
-    Parameters
-    ----------
-    archive : xarray.Dataset
-        Archive to search.
-    dim : str
-        Name of the dimension.
-    text : str or None
-        A label, a number, a strain, or words; may be None for a single entry.
-    others : mapping of str to int, optional
-        Known places along other dimensions.
-
-    Returns
-    -------
-    index : int
-        Index of the entry; on an axis, of the nearest point.
-
-    Raises
-    ------
-    SettingsError
-        If the place is not stated, or there is no such entry.
-    """
+    """Index of a requested place along a dimension."""
     size, known = archive.sizes[dim], dict(others or {})
     labels = [str(_label_of(archive, dim, index)) for index in range(size)]
     told = [words_of(archive, dim, index, known) for index in range(size)]
@@ -457,29 +352,7 @@ def _nearest(archive: xr.Dataset, dim: str, value: float) -> int:
 def _read_at(
     archive: xr.Dataset, values: xr.Variable, place: Mapping[str, int], on_axis: float | None
 ) -> Floats:
-    """Values at a place, shape (n_components,) or (); interpolated along an axis.
-
-    Parameters
-    ----------
-    archive : xarray.Dataset
-        Archive with the points of the axis.
-    values : xarray.Variable
-        Variable with the dimensions of the place, and at most one before them.
-    place : mapping of str to int
-        Index along each dimension.
-    on_axis : float or None
-        Requested strain or tension. [unit of the axis]
-
-    Returns
-    -------
-    found : ndarray
-        [unit of the values]
-
-    Raises
-    ------
-    IndexError
-        If there is no such place.
-    """
+    """Values at a place, shape (n_components,) or (); interpolated along an axis."""
     axis = next((dim for dim in place if dim in ON_AN_AXIS), None)
     if on_axis is None or axis is None:
         return np.asarray(values.isel(place).values, dtype=np.float64)
@@ -526,31 +399,7 @@ def quantities_with_budget(archive: xr.Dataset) -> tuple[str, ...]:
 
 
 def budget_from_archive(archive: xr.Dataset, quantity: str, at: Mapping[str, str]) -> Budget:
-    """Read the budget of one number.
-
-    Parameters
-    ----------
-    archive : xarray.Dataset
-        Archive of a reduced test, or of experiments.
-    quantity : str
-        Name in the vocabulary and archive; without ``test_`` it means the mean of the test if the
-        archive keeps only that.
-    at : mapping of str to str
-        Place along each dimension by label, number, or strain (also between bins); optional for a
-        dimension with a single entry.
-
-    Returns
-    -------
-    budget : Budget
-        Budget of that number.
-
-    Raises
-    ------
-    SettingsError
-        If the quantity has no budget, or the place is not a single number.
-    ArchiveError
-        If the number or its uncertainty is missing.
-    """
+    """Read the budget of one number."""
     known = quantities_with_budget(archive)
     name = next((one for pattern in _NAMES if (one := pattern.format(quantity)) in known), None)
     if name is None:
@@ -591,17 +440,7 @@ def budget_from_archive(archive: xr.Dataset, quantity: str, at: Mapping[str, str
 def all_budgets(archive: xr.Dataset, quantity: str) -> list[Budget]:
     """Read the budget of every number of a quantity.
 
-    Parameters
-    ----------
-    archive : xarray.Dataset
-        Archive of a reduced test, or of experiments.
-    quantity : str
-        Name in the archive.
-
-    Returns
-    -------
-    budgets : list of Budget
-        Budgets in the order of the archive; empty without shared errors.
+    Budgets in the order of the archive; empty without shared errors.
     """
     if quantity not in quantities_with_budget(archive):
         return []

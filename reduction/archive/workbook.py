@@ -40,13 +40,6 @@ def write_workbook(path: Path, sheets: Iterable[Sheet]) -> None:
 
     Text stays text: nothing becomes a formula, a link or a number, and text that begins with ``=``,
     ``+``, ``-`` or ``@`` stays so when the cell is edited.
-
-    Raises
-    ------
-    SettingsError
-        If XlsxWriter is not installed.
-    ArchiveError
-        If a table has more rows than a sheet, or the disk refuses.
     """
     try:
         library = import_module("xlsxwriter")
@@ -122,20 +115,7 @@ COLUMNS = "columns.csv"
 def sheets_of_tables(folder: Path) -> list[Sheet]:
     """Sheets of the answer tables of a campaign: overview, all columns, and each table.
 
-    Parameters
-    ----------
-    folder : pathlib.Path
-        ``processed/<campaign>/tables``.
-
-    Returns
-    -------
-    sheets : list of Sheet
-        Numbers are numeric; labels stay text, even if they look like a number.
-
-    Raises
-    ------
-    SettingsError
-        If there are no tables.
+    Numbers are numeric; labels stay text, even if they look like a number.
     """
     paths = sorted(folder.glob("*.csv"))
     if not any(one.name == COLUMNS for one in paths):

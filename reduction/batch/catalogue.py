@@ -114,22 +114,7 @@ def _mark() -> bytes:
 def load_catalogue(folder: Path, quantities: Sequence[str] | None = None) -> Catalogue:
     """Read the catalogues of all campaigns of a folder.
 
-    Parameters
-    ----------
-    folder : pathlib.Path
-        Folder with one folder per campaign.
-    quantities : sequence of str, optional
-        Quantities to read; default all.
-
-    Returns
-    -------
-    catalogue : Catalogue
-        Deleted archives are not included.
-
-    Raises
-    ------
-    SettingsError
-        If the folder is not one of processed campaigns.
+    Deleted archives are not included.
     """
     tests, values, unreadable = [_NO_TESTS], [_NO_VALUES], {}
     n_rows = 0
@@ -202,20 +187,7 @@ def _archives_of(campaign: Path) -> list[Path]:
 def campaigns_below(folder: Path) -> list[Path]:
     """Folders of the campaigns in a folder of products.
 
-    Parameters
-    ----------
-    folder : pathlib.Path
-        Folder with one folder per campaign.
-
-    Returns
-    -------
-    campaigns : list of pathlib.Path
-        In order of name; names that begin with a dot are left out.
-
-    Raises
-    ------
-    SettingsError
-        If the folder is missing or unreadable, or belongs to one campaign.
+    In order of name; names that begin with a dot are left out.
     """
     if not folder.is_dir():
         raise SettingsError(
@@ -278,21 +250,6 @@ class _Condition:
 
 def condition_of(text: str) -> _Condition:
     """Parse a condition.
-
-    Parameters
-    ----------
-    text : str
-        Name, operator, value with unit.
-
-    Returns
-    -------
-    condition : _Condition
-        Condition in SI.
-
-    Raises
-    ------
-    SettingsError
-        If the form is wrong, the name is unknown, or the unit has another dimension.
 
     Examples
     --------
@@ -362,20 +319,8 @@ _OWN = ("row", *NUMBER)
 def rows_with(catalogue: Catalogue, tests: pd.DataFrame, asked: Sequence[str]) -> pd.DataFrame:
     """Rows of tests with the requested numbers.
 
-    Parameters
-    ----------
-    catalogue : Catalogue
-        Catalogue with those numbers.
-    tests : pandas.DataFrame
-        Selected rows of ``catalogue.tests``.
-    asked : sequence of str
-        Quantities; without any, each specimen of each test is a row.
-
-    Returns
-    -------
-    table : pandas.DataFrame
-        `CONDITIONS`, a column for each dimension, each quantity with its standard uncertainty, and
-        ``row`` of ``catalogue.tests``; tests in order, places as in their archives.
+    `CONDITIONS`, a column for each dimension, each quantity with its standard uncertainty, and
+    ``row`` of ``catalogue.tests``; tests in order, places as in their archives.
     """
     values = catalogue.numbers[catalogue.numbers["row"].isin(tests.index)]
     parts = {name: _numbers_of(values, name) for name in asked}
@@ -519,13 +464,7 @@ class Query:
 
 
 def needed_quantities(query: Query) -> tuple[str, ...]:
-    """Quantities needed to answer a query.
-
-    Raises
-    ------
-    SettingsError
-        If a name is not in the vocabulary.
-    """
+    """Quantities needed to answer a query."""
     for option, names in (("--quantity", query.quantity), ("--sort", query.sort)):
         for name in names:
             if name not in QUANTITIES:
@@ -540,27 +479,7 @@ def needed_quantities(query: Query) -> tuple[str, ...]:
 
 
 def answer(catalogue: Catalogue, query: Query) -> Any:
-    """Rows that match a query.
-
-    Parameters
-    ----------
-    catalogue : Catalogue
-        Catalogue with the numbers of `needed_quantities`.
-    query : Query
-        Query to answer.
-
-    Returns
-    -------
-    table : pyarrow.Table
-        `CONDITIONS`, the places of the numbers, and the quantities, each followed by its
-        ``_standard_uncertainty``; SI.
-
-    Raises
-    ------
-    SettingsError
-        If a name is not in the vocabulary, or a condition or sort key has numbers at several places
-        of a test and is not requested.
-    """
+    """Rows that match a query."""
     others = [name for name in needed_quantities(query) if name not in query.asked]
     table = rows_with(catalogue, catalogue.tests[_fits(catalogue.tests, query)], query.asked)
     for name in others:
@@ -662,13 +581,7 @@ def meaning_of(name: str) -> str:
 
 
 def check_ending(path: Path) -> None:
-    """Refuse a file that is neither CSV nor Parquet before the work is done.
-
-    Raises
-    ------
-    SettingsError
-        If the name has another suffix.
-    """
+    """Refuse a file that is neither CSV nor Parquet before the work is done."""
     if path.suffix.lower() not in (".csv", ".parquet"):
         raise SettingsError(
             "--export does not know this file ending",
@@ -678,22 +591,7 @@ def check_ending(path: Path) -> None:
 
 
 def write_answer(table: Any, path: Path) -> None:
-    """Write a table from `reduction.batch.catalogue.answer` in SI, completely or not at all.
-
-    Parameters
-    ----------
-    table : pyarrow.Table
-        Its columns are named as in the vocabulary.
-    path : pathlib.Path
-        Path that ends in ``.csv`` or ``.parquet``.
-
-    Raises
-    ------
-    SettingsError
-        If the name has another suffix.
-    ArchiveError
-        If the disk refuses.
-    """
+    """Write a table from `reduction.batch.catalogue.answer` in SI, completely or not at all."""
     check_ending(path)
     with _whole_file(path) as part:
         if path.suffix.lower() == ".csv":

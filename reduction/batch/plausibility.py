@@ -111,19 +111,7 @@ def implausible(
 ) -> dict[str, tuple[Note, ...]]:
     """Inconsistencies of each test, by its id.
 
-    Parameters
-    ----------
-    campaign : Campaign
-        Campaign with its statements.
-    surveys : sequence of Survey
-        Contents of the logs; failed tests are skipped.
-    models : mapping
-        Strain model by test and specimen, if there is one.
-
-    Returns
-    -------
-    notes : dict of str to tuple of Note
-        Warnings; empty for a consistent test.
+    Warnings; empty for a consistent test.
     """
     read = [one for one in surveys if one.error is None]
     found: dict[str, list[Note]] = {one.plan.id: [] for one in read}

@@ -319,45 +319,9 @@ def run_campaign(
     No other run may use the same products.  Tests with current archives are left alone, so that an
     interrupted run continues from where it stopped.
 
-    Parameters
-    ----------
-    campaign : Campaign
-        Loaded campaign.
-    processed, reports : pathlib.Path
-        Parent folders of the products and the report; the campaign's id is added.
-    clock : callable
-        Clock in seconds, for the status table only; no product depends on it.
-    tests : sequence of str
-        Tests to reduce; all if empty.
-    force : bool
-        Redo tests even if raw files, settings and version are unchanged.
-    command : str
-        Value of the product's ``command`` attribute, without paths.
-    units : {"si", "us"}
-        Units of the report; files are SI.
-    values_page : str
-        Address of the design-value page from the report folder, if one is written.
-    workers : Workers, optional
-        Workers for the tests; by default they run one after another in this process.  No product
-        depends on it.
-    progress : Progress, optional
-        Receives progress.
-    opener : Opener, optional
-        Opens finished archives; by default `ReadOnce`, which reads a small one once.
-
-    Returns
-    -------
-    result : CampaignResult
-        A failed test is a row here, not an exception; its older product is kept.
-
-    Raises
-    ------
-    SettingsError
-        If ``tests`` contains an unknown test.
-    ArchiveError
-        If the folder or a table cannot be written, or another run uses the folder.
-    WorkerError
-        If the workers or their scheduler are lost.
+    ``workers``: workers for the tests; by default they run one after another in this process.  No
+    product depends on it. ``opener``: opens finished archives; by default `ReadOnce`, which reads a
+    small one once.
     """
     progress = progress or Silent()
     refuse_unknown_tests(campaign, tests)

@@ -33,13 +33,7 @@ class _FoundSteps:
 
 
 def find_steps(plan: TestPlan, located: Located | None, campaign: Campaign) -> _FoundSteps:
-    """Find the levels of a cyclic log without stated steps.
-
-    Raises
-    ------
-    DataError
-        If the log has several and the campaign uses the test as a single one.
-    """
+    """Find the levels of a cyclic log without stated steps."""
     if located is None or located.cycles is None or plan.kind not in _LOOKED_AT:
         return _FoundSteps()
     time, cycles = located.record.time, located.cycles

@@ -712,28 +712,7 @@ def _addresses(path: Path, tests: Mapping[str, TestSection]) -> dict[str, str]:
 def load_campaign(path: Path, *, allow_remote: bool = False, text: str | None = None) -> Campaign:
     """Read campaign.toml, its tables and its marks, and check their consistency.
 
-    Parameters
-    ----------
-    path : pathlib.Path
-        The campaign.toml or its folder.
-    allow_remote : bool
-        Whether the log of a test may be a remote address. Nothing is fetched here:
-        `reduction.campaign.load.staged_campaign` does that.
-    text : str, optional
-        Contents to use for campaign.toml; those of the file if omitted.
-
-    Returns
-    -------
-    campaign : Campaign
-        Campaign in SI; all its files exist and are inside its folder.
-
-    Raises
-    ------
-    SettingsError
-        If a value is still ``?``, or a key, a value or a unit cannot be used: up to ten places, one
-        per line.
-    LogError
-        If a file it names is missing or cannot be read.
+    ``text``: contents to use for campaign.toml; those of the file if omitted.
     """
     if path.is_dir():
         path /= "campaign.toml"
@@ -841,25 +820,11 @@ def staged_campaign(
 ) -> Iterator[Campaign]:
     """Load a campaign and fetch its remote logs.
 
-    Parameters
-    ----------
-    path : pathlib.Path
-        The campaign.toml.
-    allow_remote : bool
-        Whether remote logs are fetched.
-    progress : callable, optional
-        Called with ("fetch", name) before each file.
-
     Yields
     ------
     campaign : Campaign
         As from `load_campaign`. A log that cannot be fetched is an error of its test. Copies are
         deleted at the end of the block.
-
-    Raises
-    ------
-    SettingsError
-        If a log is an address and addresses are not allowed; otherwise as `load_campaign`.
     """
     campaign = load_campaign(path, allow_remote=allow_remote)
     if not campaign.addresses:
@@ -909,26 +874,7 @@ def find_campaign(processed: Path, stated: Path | None = None, *, name: str = ""
     It is searched for where the last run had it, and in the usual places: ``raw/ID/campaign.toml``
     and ``ID/campaign.toml``, beside ``processed`` and in the working folder.
 
-    Parameters
-    ----------
-    processed : pathlib.Path
-        ``processed/CAMPAIGN``.
-    stated : pathlib.Path, optional
-        Path stated by the user.
-    name : str, optional
-        Id of the campaign; that of the first archive if omitted.
-
-    Returns
-    -------
-    path : pathlib.Path
-        The campaign.toml with that id.
-
-    Raises
-    ------
-    SettingsError
-        If it is not found, or belongs to another campaign.
-    ArchiveError
-        If there are no archives.
+    ``name``: id of the campaign; that of the first archive if omitted.
     """
     name = name or _id_of_products(processed)
     if stated is not None:

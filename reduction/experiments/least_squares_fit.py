@@ -67,11 +67,6 @@ def two_sided_p(t: ArrayLike, degrees_of_freedom: ArrayLike) -> Floats:
     p_value : ndarray, shape (...)
         NaN where t or the degrees of freedom are missing or zero. [1]
 
-    Raises
-    ------
-    TypeError
-        If an input is not numeric.
-
     Notes
     -----
     The tail below -``|t|`` keeps its digits where p is small; one less a distribution function does

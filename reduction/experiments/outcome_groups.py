@@ -580,22 +580,7 @@ def _strength_of(grouped: _Grouped, reference_condition: str) -> dict[Group, Row
 def strength_rows(outcomes: Iterable[Outcome], *, reference_condition: str = "new") -> list[Row]:
     """Rows of the table of strength and strain at failure, one a group.
 
-    Parameters
-    ----------
-    outcomes : iterable of Outcome
-        Rows of every quantity.
-    reference_condition : str
-        Condition of the group with which others of the same line are compared.
-
-    Returns
-    -------
-    rows : list of dict
-        By the names of `STRENGTH_COLUMNS`, in order of appearance.
-
-    Raises
-    ------
-    DataError
-        If a value is impossible.
+    By the names of `STRENGTH_COLUMNS`, in order of appearance.
 
     Examples
     --------
@@ -619,20 +604,7 @@ def strength_rows(outcomes: Iterable[Outcome], *, reference_condition: str = "ne
 def exposure_rows(outcomes: Iterable[Outcome]) -> list[Row]:
     """Rows of the table of strength against time in the field, one a line.
 
-    Parameters
-    ----------
-    outcomes : iterable of Outcome
-        Rows of every quantity; breaks without an exposure are left out and counted.
-
-    Returns
-    -------
-    rows : list of dict
-        By the names of `EXPOSURE_COLUMNS`; where no line can be fitted, a reason.
-
-    Raises
-    ------
-    DataError
-        If a value is impossible.
+    By the names of `EXPOSURE_COLUMNS`; where no line can be fitted, a reason.
 
     Examples
     --------
@@ -749,23 +721,6 @@ def fatigue_rows(
 ) -> list[Row]:
     """Rows of the table of cycles to failure and of abrasion, one a group and level of load.
 
-    Parameters
-    ----------
-    outcomes : iterable of Outcome
-        Rows of every quantity.
-    distribution : str
-        Law of the lives: ``weibull`` or ``lognormal``.
-
-    Returns
-    -------
-    rows : list of dict
-        By the names of `FATIGUE_COLUMNS`, by quantity and group, peak load rising.
-
-    Raises
-    ------
-    DataError
-        If a value is impossible.
-
     Examples
     --------
     >>> rows = fatigue_rows([Outcome("abrasion_cycles", cycles) for cycles in (7e3, 8e3, 9e3)])
@@ -860,22 +815,7 @@ def load_life_rows(
 ) -> list[Row]:
     """Rows of the table of life against peak load, one a group tested at two loads or more.
 
-    Parameters
-    ----------
-    outcomes : iterable of Outcome
-        Rows of every quantity; a cycle test without a peak load is left out.
-    distribution : str
-        Law of the lives: ``lognormal`` or ``weibull``.
-
-    Returns
-    -------
-    rows : list of dict
-        By the names of `LOAD_LIFE_COLUMNS`; where no line can be fitted, a reason.
-
-    Raises
-    ------
-    DataError
-        If a value is impossible.
+    By the names of `LOAD_LIFE_COLUMNS`; where no line can be fitted, a reason.
 
     Examples
     --------

@@ -94,11 +94,6 @@ def back_transform(values: ArrayLike, exponent: ArrayLike) -> Floats:
         Beyond the end of the scale, 0 (positive exponent) or infinity (negative one).
         [unit of the response]
 
-    Raises
-    ------
-    ValueError
-        If the shapes do not pair up.
-
     Notes
     -----
     Ends of intervals are transformed back in the same way and remain intervals of the same
@@ -140,11 +135,6 @@ def back_transformed_change(values: ArrayLike, change: ArrayLike, exponent: Arra
     -------
     change : ndarray, shape (...)
         Signed; NaN if the scale ends within the change. [unit of the response]
-
-    Raises
-    ------
-    ValueError
-        If the shapes do not pair up.
 
     Notes
     -----

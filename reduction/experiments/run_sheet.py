@@ -645,11 +645,6 @@ def variance_factor(
     variance_factor : ndarray, shape (..., n_points)
         The leverage where the point is a run. [1]
 
-    Raises
-    ------
-    ValueError
-        If the shapes do not pair up.
-
     Examples
     --------
     >>> print(variance_factor([[1.0]], [[1 / 3]]).round(3))

@@ -126,11 +126,6 @@ def discrepancy_of(surfaces: ResponseSurfaces) -> SurfaceDiscrepancy:
     discrepancy : SurfaceDiscrepancy
         For every response, on the scale of its fit.
 
-    Raises
-    ------
-    ValueError
-        If the runs do not pair up with the terms.
-
     Notes
     -----
     Method: the bias of [2]_ with the sizes of its terms drawn, as the discrepancy of [1]_.

@@ -99,11 +99,6 @@ def greatest_leverage(surfaces: ResponseSurfaces, plan: ArrayLike | None = None)
     greatest : ndarray, shape (n_responses,)
         NaN where a response has no run with a level. [1]
 
-    Raises
-    ------
-    ValueError
-        If the plan has fewer runs, or other factors, than the surfaces.
-
     Examples
     --------
     A parabola through runs at three levels, the upper one nearly reached:

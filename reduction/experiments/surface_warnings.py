@@ -62,11 +62,6 @@ def drift_over_order(surfaces: ResponseSurfaces, order: ArrayLike) -> Drift:
         For the response as fitted, per run; NaN where the terms determine the order, or no
         degree of freedom is left for it. [unit of the fitted response]
 
-    Raises
-    ------
-    ValueError
-        If the order does not pair up with the runs.
-
     Notes
     -----
     Source: [2]_.  In an order by rising load [1]_, drift is mostly absorbed by the terms of the
@@ -127,20 +122,7 @@ def _replaced(surfaces: ResponseSurfaces) -> set[str]:
 def negative_surfaces(surfaces: ResponseSurfaces) -> tuple[Note, ...]:
     """Surfaces that fall below zero within the levels, for runs that are all above zero.
 
-    Parameters
-    ----------
-    surfaces : ResponseSurfaces
-        As fitted.
-
-    Returns
-    -------
-    notes : tuple of Note
-        One for each response without a transformed surface.
-
-    Raises
-    ------
-    DataError
-        If the surfaces have no factor.
+    One for each response without a transformed surface.
 
     Notes
     -----
@@ -173,22 +155,7 @@ def negative_surfaces(surfaces: ResponseSurfaces) -> tuple[Note, ...]:
 def drifting_responses(surfaces: ResponseSurfaces, drift: Drift) -> tuple[Note, ...]:
     """Responses that drift over the order of the runs beyond their surface.
 
-    Parameters
-    ----------
-    surfaces : ResponseSurfaces
-        As fitted.
-    drift : Drift
-        Drift of the same surfaces.
-
-    Returns
-    -------
-    notes : tuple of Note
-        One for each response with a p below 0.05 over the number of responses.
-
-    Raises
-    ------
-    ValueError
-        If the drift belongs to other surfaces.
+    One for each response with a p below 0.05 over the number of responses.
 
     Notes
     -----
@@ -251,11 +218,6 @@ def outlying_runs(surfaces: ResponseSurfaces) -> tuple[Note, ...]:
     -------
     notes : tuple of Note
         One for each run, or set of similar runs, with the responses in which it is stray.
-
-    Raises
-    ------
-    ValueError
-        If residuals and leverages do not pair up.
 
     Notes
     -----

@@ -705,13 +705,7 @@ def _checks_of_runs(runs: Sequence[LineSource]) -> tuple[str, ...]:
 
 
 def ropes_with_pulls(folder: Path) -> list[LineSource]:
-    """Ropes of a processed campaign that have levels and a slow pull.
-
-    Raises
-    ------
-    DataError
-        If there is none.
-    """
+    """Ropes of a processed campaign that have levels and a slow pull."""
     lines = [line for line in lines_of_folder(folder) if line.levels and line.kind in _ROPES]
     found = [line for line in lines if line.curves and not line.surfaces]
     if not found:
@@ -930,23 +924,8 @@ def _one_change(archive: xr.Dataset, place: int, name: str) -> LineLevels:
 def experiments_with_pulls(path: Path) -> list[LineSource]:
     """Experiments of an archive of surfaces, one per specimen and slow pull.
 
-    Parameters
-    ----------
-    path : pathlib.Path
-        Archive of the surfaces of a campaign, in the folder of the archives of its tests.
-
-    Returns
-    -------
-    lines : list of LineSource
-        Surfaces of K_ap and H, with K_0 and the strain of the pull that the campaign names for the
-        specimen; called EXPERIMENT SPECIMEN where an experiment has several.
-
-    Raises
-    ------
-    DataError
-        If no specimen of an experiment has a slow pull.
-    ArchiveError
-        If the archive of a pull is missing or has no pull.
+    Surfaces of K_ap and H, with K_0 and the strain of the pull that the campaign names for the
+    specimen; called EXPERIMENT SPECIMEN where an experiment has several.
     """
     opener = ReadOnce()
     with opener(path) as archive:

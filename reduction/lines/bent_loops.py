@@ -106,19 +106,6 @@ def constant_of_level(
     """A test at a level with K_0 of its loops, as in `quasi_static_of_run` for a run.
 
     NaN where the bend of the loops is not known.
-
-    Parameters
-    ----------
-    curve : LineCurve
-        K_0 over mean tension, from the slow pull. [N]
-    cycle : RunOfLine
-        Without K_0.
-    above_midline, standard_uncertainty : float
-        From `reduction.stages.three_parameter_line.loop_midline.tension_above_midline`. [N]
-    waveform : {"sinusoidal", "triangular", "other"}
-        Waveform of the driven channel. [-]
-    control : {"load", "position"}
-        Driven channel. [-]
     """
     constant_at = _constant_at(curve)
     mean, load, stiffness, energy = (np.asarray(one) for one in cycle[:4])

@@ -75,29 +75,7 @@ class ClientCheck:
 
 
 def verify_deck(line: ExportLine, to: str, form: str, paths: Sequence[Path]) -> list[ClientCheck]:
-    """Run written files in their program.
-
-    Parameters
-    ----------
-    line : ExportLine
-        Line with the expected values.
-    to, form : str
-        Format and form.
-    paths : sequence of pathlib.Path
-        Written files, the deck last.
-
-    Returns
-    -------
-    checks : list of ClientCheck
-        Every number that was compared.
-
-    Raises
-    ------
-    SettingsError
-        If no program runs the form, or the program is not installed.
-    DataError
-        If the program ends with an error.
-    """
+    """Run written files in their program."""
     run = _RUNS.get((to, form))
     if run is None:
         raise SettingsError(

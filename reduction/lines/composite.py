@@ -1098,23 +1098,6 @@ class PieceSource:
 def used_of(source: PieceSource, curve: CompositeCurve) -> PieceSource:
     """Source of a curve: without the sources of pieces that are not in the curve.
 
-    Parameters
-    ----------
-    source : PieceSource
-        Source of all pieces.
-    curve : CompositeCurve
-        Curve of some of these pieces.
-
-    Returns
-    -------
-    source : PieceSource
-        With the sources of those pieces, and a note that names the other tests.
-
-    Raises
-    ------
-    ValueError
-        If sources are given for some pieces, but not for each.
-
     Notes
     -----
     A rule leaves out kinds: a test without a kind that the rule names is no source of the curve.

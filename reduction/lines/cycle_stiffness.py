@@ -170,11 +170,6 @@ def stiffness_of_cycles(
     stiffness : CycleStiffness
         EA with its interval, in total and by test. [SI]
 
-    Raises
-    ------
-    ValueError
-        If the shapes of the ends differ.
-
     Notes
     -----
     Tests of one kind are used together: where loops cover a cycle, static tests and first loadings,

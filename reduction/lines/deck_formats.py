@@ -543,31 +543,7 @@ def export_line(
 
 
 def export_table(table: ValueTable, to: str, path: Path, *, units: UnitSystem = "si") -> list[Path]:
-    """Write a table of values as csv, json, latex, markdown, netcdf or xlsx.
-
-    Parameters
-    ----------
-    table : ValueTable
-        Table to write.
-    to : str
-        Format.
-    path : pathlib.Path
-        File.
-    units : {"si", "us"}
-        netCDF is always SI.
-
-    Returns
-    -------
-    paths : list of pathlib.Path
-        Written file.
-
-    Raises
-    ------
-    SettingsError
-        If the format is not one of them.
-    ArchiveError
-        If the file cannot be written.
-    """
+    """Write a table of values as csv, json, latex, markdown, netcdf or xlsx."""
     if to == "netcdf":
         write_netcdf(table, path)
     elif to == "xlsx":

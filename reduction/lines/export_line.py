@@ -75,22 +75,7 @@ class CurveSpread:
     def at(self, wanted: Floats, strain: Floats) -> CurveSpread:
         """The same at other strains of the curve.
 
-        Parameters
-        ----------
-        wanted : ndarray, shape (n,)
-            [1]
-        strain : ndarray, shape (n_points,)
-            Strains of the curve, increasing. [1]
-
-        Returns
-        -------
-        spread : CurveSpread
-            Interpolated linearly between the points; NaN beyond them, where nothing was measured.
-
-        Raises
-        ------
-        ValueError
-            If there is not one strain for each point.
+        Interpolated linearly between the points; NaN beyond them, where nothing was measured.
 
         Examples
         --------
@@ -649,21 +634,7 @@ def loop_stiffness(line: ExportLine, damping: CycleDamping) -> float:
 def beside_dashpot(line: ExportLine) -> ExportLine:
     """The curve of a test with its ends moved so that curve and dashpot have the K_ap of the test.
 
-    Parameters
-    ----------
-    line : ExportLine
-        The mean curve of a test, continued straight from the ends of its branches to the greatest
-        and least tension of the cycle.
-
-    Returns
-    -------
-    line : ExportLine
-        Unchanged where there is no dashpot, or no straight end.
-
-    Raises
-    ------
-    DataError
-        If the curve cannot be exported; see `curve_from_zero`.
+    Unchanged where there is no dashpot, or no straight end.
 
     Notes
     -----
@@ -872,21 +843,6 @@ def local_words(curve: _Close) -> str:
     """Error of a curve, over the greatest tension and over that of each point.
 
     A tension below `LEAST_SHARE` of the greatest counts as that much.
-
-    Parameters
-    ----------
-    curve : ThinnedCurve or SmoothCurve
-        Curve as written.
-
-    Returns
-    -------
-    words : str
-        A part of a sentence.
-
-    Raises
-    ------
-    AttributeError
-        If the object is no such curve.
     """
     return (
         f"({100 * curve.share:.2g} % of the greatest tension, {100 * curve.local:.2g} % of the "
@@ -952,23 +908,7 @@ _LEAST_FILL = 0.6  # of the diameter: a third of the area, where ropes fill two 
 
 
 def range_of(line: ExportLine) -> str:
-    """Tested strains of a curve, and the state below them.
-
-    Parameters
-    ----------
-    line : ExportLine
-        Line to export.
-
-    Returns
-    -------
-    words : str
-        One sentence.
-
-    Raises
-    ------
-    AttributeError
-        If the object is no line.
-    """
+    """Tested strains of a curve, and the state below them."""
     of_branches = line.tested
     if not of_branches[0] == of_branches[0]:
         return "nothing was tested"
@@ -998,21 +938,6 @@ def doubts_first(notes: Sequence[str]) -> tuple[tuple[str, ...], tuple[str, ...]
 
 def guards_of(line: ExportLine) -> tuple[str, ...]:
     """Properties of a line that are inconsistent, or hold over a part only.
-
-    Parameters
-    ----------
-    line : ExportLine
-        Line to export.
-
-    Returns
-    -------
-    words : tuple of str
-        One sentence each; doubts begin with DOUBTFUL.
-
-    Raises
-    ------
-    AttributeError
-        If the object is no line.
 
     Notes
     -----

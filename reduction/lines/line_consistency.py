@@ -317,16 +317,8 @@ def _half_of_difference(parts: Sequence[tuple[Floats, _Part]]) -> Floats:
 def refitted_surfaces(line: LineSource) -> tuple[_RefittedSurface, ...]:
     """Printed K_1 and tau of a line, compared with a quadratic through the solutions.
 
-    Parameters
-    ----------
-    line : LineSource
-        As `consistent_values`.
-
-    Returns
-    -------
-    surfaces : tuple of _RefittedSurface
-        One for each slow pull and each of K_1 and tau that is printed; runs without a solution
-        are left out, and there is no fit where too few are left.
+    One for each slow pull and each of K_1 and tau that is printed; runs without a solution are left
+    out, and there is no fit where too few are left.
 
     Notes
     -----
@@ -394,19 +386,7 @@ def consistency_warnings(
 ) -> tuple[str, ...]:
     """Warnings about a value of a line whose columns are inconsistent.
 
-    Parameters
-    ----------
-    line : LineSource
-        Line of the look-up.
-    quantity : str
-        Quantity of the look-up.
-    levels : dict of str to ndarray
-        Levels of the look-up, by name. [SI]
-
-    Returns
-    -------
-    warnings : tuple of str
-        Points where the printed numbers are impossible, and columns that are wrong by z.
+    Points where the printed numbers are impossible, and columns that are wrong by z.
     """
     if quantity not in (K_AP, K_1, TIME, DASHPOT) or not (line.slow_pulls and is_of_loads(levels)):
         return ()

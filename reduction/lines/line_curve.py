@@ -204,20 +204,7 @@ _EVEN = 1e-6
 def shared_half_width(contribution: ArrayLike) -> Floats:
     """Half width of the 95 % interval of shared errors together, with known uncertainties.
 
-    Parameters
-    ----------
-    contribution : array_like, shape (n_components, ...)
-        Signed, one row per error. [any]
-
-    Returns
-    -------
-    half : ndarray, shape (...)
-        Zero where nothing is shared. [as contribution]
-
-    Raises
-    ------
-    ValueError
-        If the rows differ in length.
+    Zero where nothing is shared.
 
     Notes
     -----
@@ -235,22 +222,7 @@ def shared_half_width(contribution: ArrayLike) -> Floats:
 def own_half_width(found: DesignValues, end: End) -> Floats:
     """Half width of an interval without the errors that the value shares with others.
 
-    Parameters
-    ----------
-    found : DesignValues
-        Values as looked up.
-    end : {"low", "high", "surface_low", "surface_high", "kind_low", ...}
-        End of the interval.
-
-    Returns
-    -------
-    half : ndarray, shape (...)
-        NaN where there is no interval. [unit of the value]
-
-    Raises
-    ------
-    AttributeError
-        If there is no such end.
+    NaN where there is no interval.
 
     Notes
     -----
@@ -292,20 +264,7 @@ def own_half_width(found: DesignValues, end: End) -> Floats:
 def is_even(found: DesignValues) -> bool:
     """Whether the parts are known and the interval is symmetric everywhere.
 
-    Parameters
-    ----------
-    found : DesignValues
-        Values as looked up.
-
-    Returns
-    -------
-    is_even : bool
-        False for a surface on another scale, and where only an interval is known.
-
-    Raises
-    ------
-    ValueError
-        Not raised by this function itself.
+    False for a surface on another scale, and where only an interval is known.
 
     Notes
     -----
@@ -343,11 +302,6 @@ def half_width_of_parts(
     half : ndarray, shape (...)
         [as random]
 
-    Raises
-    ------
-    ValueError
-        If the shapes do not fit.
-
     Notes
     -----
     Welch-Satterthwaite formula ([3]_).
@@ -374,20 +328,7 @@ def half_width_of_parts(
 def shared_of(values: Mapping[str, DesignValues]) -> Contributions:
     """Contributions of shared errors to several values at the same points, one row per error.
 
-    Parameters
-    ----------
-    values : mapping of str to DesignValues
-        Values by name. [unit of each]
-
-    Returns
-    -------
-    contributions : Contributions
-        By that name; zero for an error that a value does not have. [unit of each]
-
-    Raises
-    ------
-    SettingsError
-        If an error occurs twice among those of one value.
+    By that name; zero for an error that a value does not have.
 
     Notes
     -----

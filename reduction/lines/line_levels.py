@@ -104,13 +104,7 @@ def levels_of_tests(levels: LineLevels) -> list[tuple[Floats, tuple[int, ...]]]:
 def completed_levels(
     levels: LineLevels, given: Mapping[str, Floats], name: str
 ) -> dict[str, Floats]:
-    """Requested levels, completed with each missing level that is equal in all tests.
-
-    Raises
-    ------
-    SettingsError
-        If a level is not one of the tests', or one is missing in which the tests differ.
-    """
+    """Requested levels, completed with each missing level that is equal in all tests."""
     unknown = sorted(set(given) - set(levels.variables))
     if unknown:
         raise SettingsError(

@@ -76,29 +76,7 @@ def rank_lines(
 ) -> _LineRanking:
     """Order lines by a quantity at one load.
 
-    Parameters
-    ----------
-    lines : sequence of LineSource
-        Lines that have the quantity.
-    quantity : str
-        Quantity of all lines.
-    levels : sequence of mapping of str to float, length n_lines
-        The same load for each; shares of a break strength differ. [SI]
-    branch : {"ascending", "descending"}, optional
-        As in `look_up`.
-    extrapolate : {"refuse", "flag"}
-        Whether a line that is farther outside than `JUST_OUTSIDE` gets a rank.
-
-    Returns
-    -------
-    ranking : _LineRanking
-        A line is left out where it was not tested, or where the load exceeds the limit of its
-        source.
-
-    Raises
-    ------
-    DataError
-        If fewer than two lines are left.
+    A line is left out where it was not tested, or where the load exceeds the limit of its source.
 
     Notes
     -----

@@ -136,28 +136,7 @@ def in_conditions(
 
     Of tests at single levels, those under these conditions remain.
 
-    Parameters
-    ----------
-    line : LineSource
-        Line as found.
-    quantity : str
-        Requested quantity: slow pull and cycles of one line may have had different conditions.
-    asked : mapping of str to str
-        ``medium``, by its words, and ``temperature``, with a unit, within `SAME_TEMPERATURE`.
-    is_flagged : bool
-        Keep tests in other conditions, with a warning.
-
-    Returns
-    -------
-    line : LineSource
-        The line itself where no condition is given.
-
-    Raises
-    ------
-    DataError
-        If nothing was tested so, or nothing is stated, and ``is_flagged`` is false.
-    SettingsError
-        If a temperature is invalid.
+    The line itself where no condition is given.
 
     Examples
     --------

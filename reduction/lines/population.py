@@ -147,29 +147,7 @@ _ALIKE = ("kind", "material", "construction", "condition")
 def specimens_of_kind(
     lines: Sequence[LineSource], quantity: str, name: str | None = None
 ) -> list[LineSource]:
-    """Lines of different specimens of one kind that have a quantity.
-
-    Parameters
-    ----------
-    lines : sequence of LineSource
-        Result of a search.
-    quantity : str
-        Requested quantity.
-    name : str, optional
-        Test, where one specimen has the quantity in several.
-
-    Returns
-    -------
-    specimens : list of LineSource
-        One per specimen.
-
-    Raises
-    ------
-    SettingsError
-        If they are not of one kind, or a specimen has the quantity more than once.
-    DataError
-        If they are fewer than `FEWEST_SPECIMENS`.
-    """
+    """Lines of different specimens of one kind that have a quantity."""
     found = [
         line
         for line in lines

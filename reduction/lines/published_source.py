@@ -256,13 +256,7 @@ _EXPONENTS = quadratic_exponents(3)
 
 @cache
 def published_sources() -> dict[str, LineSource]:
-    """Every published line and tether with values to look up, by name.
-
-    Returns
-    -------
-    sources : dict of str to LineSource
-        Lines of CG-D-39-80, then tethers of WHOI-2005-10, by test and after 3,000 cycles.
-    """
+    """Every published line and tether with values to look up, by name."""
     sources = [_line(one) for one in published_lines()]
     windows = (_tether(*window) for window in tether_windows().values())
     sources += [one for one in windows if one is not None]

@@ -151,13 +151,6 @@ def figure_rows() -> list[FigureRow]:
 def figure_in_numbers(row: FigureRow, own: Sequence[LineSource] = ()) -> ReportFigure:
     """Numbers of a figure, with those of own lines that have the same quantity.
 
-    Parameters
-    ----------
-    row : FigureRow
-        A figure that is drawn.
-    own : sequence of LineSource
-        Lines of a processed campaign.
-
     Examples
     --------
     >>> (row,) = (one for one in figure_rows() if (one.report, one.figure) == ("CG-D-39-80", "4"))

@@ -26,24 +26,7 @@ def surface_table(
 ) -> ValueTable:
     r"""Every surface of an archive: coefficients, standard uncertainties, covariance.
 
-    Parameters
-    ----------
-    path : pathlib.Path
-        ``surfaces.nc``.
-    specimen : str, optional
-        Name of one experiment; default all.
-    units : {"si", "us"}
-        Unit of coefficients; surfaces of a logarithm stay in SI: their constant depends on it.
-
-    Returns
-    -------
-    table : ValueTable
-        Shape (n_experiments * n_responses * n_terms,); a response without a fit has no row.
-
-    Raises
-    ------
-    DataError
-        If there is no surface, or none of that name.
+    Shape (n_experiments * n_responses * n_terms,); a response without a fit has no row.
 
     Notes
     -----
@@ -120,23 +103,6 @@ def printed_table(path: Path, *, specimen: str | None = None) -> ValueTable:
 
     One block of rows per response: the factors B1 to B10 in coded levels, three decimals, then r2,
     F, and the range of each level; one column per experiment.  Always in pounds.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        ``surfaces.nc``.
-    specimen : str, optional
-        Name of one experiment; default all.
-
-    Returns
-    -------
-    table : ValueTable
-        Words and digits as printed, shape (n_responses * 16,).
-
-    Raises
-    ------
-    DataError
-        If no experiment has the factors of the report, or there is none of that name.
 
     Notes
     -----

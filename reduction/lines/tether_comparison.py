@@ -102,15 +102,7 @@ def _marked_line(tether: PublishedTether) -> _MarkedLine:
 def compared_tethers(first: LineSource, second: LineSource) -> _ComparedTethers | None:
     """Two published windows from one table.
 
-    Parameters
-    ----------
-    first, second : LineSource
-        Windows to compare.
-
-    Returns
-    -------
-    pair : _ComparedTethers or None
-        None where one of them is not a published tether, or no table has both complete.
+    None where one of them is not a published tether, or no table has both complete.
 
     Examples
     --------

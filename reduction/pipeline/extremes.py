@@ -237,11 +237,6 @@ def _all_over(located: Located) -> dict[str, _Samples]:
 def judge_strain(extremes: Extremes, model: StrainModel, *, test_id: str) -> tuple[Note, ...]:
     """Refuse a strain model that gives impossible strain, and note improbable strain.
 
-    Raises
-    ------
-    DataError
-        If strain is at or below -100 % anywhere.
-
     Examples
     --------
     >>> place = np.linspace(0.76, 1.38, 200)

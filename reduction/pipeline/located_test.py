@@ -294,13 +294,7 @@ def _without_flagged_samples(values: Floats, flags: NDArray[np.uint16], *, but: 
 def strain_of_record(
     record: Record, position: Floats, tension: Floats, models: Sequence[StrainModel]
 ) -> Floats:
-    """Strain of each specimen; NaN where position, or a tension that it needs, is not usable.
-
-    Raises
-    ------
-    DataError
-        If strain is at or below -100 % anywhere.
-    """
+    """Strain of each specimen; NaN where position, or a tension that it needs, is not usable."""
     strain = empty_like(tension)
     measured = record.measured_strain
 

@@ -796,45 +796,7 @@ def reduce_test(
     pull_conditions: PullConditions | None = None,
     instruments: Sequence[InstrumentErrors] = (),
 ) -> ReducedTest:
-    """Reduce one located test.
-
-    Parameters
-    ----------
-    located : Located
-        From `locate`.
-    description : TestDescription
-        As kept by the laboratory.
-    specimens : tuple of Specimen, length n_specimens
-        In the order of the record.
-    models : sequence of StrainModel, length n_specimens
-        Conversion of position to strain.
-    history : History or None
-        Earlier tests of the specimens.
-    sources : tuple of Source
-        Raw files.
-    settings : ReductionSettings
-        Settings in force.
-    settings_json : str
-        The same, with all other inputs in force, for the product.
-    pulls : sequence of SlowPull or None, length n_specimens, optional
-        Slow pull of each specimen; with it the loops give a three-parameter line.
-    pull_origins : sequence of PullOrigin or None, length n_specimens, optional
-        Instruments of each pull, where these differ from those of this test.
-    pull_conditions : PullConditions, optional
-        Conditions of a slow pull that its log does not show.
-    instruments : sequence of InstrumentErrors, length n_specimens, optional
-        Known errors common to all samples; none if left out.
-
-    Returns
-    -------
-    test : ReducedTest
-        Ready for the archive.
-
-    Raises
-    ------
-    DataError
-        If the record cannot support a stage that its kind of test needs.
-    """
+    """Reduce one located test."""
     record, standstills, cycles = located.record, located.standstills, located.cycles
     position, tension = located.position, located.tension
     settings, of_wave = _with_waveform_of_log(settings, located)

@@ -208,11 +208,6 @@ def cord_load(curve: CordCurve, strain: ArrayLike) -> Floats:
     load : ndarray, shape (...)
         0 where the strain is not positive, NaN beyond the last point. [N]
 
-    Raises
-    ------
-    ValueError
-        From numpy, if the strains are not an array of numbers.
-
     Notes
     -----
     Source: [1]_, sec. 1.2.1; [2]_ between the points.
@@ -273,11 +268,6 @@ def cord_strain_at(curve: CordCurve, load: ArrayLike) -> Floats:
     -------
     strain : ndarray, shape (...)
         0 at zero load; NaN below zero and beyond the break load. [1]
-
-    Raises
-    ------
-    ValueError
-        From numpy, if the loads are not an array of numbers.
 
     Notes
     -----

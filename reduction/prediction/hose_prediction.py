@@ -121,23 +121,7 @@ _HIGH_UNCERTAINTY = 0.2
 
 
 def predict_from_plan(plan: HosePlan) -> PredictedHose:
-    """Predict one hose.
-
-    Parameters
-    ----------
-    plan : HosePlan
-        Plan as read.
-
-    Returns
-    -------
-    hose : PredictedHose
-        At every strain step, and at the events themselves.
-
-    Raises
-    ------
-    SettingsError
-        If the step is so small that there are too many points.
-    """
+    """Predict one hose."""
     design = plan.design
     events = find_events(design)
     strain = _strains(plan, float(events.cord_break.strain))

@@ -110,21 +110,6 @@ class _HoseLoads:
 def numbers_of(design: HoseDesign) -> _HoseNumbers:
     """Compute the parameters of a design that the loads need.
 
-    Parameters
-    ----------
-    design : HoseDesign
-        One or many hoses.
-
-    Returns
-    -------
-    numbers : HoseNumbers
-        Every array of the shape of the designs.
-
-    Raises
-    ------
-    ValueError
-        From numpy, if parameters of the design do not broadcast.
-
     Notes
     -----
     Source: [1]_, eq. (10) and (11): the number of cords is pi d n cos a0 per layer.
@@ -578,20 +563,7 @@ def hose_energy(design: HoseDesign, stretch_ratio: ArrayLike) -> Floats:
 def find_events(design: HoseDesign) -> HoseEvents:
     """Find where cords are shortest, pick up, reach their working load, and break.
 
-    Parameters
-    ----------
-    design : HoseDesign
-        One or many hoses, shape (...).
-
-    Returns
-    -------
-    events : HoseEvents
-        Arrays of shape (...); strains refer to the whole relaxed length including dead ends.
-
-    Raises
-    ------
-    ValueError
-        From numpy, if parameters of the design do not broadcast.
+    Arrays of shape (...); strains refer to the whole relaxed length including dead ends.
 
     Notes
     -----

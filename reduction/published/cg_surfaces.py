@@ -546,19 +546,7 @@ class Closure:
 def closure_of(pages: Pages, row: str, quantity: str) -> tuple[Closure, ...] | None:
     """Coefficients of a column that follow from K_ap, H and each K_0 of a line.
 
-    Parameters
-    ----------
-    pages : Pages
-        All cells of the report.
-    row : str
-        A new line, or the polyester braid after five years.
-    quantity : str
-        K_1 or tau.
-
-    Returns
-    -------
-    closures : tuple of Closure or None
-        One for each slow pull; None where the line has not all four surfaces.
+    One for each slow pull; None where the line has not all four surfaces.
 
     Examples
     --------

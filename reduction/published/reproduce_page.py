@@ -42,32 +42,13 @@ _COLUMNS = (
 def reproduce(report: ReportId | None = None) -> dict[ReportId, list[ReproducedItem]]:
     """Recompute every printed number of a report, or of all.
 
-    Parameters
-    ----------
-    report : ReportId, optional
-        One of the five; default all.
-
-    Returns
-    -------
-    items : dict of ReportId to list of Item
-        In the order of the tables.
+    In the order of the tables.
     """
     return {one: _ITEMS[one]() for one in (REPORTS if report is None else (report,))}
 
 
 def counts_of(items: Iterable[ReproducedItem]) -> Counts:
-    """Number of cells, and number for each verdict.
-
-    Parameters
-    ----------
-    items : iterable of Item
-        Items of a table, of a report or of all.
-
-    Returns
-    -------
-    counts : dict of str to int
-        ``cells``, then each of `VERDICTS`.
-    """
+    """Number of cells, and number for each verdict."""
     counts = dict.fromkeys(("cells", *VERDICTS), 0)
     for item in items:
         counts["cells"] += 1
@@ -76,18 +57,7 @@ def counts_of(items: Iterable[ReproducedItem]) -> Counts:
 
 
 def counts_by_table(items: Iterable[ReproducedItem]) -> dict[str, Counts]:
-    """Counts of each table, in the order of the tables.
-
-    Parameters
-    ----------
-    items : iterable of Item
-        Items of one report.
-
-    Returns
-    -------
-    counts : dict of str to dict of str to int
-        By table, or by section of a claim.
-    """
+    """Counts of each table, in the order of the tables."""
     tables: dict[str, list[ReproducedItem]] = {}
     for item in items:
         tables.setdefault(item.cell.table, []).append(item)
@@ -105,17 +75,7 @@ class _TouchedErratum:
 def touched_errata(report: ReportId, items: Iterable[ReproducedItem]) -> list[_TouchedErratum]:
     """Every known error of a report with its cells.
 
-    Parameters
-    ----------
-    report : ReportId
-        One of the five.
-    items : iterable of Item
-        Items of this report.
-
-    Returns
-    -------
-    errata : list of TouchedErratum
-        In the order of their ids.
+    In the order of their ids.
     """
     by_id: dict[str, list[ReproducedItem]] = {}
     for item in items:
@@ -126,15 +86,7 @@ def touched_errata(report: ReportId, items: Iterable[ReproducedItem]) -> list[_T
 def csv_of(items: Iterable[ReproducedItem]) -> str:
     """Items as a table, one line per cell.
 
-    Parameters
-    ----------
-    items : iterable of Item
-        Items of one or several reports.
-
-    Returns
-    -------
-    text : str
-        CSV; unknown values are empty.
+    CSV; unknown values are empty.
     """
     text = io.StringIO()
     writer = csv.writer(text)
@@ -214,18 +166,7 @@ class _Report:
 
 
 def render_reproduction(reports: Mapping[ReportId, Sequence[ReproducedItem]]) -> str:
-    """Every item of the reports as a page that opens from disk.
-
-    Parameters
-    ----------
-    reports : mapping of ReportId to sequence of Item
-        As returned by `reduction.published.reproduce_page.reproduce`.
-
-    Returns
-    -------
-    html : str
-        The page.
-    """
+    """Every item of the reports as a page that opens from disk."""
     environment = Environment(
         autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )

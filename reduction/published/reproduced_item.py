@@ -47,22 +47,8 @@ def judge_repeat(
 ) -> ReproducedItem:
     """Compare a printed number with another print of the same number.
 
-    Parameters
-    ----------
-    cell : Cell
-        As printed.
-    other : float
-        The other print, in the printed unit.
-    how : str
-        Place of the other print.
-    tolerance : float, optional
-        As of `judge`.
-
-    Returns
-    -------
-    item : ReproducedItem
-        By `judge`, but ``repeated`` where they are equal: nothing was computed, and a wrong number
-        may have been copied.
+    By `judge`, but ``repeated`` where they are equal: nothing was computed, and a wrong number may
+    have been copied.
     """
     item = judge(cell, other, how, tolerance=tolerance)
     return replace(item, verdict="repeated") if item.verdict == "derived" else item
@@ -73,24 +59,9 @@ def closed_item(
 ) -> ReproducedItem:
     """Judge a number that equations relate to a partner.
 
-    Parameters
-    ----------
-    item : ReproducedItem
-        With the number that follows from the partner; known errors stay as they are.
-    standard_error : float
-        Of the printed number less that one; NaN or zero where not known.
-    spread : float
-        Range of the numbers that may follow from the partner, of which the nearest is used: it
-        hides errors up to this size. [printed unit]
-    how : str
-        Source data; by default that of the item.
-
-    Returns
-    -------
-    item : ReproducedItem
-        ``open`` where the deviation exceeds `DETECTED` standard errors; ``closed`` where it does
-        not, but one unit of the leading digit would; where such a coarse error would not be
-        detected, ``measured`` in place of ``derived``, and otherwise unchanged.
+    ``open`` where the deviation exceeds `DETECTED` standard errors; ``closed`` where it does not,
+    but one unit of the leading digit would; where such a coarse error would not be detected,
+    ``measured`` in place of ``derived``, and otherwise unchanged.
 
     Examples
     --------
@@ -120,25 +91,11 @@ def judge(
 ) -> ReproducedItem:
     """Compare a printed number with the expected one.
 
-    Parameters
-    ----------
-    cell : Cell
-        As printed.
-    recomputed : float
-        In the printed unit.
-    how : str
-        Source data of the computation.
-    tolerance : float, optional
-        By default half the last printed digit; wider only where the inputs are rounded too, by the
-        effect of their rounding.
-
-    Returns
-    -------
-    item : ReproducedItem
-        ``derived`` where the printed number is within the tolerance; else ``erratum`` or
-        ``open`` where the cell says so and the corrected value, if any, is within it; else
-        ``unexplained``. An erratum that confirms the printed number, and therefore has no
-        confidence, explains no difference.
+    ``tolerance``: by default half the last printed digit; wider only where the inputs are rounded
+    too, by the effect of their rounding. ``derived`` where the printed number is within the
+    tolerance; else ``erratum`` or ``open`` where the cell says so and the corrected value, if any,
+    is within it; else ``unexplained``. An erratum that confirms the printed number, and therefore
+    has no confidence, explains no difference.
     """
     half = 0.5 * printed_step(cell.printed)
     allowed = (half if tolerance is None else max(tolerance, half)) * (1 + 1e-9)
@@ -153,20 +110,8 @@ def judge(
 def agree(cell: Cell, holds: bool, how: str) -> ReproducedItem:
     """Judge a claim in words by whether the numbers support it.
 
-    Parameters
-    ----------
-    cell : Cell
-        As printed.
-    holds : bool
-        Whether they support it.
-    how : str
-        Source data.
-
-    Returns
-    -------
-    item : ReproducedItem
-        ``derived`` where the claim holds; else ``erratum`` or ``open`` where the cell says so;
-        else ``unexplained``.
+    ``derived`` where the claim holds; else ``erratum`` or ``open`` where the cell says so; else
+    ``unexplained``.
     """
     verdict = "derived" if holds else _known_of(cell, "unexplained")
     return ReproducedItem(cell, math.nan, verdict, how)
@@ -175,38 +120,13 @@ def agree(cell: Cell, holds: bool, how: str) -> ReproducedItem:
 def measured_item(cell: Cell, why: str) -> ReproducedItem:
     """Item for a cell that nothing else in the report determines.
 
-    Parameters
-    ----------
-    cell : Cell
-        As printed.
-    why : str
-        Reason: measured, a figure missing in the text, a setting, ...
-
-    Returns
-    -------
-    item : ReproducedItem
-        ``erratum`` or ``open`` where the cell says so, since that is known.
+    ``erratum`` or ``open`` where the cell says so, since that is known.
     """
     return ReproducedItem(cell, math.nan, _known_of(cell, "measured"), why)
 
 
 def compared_item(cell: Cell, recomputed: float, why: str) -> ReproducedItem:
-    """Item for a cell that is not determined to its last digit, with a number for comparison.
-
-    Parameters
-    ----------
-    cell : Cell
-        As printed.
-    recomputed : float
-        The number for comparison, in the printed unit.
-    why : str
-        Its meaning, and why the cell does not follow from it.
-
-    Returns
-    -------
-    item : ReproducedItem
-        By `measured_item`.
-    """
+    """Item for a cell that is not determined to its last digit, with a number for comparison."""
     return replace(measured_item(cell, why), recomputed=recomputed)
 
 
@@ -231,15 +151,7 @@ _WORDS = {
 def last_counted_place(text: str) -> float:
     """One unit of the last nonzero digit of a round number.
 
-    Parameters
-    ----------
-    text : str
-        As printed.
-
-    Returns
-    -------
-    place : float
-        0 where there is no number, and for zero.
+    0 where there is no number, and for zero.
 
     Examples
     --------
@@ -255,22 +167,7 @@ def last_counted_place(text: str) -> float:
 
 
 def judge_round(cell: Cell, recomputed: float, how: str) -> ReproducedItem:
-    """Compare a number that the text itself calls round with the expected one.
-
-    Parameters
-    ----------
-    cell : Cell
-        Printed with about, around, up to, or as a range of round numbers.
-    recomputed : float
-        In the printed unit.
-    how : str
-        Source data of the computation.
-
-    Returns
-    -------
-    item : ReproducedItem
-        By `judge`, within half of the last nonzero digit.
-    """
+    """Compare a number that the text itself calls round with the expected one."""
     place = last_counted_place(cell.printed)
     return judge(cell, recomputed, f"{how}; round to {place:g}", tolerance=0.5 * place)
 
@@ -278,21 +175,7 @@ def judge_round(cell: Cell, recomputed: float, how: str) -> ReproducedItem:
 def judge_limit(cell: Cell, recomputed: float, how: str, *, is_upper: bool) -> ReproducedItem:
     """Compare a printed limit with the number that it bounds.
 
-    Parameters
-    ----------
-    cell : Cell
-        Printed with less than, below, up to; or with over, above, at least.
-    recomputed : float
-        The bounded number, in the printed unit.
-    how : str
-        Source data of the computation.
-    is_upper : bool
-        Whether the printed number is an upper bound.
-
-    Returns
-    -------
-    item : ReproducedItem
-        ``derived`` where the bound holds, else by `judge`.
+    ``derived`` where the bound holds, else by `judge`.
     """
     printed = number_of(cell.printed)
     if printed is not None and (recomputed <= printed if is_upper else recomputed >= printed):
@@ -304,26 +187,7 @@ def judge_limit(cell: Cell, recomputed: float, how: str, *, is_upper: bool) -> R
 def judge_as(
     cell: Cell, text: str, recomputed: float, how: str, *, tolerance: float | None = None
 ) -> ReproducedItem:
-    """Compare another notation of a printed number with the expected one.
-
-    Parameters
-    ----------
-    cell : Cell
-        As printed.
-    text : str
-        Its number in digits.
-    recomputed : float
-        Expected value.
-    how : str
-        Source data of the computation.
-    tolerance : float, optional
-        As of `judge`.
-
-    Returns
-    -------
-    item : ReproducedItem
-        By `judge`, for the cell as printed.
-    """
+    """Compare another notation of a printed number with the expected one."""
     item = judge(replace(cell, printed=text), recomputed, how, tolerance=tolerance)
     return replace(item, cell=cell)
 
@@ -331,21 +195,7 @@ def judge_as(
 def judge_word(cell: Cell, recomputed: float, how: str, *, step: float = 1.0) -> ReproducedItem:
     """Compare a number in words with the expected one.
 
-    Parameters
-    ----------
-    cell : Cell
-        Printed as ``twice``, ``two samples each``.
-    recomputed : float
-        Expected value.
-    how : str
-        Source data of the computation.
-    step : float
-        Resolution of the words: 0.5 for ``one-and-a-half``.
-
-    Returns
-    -------
-    item : ReproducedItem
-        By `judge`, within half a step; words without a number are never reproduced.
+    By `judge`, within half a step; words without a number are never reproduced.
     """
     said = next((_WORDS[word] for word in cell.printed.lower().split() if word in _WORDS), None)
     if said is None:
@@ -391,22 +241,7 @@ Answers = dict[Key, Answer | str]
 def items_from(report: ReportId, answers: Mapping[Key, Answer | str]) -> list[ReproducedItem]:
     """One item for each cell of a report.
 
-    Parameters
-    ----------
-    report : ReportId
-        One of the five reports.
-    answers : mapping of Key to Answer or str
-        By cell.
-
-    Returns
-    -------
-    items : list of Item
-        In the order of the cells.
-
-    Raises
-    ------
-    DataError
-        If a cell has no answer, or an answer has no cell.
+    In the order of the cells.
     """
     cells = cells_of(report)
     unknown = answers.keys() - {cell.key for cell in cells}
@@ -416,25 +251,7 @@ def items_from(report: ReportId, answers: Mapping[Key, Answer | str]) -> list[Re
 
 
 def item_of(cell: Cell, answers: Mapping[Key, Answer | str]) -> ReproducedItem:
-    """The item of one cell.
-
-    Parameters
-    ----------
-    cell : Cell
-        As printed.
-    answers : mapping of Key to Answer or str
-        By cell.
-
-    Returns
-    -------
-    item : ReproducedItem
-        With its verdict.
-
-    Raises
-    ------
-    DataError
-        If the cell has no answer.
-    """
+    """The item of one cell."""
     if cell.key not in answers:
         raise DataError(f"nothing is said of a cell of {cell.report}", found=" / ".join(cell.key))
     answer = answers[cell.key]

@@ -13,18 +13,6 @@ _MOST_PLACES = 12
 def plain_number(value: float, digits: int = 5) -> str:
     """Return a number to a given number of digits; zeros fill the places before the point.
 
-    Parameters
-    ----------
-    value : float
-        The number. [any]
-    digits : int
-        Number of significant digits, without trailing zeros. [1]
-
-    Returns
-    -------
-    text : str
-        Text with a power of ten below 0.0001 and from ten million on.
-
     Examples
     --------
     >>> [plain_number(one) for one in (280991.3, 0.012345678, 0.3, 2.5e8)]
@@ -41,19 +29,7 @@ def fixed_number(value: float, places: int, *, mark: str = ",") -> str:
 
     A value that rounds to zero has no sign; a half rounds to the even digit.
 
-    Parameters
-    ----------
-    value : float
-        The number. [any]
-    places : int
-        Decimal places. [1]
-    mark : str, optional
-        Thousands separator.
-
-    Returns
-    -------
-    text : str
-        Text without a power of ten.
+    Text without a power of ten.
 
     Examples
     --------
@@ -71,17 +47,7 @@ def fixed_number(value: float, places: int, *, mark: str = ",") -> str:
 def places_of(value: float, digits: int) -> int:
     """Return the decimal place of the last significant digit, negative before the point.
 
-    Parameters
-    ----------
-    value : float
-        The number. [any]
-    digits : int
-        Number of significant digits. [1]
-
-    Returns
-    -------
-    places : int
-        At most twelve; zero for the number zero. [1]
+    At most twelve; zero for the number zero.
 
     Examples
     --------
@@ -99,17 +65,7 @@ def places_within(value: float, *halves: float) -> int | None:
 
     The number has at least two and at most seven digits.
 
-    Parameters
-    ----------
-    value : float
-        The number. [any]
-    *halves : float
-        Half-widths of its intervals; NaN if unknown. [as value]
-
-    Returns
-    -------
-    places : int or None
-        None if no half-width is known, or the number needs a power of ten. [1]
+    None if no half-width is known, or the number needs a power of ten.
 
     Examples
     --------

@@ -179,22 +179,7 @@ def _pint_text(unit: str) -> str:
 def scale_to_si(unit: str, dimension: Dimension) -> tuple[float, float]:
     """Factor and offset that convert a value in ``unit`` to SI: ``factor * value + offset``.
 
-    Parameters
-    ----------
-    unit : str
-        Unit as written by the test house: ``lbf``, ``ft``, ``kN``, ``mm``, ``%``, ``°C``.
-    dimension : Dimension
-        Required dimension of the channel or setting.
-
-    Returns
-    -------
-    factor, offset : float
-        Conversion to SI; the offset is zero except for temperatures.
-
-    Raises
-    ------
-    SettingsError
-        If the unit is unknown or has another dimension.
+    Conversion to SI; the offset is zero except for temperatures.
 
     Examples
     --------
@@ -263,23 +248,7 @@ def _scale_by_pint(unit: str, dimension: Dimension) -> tuple[float, float]:
 def scale_of_unit(unit: str) -> tuple[str, float, float]:
     """SI unit and conversion for a unit of unstated dimension.
 
-    Parameters
-    ----------
-    unit : str
-        Unit as written by a user or in a header of this package: ``lbf``, ``J/m``, ``J m-1``, ``Pa
-        s``; ``lb`` is a force here too.
-
-    Returns
-    -------
-    si_unit : str
-        Unit from `DIMENSIONS` if one matches, else composed of base units.
-    factor, offset : float
-        Conversion to SI: ``factor * value + offset``.
-
-    Raises
-    ------
-    SettingsError
-        If the unit is unknown.
+    ``si_unit``: unit from `DIMENSIONS` if one matches, else composed of base units.
 
     Examples
     --------
@@ -361,20 +330,6 @@ _UNIT_AND_POWER = re.compile(r"([^\s\d/-]+)(-?\d+)?")
 def combined_unit(unit: str, others: Sequence[str], powers: Sequence[int]) -> str:
     """Unit of a coefficient: that of the response divided by those of its factors.
 
-    Parameters
-    ----------
-    unit : str
-        Unit of the response.
-    others : sequence of str
-        Units of the factors.
-    powers : sequence of int
-        Powers of the factors in the term.
-
-    Returns
-    -------
-    combined : str
-        Unit in the notation of products.
-
     Examples
     --------
     >>> combined_unit("N", ["Hz", "m s-1"], [2, 1])
@@ -398,25 +353,6 @@ def combined_unit(unit: str, others: Sequence[str], powers: Sequence[int]) -> st
 
 def display_unit(si_unit: str, system: UnitSystem) -> tuple[str, float]:
     """Display unit, and the factor from SI to it.
-
-    Parameters
-    ----------
-    si_unit : str
-        Unit as in `reduction.quantities.names`.
-    system : {"si", "us"}
-        ``us`` shows psi, lbf and ft.
-
-    Returns
-    -------
-    unit : str
-        Unit to print.
-    factor : float
-        Ratio of the printed value to the value in SI.
-
-    Raises
-    ------
-    SettingsError
-        If the system is neither of these.
 
     Examples
     --------
@@ -519,23 +455,6 @@ def _finite(number: str | float, text: str | float) -> float:
 
 def parse_in_unit(text: str, unit: str) -> float:
     """Value in SI of a text with a unit, given the SI unit of the quantity.
-
-    Parameters
-    ----------
-    text : str
-        A number and a unit; a bare number if the quantity has no unit.
-    unit : str
-        SI unit as in `reduction.quantities.names`.
-
-    Returns
-    -------
-    value : float
-        Value in SI. [unit]
-
-    Raises
-    ------
-    SettingsError
-        If it is not a number with a unit, or the unit has another dimension.
 
     Examples
     --------

@@ -299,20 +299,7 @@ _Limit = Literal["file_size", "unpacked_size", "line_length", "columns", "time"]
 
 
 def check_regular(path: Path, mode: int) -> None:
-    """Raise `LogError` if a path is not a regular file: a pipe or device may never end.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        For the message.
-    mode : int
-        From `os.stat`, links followed.
-
-    Raises
-    ------
-    LogError
-        If the path is anything else.
-    """
+    """Raise `LogError` if a path is not a regular file: a pipe or device may never end."""
     if not stat.S_ISREG(mode):
         raise LogError(
             path,
@@ -356,20 +343,7 @@ most. If that is what was logged, raise columns under [limits] of campaign.toml.
             )  # fmt: skip
 
     def check_unpacked(self, n_bytes: int, what: str = "the file") -> None:
-        """Raise `LogError` if the file unpacks to more than ``unpacked_size``.
-
-        Parameters
-        ----------
-        n_bytes : int
-            Stated size, or bytes unpacked so far.
-        what : str
-            For the message: ``the workbook``, ``variable 'A'``.
-
-        Raises
-        ------
-        LogError
-            If the size exceeds the limit.
-        """
+        """Raise `LogError` if the file unpacks to more than ``unpacked_size``."""
         if n_bytes > self.limits.unpacked_size:
             raise self._beyond(
                 "unpacked_size", f"{what} unpacks to more memory than is allowed",
@@ -475,17 +449,7 @@ _LONGEST = 100_000
 def short_metadata(found: Mapping[str, str]) -> tuple[dict[str, str], tuple[Note, ...]]:
     """Return the texts short enough to keep, and a note on each of the others.
 
-    Parameters
-    ----------
-    found : mapping of str to str
-        Attributes or properties of a file.
-
-    Returns
-    -------
-    metadata : dict
-        Texts of 100,000 characters or fewer.
-    notes : tuple of Note
-        One for each text left out.
+    ``notes``: one for each text left out.
 
     Examples
     --------

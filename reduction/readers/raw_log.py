@@ -64,13 +64,7 @@ _BLOCK = 1 << 20
 
 
 def hash_source(path: Path, name: str) -> Source:
-    """Hash a file in pieces, so that it may be of any size.
-
-    Raises
-    ------
-    LogError
-        If the file is not a regular file, cannot be opened, or is empty.
-    """
+    """Hash a file in pieces, so that it may be of any size."""
     _state(path)
     digest, size = hashlib.sha256(), 0
     try:
@@ -117,13 +111,7 @@ def source_of(data: bytes, name: str) -> Source:
 
 
 def read_bytes(path: Path) -> bytes:
-    """Read a file whole.
-
-    Raises
-    ------
-    LogError
-        If the file cannot be opened, is empty, or changes while it is read.
-    """
+    """Read a file whole."""
     with unchanged(path):
         try:
             data = path.read_bytes()

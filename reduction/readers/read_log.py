@@ -68,34 +68,7 @@ def read_log(
     parts: LogParts | None = None,
     limits: Limits | None = None,
 ) -> RawLog:
-    """Read a log with its declared layout.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        The file.
-    layout : Layout
-        Layout of the file.
-    name : str
-        File name relative to the campaign folder.
-    parts : Parts, optional
-        Size of the parts, and the length from which columns are kept on disk.  It does not affect
-        any number.
-    limits : Limits, optional
-        Limits of the file; defaults if omitted.
-
-    Returns
-    -------
-    log : RawLog
-        Declared columns in the file's own units.
-
-    Raises
-    ------
-    LogError
-        If the file does not match the layout, exceeds a limit, or changes while it is read.
-    DataError
-        If the disk has no room for the scratch files of a long log.
-    """
+    """Read a log with its declared layout."""
     watch = Watch(path, limits)
     with unchanged(path) as n_bytes:
         watch.check_size(n_bytes)
@@ -118,39 +91,7 @@ def read_record(
     parts: LogParts | None = None,
     limits: Limits | None = None,
 ) -> tuple[Record, tuple[Source, ...]]:
-    """Read the file or files of a test.
-
-    Parameters
-    ----------
-    files : sequence of (path, layout, name)
-        In time order; ``name`` is relative to the campaign folder.
-    test_id : str
-        Key of the test.
-    specimens : sequence of str
-        Names; ``tension.1`` belongs to the first.
-    quality : QualitySettings
-        Criteria for flagging a sample.
-    length_needed : bool
-        As in `reduction.readers.record_in_si.to_record`.
-    parts : Parts, optional
-        Size of the parts read at a time.
-    limits : Limits, optional
-        Limits of each file.
-
-    Returns
-    -------
-    record : Record
-        In SI, with flags set and every row kept.
-    sources : tuple of Source
-        One per file.
-
-    Raises
-    ------
-    LogError
-        If a file does not match its layout.
-    SettingsError, DataError
-        As in `reduction.readers.record_in_si.to_record`.
-    """
+    """Read the file or files of a test."""
     logs = [
         (read_log(path, layout, name=name, parts=parts, limits=limits), layout)
         for path, layout, name in files
@@ -184,31 +125,7 @@ def _uncertainty(channel: Channel, layout: Layout, name: str) -> float:
 def read_step_readings(
     files: Sequence[tuple[Path, Layout, str]], *, test_id: str, limits: Limits | None = None
 ) -> tuple[StepReadings, tuple[Source, ...]]:
-    """Read the log of a stepwise test.
-
-    Parameters
-    ----------
-    files : sequence of (path, layout, name)
-        One file; a stepwise test is too short for several.
-    test_id : str
-        For messages.
-    limits : Limits, optional
-        Limits of the file.
-
-    Returns
-    -------
-    readings : StepReadings
-        In SI.
-    sources : tuple of Source
-        The file.
-
-    Raises
-    ------
-    SettingsError
-        If there is not exactly one file, or the layout lacks a channel.
-    LogError
-        If the file cannot be read, or a needed reading is missing.
-    """
+    """Read the log of a stepwise test."""
     if len(files) != 1:
         raise SettingsError(
             f"stepwise test '{test_id}' has several files", found=str(len(files)), needed="one"

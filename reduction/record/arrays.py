@@ -101,28 +101,6 @@ def run_blocks(
     on that number, and sums over blocks must be taken from the list, so that a product has the same
     bytes on every machine.
 
-    Parameters
-    ----------
-    function : callable
-        Function of one item; it must not change anything that another block reads or writes.
-    items : iterable
-        The blocks.
-    samples : sequence of ndarray
-        Series that the blocks read or write; pages on disk are released after each block.
-    longest : int
-        Samples of the longest block; fewer long blocks run at a time, so that memory does not grow
-        with the number of processors. [1]
-
-    Returns
-    -------
-    results : list
-        One per item.
-
-    Raises
-    ------
-    Exception
-        The error of the first item for which the function raises one.
-
     Examples
     --------
     >>> run_blocks(lambda block: sum(range(block.start, block.stop)), [slice(0, 3), slice(3, 5)])

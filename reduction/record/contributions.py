@@ -261,11 +261,6 @@ def combined_standard_uncertainty(contribution: ArrayLike, random: ArrayLike) ->
     standard_uncertainty : ndarray, shape (...)
         NaN if the random part is NaN. [as contribution]
 
-    Raises
-    ------
-    ValueError
-        If the shapes do not match.
-
     Examples
     --------
     >>> print(combined_standard_uncertainty([[3.0], [0.0]], [4.0]))
@@ -302,11 +297,6 @@ def effective_degrees_of_freedom(
     effective : ndarray, shape (...)
         Infinite if no part is based on a finite number of readings; NaN if the random part is NaN.
         [1]
-
-    Raises
-    ------
-    ValueError
-        If the shapes do not match.
 
     Notes
     -----
@@ -352,11 +342,6 @@ def coverage_factor(degrees_of_freedom: ArrayLike) -> Floats:
     factor : ndarray, shape (...)
         Factor k; 1.96 if stated errors dominate. [1]
 
-    Raises
-    ------
-    ValueError
-        Never by itself.
-
     Notes
     -----
     Student's t, [1]_, 5.2, G.4, G.3.
@@ -382,20 +367,7 @@ def covariance_root(covariance: Floats) -> Floats:
 def merged(parts: Sequence[Contributions]) -> Contributions:
     """Merge contributions to different quantities over all their components.
 
-    Parameters
-    ----------
-    parts : sequence of Contributions
-        Each quantity in one part; for one present in several, the last is used. [as quantity]
-
-    Returns
-    -------
-    contributions : Contributions
-        A component absent from a part contributes zero to its quantities. [as quantity]
-
-    Raises
-    ------
-    SettingsError
-        If a component occurs twice in a part.
+    A component absent from a part contributes zero to its quantities.
 
     Notes
     -----
@@ -424,21 +396,6 @@ def merged(parts: Sequence[Contributions]) -> Contributions:
 def added(parts: Sequence[Contributions]) -> Contributions:
     """Contributions to a sum of several parts.
 
-    Parameters
-    ----------
-    parts : sequence of Contributions
-        Same quantities and shapes in all parts. [as quantity]
-
-    Returns
-    -------
-    contributions : Contributions
-        Contributions of each component, added with their signs. [as quantity]
-
-    Raises
-    ------
-    SettingsError
-        If a component occurs twice in a part.
-
     Notes
     -----
     Equal components are the same error ([1]_, F.1.2.3).
@@ -463,21 +420,6 @@ def added(parts: Sequence[Contributions]) -> Contributions:
 
 def stacked(entries: Sequence[Contributions]) -> Contributions:
     """Stack contributions to the same quantities of several specimens, holds, ... along one axis.
-
-    Parameters
-    ----------
-    entries : sequence of Contributions, length n_entries
-        One per specimen; a quantity absent from one of them is zero there. [as quantity]
-
-    Returns
-    -------
-    contributions : Contributions
-        Shape (n_components, n_entries, ...). [as quantity]
-
-    Raises
-    ------
-    ValueError
-        If a quantity has different shapes.
 
     Notes
     -----
@@ -507,23 +449,6 @@ def stacked(entries: Sequence[Contributions]) -> Contributions:
 
 def renamed(found: Contributions, names: dict[str, str]) -> Contributions:
     """Contributions under new names; quantities without a new name are left out.
-
-    Parameters
-    ----------
-    found : Contributions
-        Contributions under their old names. [as quantity]
-    names : dict of str to str
-        Old name to new name.
-
-    Returns
-    -------
-    contributions : Contributions
-        [as quantity]
-
-    Raises
-    ------
-    KeyError
-        If a name is absent.
 
     Notes
     -----
@@ -559,23 +484,6 @@ _SHAPE: dict[Shape, float] = {
 def of_half_width(half_width: float, shape: Shape = "rectangular") -> float:
     """Standard uncertainty from the half-width of an interval.
 
-    Parameters
-    ----------
-    half_width : float
-        The error lies within plus or minus this. [any]
-    shape : {"rectangular", "triangular", "arcsine"}
-        Distribution between the limits; rectangular if nothing is known.
-
-    Returns
-    -------
-    standard_uncertainty : float
-        Standard uncertainty. [as half_width]
-
-    Raises
-    ------
-    SettingsError
-        If the shape is unknown.
-
     Notes
     -----
     [1]_, 4.3.3, 4.3.7 and 4.3.9; arcsine applies to a sinusoidal variation.
@@ -595,23 +503,6 @@ def of_half_width(half_width: float, shape: Shape = "rectangular") -> float:
 def of_expanded(expanded: float, coverage_factor: float) -> float:
     """Standard uncertainty from an expanded one.
 
-    Parameters
-    ----------
-    expanded : float
-        Expanded uncertainty printed on a certificate. [any]
-    coverage_factor : float
-        Its factor k. [1]
-
-    Returns
-    -------
-    standard_uncertainty : float
-        Standard uncertainty. [as expanded]
-
-    Raises
-    ------
-    DataError
-        If k is not positive.
-
     Notes
     -----
     [1]_, 4.3.3, 4.3.3.
@@ -627,21 +518,6 @@ def of_expanded(expanded: float, coverage_factor: float) -> float:
 
 def of_resolution(resolution: float) -> float:
     """Standard uncertainty from the resolution of an indication.
-
-    Parameters
-    ----------
-    resolution : float
-        One step of the indication. [any]
-
-    Returns
-    -------
-    standard_uncertainty : float
-        Standard uncertainty. [as resolution]
-
-    Raises
-    ------
-    DataError
-        Never.
 
     Notes
     -----

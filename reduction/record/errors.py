@@ -146,15 +146,7 @@ class ArchiveError(ReductionError, OSError):
 def refused_by_system(error: OSError) -> ArchiveError:
     """Convert an operating-system error that no stage has reported in its own words.
 
-    Parameters
-    ----------
-    error : OSError
-        Error with an operating-system number.
-
-    Returns
-    -------
-    told : ArchiveError
-        Error with the file name, if the system states it.
+    Error with the file name, if the system states it.
 
     Examples
     --------

@@ -70,24 +70,7 @@ class Note:
 def note(code: str, subject: str = "", /, **numbers: Any) -> Note:
     """Return a note with the severity of its code.
 
-    Parameters
-    ----------
-    code : str
-        A key of `reduction.record.note_sentences.SENTENCES`.
-    subject : str, optional
-        Start of the sentence.
-    **numbers
-        Values used in the sentence. [SI]
-
-    Returns
-    -------
-    note : Note
-        Note without a stage.
-
-    Raises
-    ------
-    KeyError
-        If the code is unknown.
+    Note without a stage.
 
     Examples
     --------
@@ -120,18 +103,6 @@ def by_severity(notes: Iterable[Note]) -> tuple[Note, ...]:
 
 def full_note(stage: str, text: str) -> str:
     """Return a note with the stage and specimen in front if its sentence lacks them.
-
-    Parameters
-    ----------
-    stage : str
-        Stage that raised it, such as ``hold 2 new``; its last word is the specimen.
-    text : str
-        The sentence.
-
-    Returns
-    -------
-    sentence : str
-        Sentence that can stand alone beside the name of the test.
 
     Examples
     --------

@@ -40,15 +40,7 @@ _SHOWN = _VisibleText()
 def visible(text: str) -> str:
     r"""A text with its control characters escaped.
 
-    Parameters
-    ----------
-    text : str
-        Any text; line ends and tabs are kept.
-
-    Returns
-    -------
-    shown : str
-        The text itself if it has none.
+    The text itself if it has none.
 
     Examples
     --------
@@ -60,16 +52,6 @@ def visible(text: str) -> str:
 
 def toml_text(value: object) -> str:
     r"""Texts, lists of texts and plain values as TOML, with invisible characters escaped.
-
-    Parameters
-    ----------
-    value : object
-        Text, number, boolean, or a list of these.
-
-    Returns
-    -------
-    toml : str
-        Value for the right-hand side of an assignment.
 
     Examples
     --------
@@ -94,17 +76,9 @@ def toml_comment(text: str) -> str:
 def safe_cell(text: str) -> str:
     """A text as a CSV cell that no spreadsheet program reads as a formula.
 
-    Parameters
-    ----------
-    text : str
-        Original text.
-
-    Returns
-    -------
-    cell : str
-        The text with an apostrophe in front if it begins with ``=``, ``+``, ``-``, ``@``, a tab or
-        a carriage return and is neither a number nor a minus alone, or if only apostrophes
-        precede such a sign.
+    The text with an apostrophe in front if it begins with ``=``, ``+``, ``-``, ``@``, a tab or a
+    carriage return and is neither a number nor a minus alone, or if only apostrophes precede such a
+    sign.
 
     Examples
     --------
@@ -153,15 +127,7 @@ _SHORTEST = 4  # characters of a secret: shorter ones occur in ordinary words
 def is_address(text: str) -> bool:
     """Whether a text is a remote address rather than a file on this machine.
 
-    Parameters
-    ----------
-    text : str
-        Text as the user wrote it.
-
-    Returns
-    -------
-    is_address : bool
-        True for ``scheme://..``, even if schemes are chained.
+    True for ``scheme://..``, even if schemes are chained.
 
     Examples
     --------
@@ -173,16 +139,6 @@ def is_address(text: str) -> bool:
 
 def shown_address(address: str) -> str:
     """An address without user, password, query and fragment.
-
-    Parameters
-    ----------
-    address : str
-        One address.
-
-    Returns
-    -------
-    shown : str
-        Form that is safe for products and messages.
 
     Examples
     --------
@@ -209,15 +165,7 @@ def _has_password(host: str) -> bool:
 def without_secrets(text: str) -> str:
     """A text with each address replaced by its `shown_address`.
 
-    Parameters
-    ----------
-    text : str
-        A message.
-
-    Returns
-    -------
-    text : str
-        The text itself if it contains no address.
+    The text itself if it contains no address.
 
     Examples
     --------
@@ -237,16 +185,6 @@ def _shown(found: re.Match[str]) -> str:
 
 def secrets_of(address: str) -> tuple[str, ...]:
     """Parts of an address that must not be shown.
-
-    Parameters
-    ----------
-    address : str
-        One address.
-
-    Returns
-    -------
-    secrets : tuple of str
-        User and password, and the values of the query, longest first.
 
     Examples
     --------

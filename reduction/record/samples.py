@@ -42,20 +42,7 @@ def scratch_folder() -> Path:
 
 
 def check_room(folder: Path, n_bytes: int) -> None:
-    """Refuse a file whose stated size exceeds the free disk space.
-
-    Parameters
-    ----------
-    folder : pathlib.Path
-        Folder for the scratch files.
-    n_bytes : int
-        Their minimum size in bytes. [1]
-
-    Raises
-    ------
-    DataError
-        If the disk has less free space.
-    """
+    """Refuse a file whose stated size exceeds the free disk space."""
     if not hasattr(os, "statvfs"):  # available only on POSIX systems
         return
     try:
@@ -68,13 +55,7 @@ def check_room(folder: Path, n_bytes: int) -> None:
 
 
 def name_scratch_files(beginning: str) -> None:
-    """Give new scratch files names, so that another process can take them over.
-
-    Parameters
-    ----------
-    beginning : str
-        Prefix of each name; the other process removes the files.
-    """
+    """Give new scratch files names, so that another process can take them over."""
     global _name
     _name = beginning
 
@@ -123,25 +104,6 @@ def empty_like(
     dtype: DTypeLike | None = None,
 ) -> NDArray[Any]:
     """Return an uninitialised array, on disk if the reference is.
-
-    Parameters
-    ----------
-    reference : ndarray
-        Array whose storage is followed. [any]
-    shape : int or tuple of int, optional
-        Shape; that of the reference if omitted. [1]
-    dtype : dtype, optional
-        Type; that of the reference if omitted.
-
-    Returns
-    -------
-    array : ndarray
-        Array of that shape. [any]
-
-    Raises
-    ------
-    DataError
-        If the disk is full, or a limit on address space is reached.
 
     Examples
     --------
@@ -197,13 +159,7 @@ class ColumnWriter:
         self.size = 0
 
     def append(self, values: NDArray[Any]) -> None:
-        """Append samples.
-
-        Raises
-        ------
-        DataError
-            If the disk is full.
-        """
+        """Append samples."""
         part = np.ascontiguousarray(values, dtype=self._dtype)
         self.size += part.size
         if self._file is None or self._folder is None:
@@ -218,13 +174,7 @@ class ColumnWriter:
             raise _no_space(self._folder, n_bytes, error.strerror) from error
 
     def finish(self) -> NDArray[Any]:
-        """Return the column, shape (size,); nothing can be appended afterwards.
-
-        Raises
-        ------
-        DataError
-            If a limit on address space is reached.
-        """
+        """Return the column, shape (size,); nothing can be appended afterwards."""
         if self._file is not None and self._folder is not None:
             with self._file as file:
                 return mapped(file, self.size * self._dtype.itemsize, self._folder, self._dtype)
@@ -309,26 +259,10 @@ def sample_blocks(
 ) -> Iterator[slice]:
     """Consecutive slices that cover a series; pages of arrays on disk are released regularly.
 
-    Parameters
-    ----------
-    n_samples : int
-        Length of the series. [1]
-    *arrays : ndarray
-        Arrays read or written in the blocks. [any]
-    overlap : int
-        Samples shared with the next block. [1]
-    size : int
-        Samples in a block. [1]
-
     Yields
     ------
     part : slice
         Slice of samples. [1]
-
-    Raises
-    ------
-    ValueError
-        If the size is zero.
 
     Examples
     --------
@@ -346,23 +280,6 @@ def sample_blocks(
 
 def take_samples(series: NDArray[Any], index: NDArray[np.integer[Any]]) -> NDArray[Any]:
     """Return selected samples of a series, like ``series[..., index]``, in bounded memory.
-
-    Parameters
-    ----------
-    series : ndarray, shape (..., n_samples)
-        In memory or on disk. [any]
-    index : ndarray of int, any shape
-        Indices of the samples. [1]
-
-    Returns
-    -------
-    values : ndarray, shape (..., *index.shape)
-        Selected samples, in memory. [as series]
-
-    Raises
-    ------
-    IndexError
-        If an index is outside the series.
 
     Examples
     --------
@@ -404,11 +321,6 @@ def readings_between(
     values : ndarray, shape (n_samples,)
         NaN between two readings of which one is missing; beyond the ends those of the ends. [as
         series]
-
-    Raises
-    ------
-    ValueError
-        If there is no reading.
 
     Notes
     -----
@@ -563,28 +475,7 @@ def thinned(
 ) -> NDArray[np.intp]:
     """Samples that meet a condition, thinned evenly to fewer than twice a number.
 
-    Parameters
-    ----------
-    where : callable
-        Condition on a slice, which may have a step: whether each sample is wanted.
-    n_samples : int
-        Length of the series. [1]
-    most : int
-        Between this number and twice as many are kept. [1]
-    every : int
-        Step between the samples examined. [1]
-    samples : sequence of ndarray
-        Arrays that the condition reads.
-
-    Returns
-    -------
-    kept : ndarray of int, shape (n_kept,)
-        Indices in order. [1]
-
-    Raises
-    ------
-    ValueError
-        If ``every`` is zero.
+    Indices in order.
 
     Examples
     --------
@@ -611,22 +502,7 @@ Floats = NDArray[np.float64]
 def select_samples(where: Where, *series: NDArray[Any]) -> tuple[NDArray[Any], ...]:
     """Samples of several series at which a condition on slices is true.
 
-    Parameters
-    ----------
-    where : callable
-        Condition on a slice: whether each sample is wanted.
-    *series : ndarray, shape (n_samples,)
-        In memory or on disk. [any]
-
-    Returns
-    -------
-    kept : tuple of ndarray, shape (n_kept,)
-        The series themselves if all samples are wanted. [as series]
-
-    Raises
-    ------
-    IndexError
-        If the series differ in length and not all samples are wanted.
+    The series themselves if all samples are wanted.
 
     Examples
     --------
@@ -753,25 +629,6 @@ def step_that_fills(values: Floats) -> float:
 def median_step_reaches(series: Floats, factor: float, value: float) -> bool:
     """Whether a multiple of the median step reaches a value.
 
-    Parameters
-    ----------
-    series : ndarray, shape (n_samples,)
-        At least two samples, such as times. [any]
-    factor : float
-        Positive. [1]
-    value : float
-        Value compared with the multiple. [as series]
-
-    Returns
-    -------
-    reaches : bool
-        Same as ``factor * np.median(np.diff(series)) >= value``. [1]
-
-    Raises
-    ------
-    ZeroDivisionError
-        If there is no difference.
-
     Notes
     -----
     The differences below the limit are counted, so that the median itself is not needed.  If
@@ -801,25 +658,6 @@ def interval_labels(
 ) -> NDArray[Any]:
     """Value of the interval that contains each sample, 0 outside all.
 
-    Parameters
-    ----------
-    like : ndarray, shape (..., n_samples)
-        A series of the record, whose storage the labels follow. [any]
-    first, stop : ndarray of int, shape (n_intervals,)
-        First sample and end sample (exclusive); in order, without overlap. [1]
-    values : ndarray, shape (n_intervals,)
-        One per interval. [any]
-
-    Returns
-    -------
-    labels : ndarray, shape (n_samples,)
-        Type as the values. [as values]
-
-    Raises
-    ------
-    ValueError
-        If intervals overlap.
-
     Examples
     --------
     >>> interval_labels(np.zeros(5), np.array([1, 3]), np.array([2, 5]), np.array([7, 8]))
@@ -843,27 +681,6 @@ def over_intervals(
     stop: NDArray[np.integer[Any]],
 ) -> NDArray[Any]:
     """Sum, minimum or maximum over each interval, in bounded memory.
-
-    Parameters
-    ----------
-    operation : ufunc
-        ``np.add``, ``np.minimum``, ``np.maximum``.
-    series : ndarray, shape (n_samples,)
-        In memory or on disk. [any]
-    first : ndarray of int, shape (n_intervals,)
-        First sample of each interval; intervals may overlap, in any order. [1]
-    stop : ndarray of int, shape (n_intervals,)
-        Sample after the last, greater than ``first``. [1]
-
-    Returns
-    -------
-    results : ndarray, shape (n_intervals,)
-        One per interval. [as series]
-
-    Raises
-    ------
-    IndexError
-        If an interval starts beyond the series.
 
     Examples
     --------

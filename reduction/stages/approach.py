@@ -117,11 +117,6 @@ def find_approach(
     approach : _Approach or None
         None where noise hides it or the record does not show it.
 
-    Raises
-    ------
-    IndexError
-        If the standstill is outside the record.
-
     Notes
     -----
     The time of a relaxation counts from when the constraint is first obtained ([1]_).  The

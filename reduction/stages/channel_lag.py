@@ -111,11 +111,6 @@ def delay_of_extensometer(
     delay : float
         [s]
 
-    Raises
-    ------
-    ValueError
-        If the arrays differ in length.
-
     Notes
     -----
     Both channels are lengths, one driven by the other: they move together, except for other parts
@@ -196,11 +191,6 @@ def lag_by_turns(
     estimate : LagEstimate
         With a refusal where the turns do not show it.
 
-    Raises
-    ------
-    ValueError
-        If the series differ in length.
-
     Notes
     -----
     Turns are weighted by the square of the jump of the slope of tension, since the noise of a
@@ -269,11 +259,6 @@ def lag_at_stops(
     -------
     estimate : LagEstimate
         With a refusal where no stop is sharp.
-
-    Raises
-    ------
-    ValueError
-        If the arrays differ in length.
 
     Notes
     -----

@@ -77,11 +77,6 @@ def end_mass(
     length : float
         Factor of the linear density in this mass. [m]
 
-    Raises
-    ------
-    ValueError
-        Never by itself.
-
     Notes
     -----
     A specimen of mass M whose displacement is linear from one end to the other has
@@ -185,11 +180,6 @@ def length_by_stroke(position: Floats, cycles: Cycles, strain_amplitude: ArrayLi
     length : float
         Length that all that stretches between the pins would have at this strain. [m]
 
-    Raises
-    ------
-    ValueError
-        Never by itself.
-
     Examples
     --------
     3 m from pin to pin, strained from 0.1 to 0.2:
@@ -232,11 +222,6 @@ def turn_acceleration(
     -------
     acceleration : float
         Mean over peaks and valleys; zero where noise hides it. [m s-2]
-
-    Raises
-    ------
-    ValueError
-        Never by itself.
 
     Notes
     -----

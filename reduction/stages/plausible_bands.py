@@ -159,11 +159,6 @@ def readings_that_fit(
     readings : str
         In words; empty where nothing fits.
 
-    Raises
-    ------
-    ValueError
-        If the band does not have two numbers.
-
     Notes
     -----
     The bands rest on [1]_ and [2]_ and on the properties of fibres and steels.

@@ -130,11 +130,6 @@ def levels_of_test(
     -----
     Levels are those of [1]_, medians over some forty cycles, so that a long log takes no longer.
 
-    Raises
-    ------
-    IndexError
-        If a cycle lies outside the record.
-
     Examples
     --------
     A stroke of 2 m in 20 s, with a tension of 100 N/m:

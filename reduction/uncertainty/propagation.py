@@ -723,11 +723,6 @@ def line_contributions(
         By name of `reduction.stages.three_parameter_line.line_model.OUTPUTS`; NaN where the line
         has no such number.
 
-    Raises
-    ------
-    KeyError
-        If a quantity is not given.
-
     Notes
     -----
     By the logarithmic derivatives of eqs. 1 and 4 of [4]_
@@ -1255,11 +1250,6 @@ def ratio_contributions(
     -------
     contribution : ndarray, shape (n_components, ...)
         [1]
-
-    Raises
-    ------
-    ValueError
-        If the shapes do not fit.
 
     Notes
     -----

@@ -153,11 +153,6 @@ def with_shared_at_points(
         random part is that of the scatter and of the discrepancy, which is also given separately;
         degrees of freedom are those of the random part.
 
-    Raises
-    ------
-    ValueError
-        If the contributions do not fit the surfaces.
-
     Notes
     -----
     [1]_, 5.2.2, G.4.1 with the degrees of freedom of scatter and discrepancy for their parts

@@ -645,11 +645,6 @@ def find_half_cycles(
     half_cycles : HalfCycles
         In order of time; empty where nothing cycles.
 
-    Raises
-    ------
-    IndexError
-        If there are fewer than two reversals.
-
     Notes
     -----
     A *run* is a stretch between standstills and between gaps of the record of more than
@@ -765,11 +760,6 @@ def whole_cycles(values: Floats, halves: _HalfCycles) -> tuple[Indices, Indices,
         Samples of the ascending and the descending branch, both inside. [1]
     left_out : ndarray of int, shape (n_left_out,)
         First sample of each pair that lies between two amplitudes. [1]
-
-    Raises
-    ------
-    IndexError
-        If a half cycle is not within the values.
 
     Notes
     -----

@@ -290,11 +290,6 @@ def drift_not_placed(energy: Floats, closed: Floats, work: Floats) -> float:
     not_placed : float
         That of a triangular distribution if the cycles do not determine it. [1]
 
-    Raises
-    ------
-    ValueError
-        If the arrays differ in length.
-
     Notes
     -----
     A single cycle does not show in which part of it a drift takes place: at one turn it does no

@@ -250,11 +250,6 @@ def control_channel(position: Floats, tension: Floats, settings: CycleSettings) 
     driven : ndarray, shape (n_samples,)
         [m] or [N]
 
-    Raises
-    ------
-    ValueError
-        If tension is not a table.
-
     Examples
     --------
     >>> settings = CycleSettings(control="load")

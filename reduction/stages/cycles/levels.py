@@ -79,11 +79,6 @@ def find_levels(
         Empty if the record has one level or more than 20, if the level changes continually from
         cycle to cycle, or if the cycles between two steps are unlike each other.
 
-    Raises
-    ------
-    ValueError
-        If time and channel differ in length.
-
     Notes
     -----
     Mean and half range are taken at the turns, periods from flank to flank.  A *step* is a

@@ -72,11 +72,6 @@ def without_backward_loops(loops: Loops) -> Loops:
         the fundamental over time are kept as logged. For friction that falls with stretch
         only the loss factor is left out.
 
-    Raises
-    ------
-    ValueError
-        If the arrays of the loops differ in shape.
-
     Examples
     --------
     >>> one = {name: np.ones((1, 2)) for name in Loops.__dataclass_fields__}
@@ -157,11 +152,6 @@ def unlike_neighbours(
     share : float
         Root mean square of the residual, or the scatter of the steps of its middle, over half the
         range: the greater one; 0 where readings, their noise or chance explain it. [1]
-
-    Raises
-    ------
-    IndexError
-        If a cycle lies outside the record.
 
     Notes
     -----
@@ -244,11 +234,6 @@ def change_of_wave(time: Floats, driven: Floats, cycles: Cycles) -> tuple[float,
         Root mean square of the difference over half the range. [1]
     last, first : int
         Last cycle with the old shape and first one with the new, among those examined. [1]
-
-    Raises
-    ------
-    IndexError
-        If a cycle lies outside the record.
 
     Notes
     -----
@@ -354,11 +339,6 @@ def without_loss(loops: Loops) -> Loops:
     loops : Loops
         With NaN for energy, loss and loss factor.
 
-    Raises
-    ------
-    TypeError
-        If it is not a `Loops`.
-
     Examples
     --------
     >>> one = {name: np.ones((1, 2)) for name in Loops.__dataclass_fields__} | {"uncertainty": {}}
@@ -402,11 +382,6 @@ def waveform_of_log(
         ``triangular`` where two straight lines from turn to turn fit, ``sinusoidal`` where a sine
         does, ``other`` where neither comes near, as for ramps with dwells; empty in between, and
         where there are too few readings.
-
-    Raises
-    ------
-    IndexError
-        If a cycle lies outside the record.
 
     Notes
     -----
@@ -570,11 +545,6 @@ def notes_of_loops(
     Returns
     -------
     notes : tuple of Note
-
-    Raises
-    ------
-    ValueError
-        If the sequences differ in length.
 
     Notes
     -----

@@ -32,21 +32,6 @@ _OF_SECOND = 6 * 0.4549  # variance of a second difference, and the median of ch
 def touching(cycles: Cycles) -> Bools:
     """Mark cycles that begin where the one before them ends.
 
-    Parameters
-    ----------
-    cycles : Cycles
-        From `reduction.stages.cycles.cycle_search`.
-
-    Returns
-    -------
-    touch : ndarray of bool, shape (n_cycles,)
-        [-]
-
-    Raises
-    ------
-    ValueError
-        If the arrays of the cycles differ in length.
-
     Examples
     --------
     >>> first, pair = np.array([0, 20, 50]), np.array([[0, 10], [20, 30], [50, 60]])
@@ -61,20 +46,7 @@ def touching(cycles: Cycles) -> Bools:
 def counted_on_flanks(cycles: Cycles) -> tuple[Bools, Bools]:
     """Mark cycles that the machine counts from a point on their rise, or on their fall, on.
 
-    Parameters
-    ----------
-    cycles : Cycles
-        From `reduction.stages.cycles.cycle_search`.
-
-    Returns
-    -------
-    on_rise, on_fall : ndarray of bool
-        Whether the only valley of the cycle is the one after its peak, or the one before it. [-]
-
-    Raises
-    ------
-    ValueError
-        If the arrays of the cycles differ in length.
+    Whether the only valley of the cycle is the one after its peak, or the one before it.
 
     Examples
     --------
@@ -118,11 +90,6 @@ def spread_of_turns(turn: Floats, first: Integers, last: Integers, *, step: floa
     spread : float
         At least that of the resolution, the step over the root of 12. [s]
 
-    Raises
-    ------
-    ValueError
-        If the arrays differ in length.
-
     Notes
     -----
     Second differences exclude a period that changes slowly, and one error is in three of
@@ -159,11 +126,6 @@ def time_of_sample(duration: Floats, cycles: Cycles) -> Floats:
     -------
     spread : ndarray, shape (n_cycles,)
         [s]
-
-    Raises
-    ------
-    ValueError
-        If the arrays differ in length.
 
     Notes
     -----
@@ -210,11 +172,6 @@ def periods_alone(
         Cycles that do not adjoin another. [1]
     period, spread : ndarray, shape (n_alone,)
         [s]
-
-    Raises
-    ------
-    IndexError
-        If a turn lies outside the record.
 
     Notes
     -----
@@ -324,11 +281,6 @@ def own_periods(
     -------
     period, spread : ndarray, shape (n_cycles,)
         With the standard uncertainty of the time at one of its ends. [s]
-
-    Raises
-    ------
-    IndexError
-        If a turn lies outside the record.
 
     Notes
     -----

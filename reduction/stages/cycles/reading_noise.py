@@ -45,11 +45,6 @@ def reading_noise(values: Floats) -> float:
     noise : float
         In the unit of the series; 0 where fewer than four readings are finite. [any]
 
-    Raises
-    ------
-    TypeError
-        If the series is not numeric.
-
     Notes
     -----
     A third difference of white noise has 1 + 9 + 9 + 1 = 20 times its variance ([1]_).  With
@@ -101,11 +96,6 @@ def vibration_beside_wave(time: Floats, values: Floats, cycles: Cycles) -> tuple
     -------
     frequency, amplitude : float
         [Hz], [any]
-
-    Raises
-    ------
-    IndexError
-        If a turn lies outside the record.
 
     Notes
     -----

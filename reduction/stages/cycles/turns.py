@@ -68,11 +68,6 @@ def _excess_of_greatest(below: ArrayLike) -> float:
     excess : float
         In the same unit; 0 for no readings. [1]
 
-    Raises
-    ------
-    TypeError
-        If the distances are not numeric.
-
     Notes
     -----
     Source: [1]_.
@@ -125,11 +120,6 @@ def noise_in_extreme(
     fall : float
         Fall of the shape from its top to the next reading, on the steeper side; for a
         turn between two readings the mean shape is blunt, and the excess too great. [any]
-
-    Raises
-    ------
-    IndexError
-        If a turn lies outside the series.
 
     Notes
     -----
@@ -221,11 +211,6 @@ def kind_of_turns(
     kind : {"sharp", "hidden", "rounded"}
         Hidden where the steps beside the turn are within three times the noise. [-]
 
-    Raises
-    ------
-    IndexError
-        If a peak lies outside the series.
-
     Examples
     --------
     >>> place = np.arange(200)
@@ -273,11 +258,6 @@ def level_of_turn(values: Floats, turn: Integers, extreme: Floats, *, sign: int)
     -------
     level : ndarray, shape (n_turns,)
         [any]
-
-    Raises
-    ------
-    ValueError
-        If the arrays differ in length.
 
     Examples
     --------
@@ -333,11 +313,6 @@ def level_at_corner(
     -------
     level : ndarray, shape (n_turns,)
         NaN where ``moved`` has no corner nearby, or the series went on beyond it. [any]
-
-    Raises
-    ------
-    IndexError
-        If an extreme lies outside the series.
 
     Examples
     --------
@@ -405,11 +380,6 @@ def level_beside_corner(values: Floats, moved: Floats, turn: Integers, *, sign: 
     level : ndarray, shape (n_turns,)
         The reading at the turn where the series does not stiffen, or where a reading nearby is
         farther, as in a series that turns before or after. [any]
-
-    Raises
-    ------
-    IndexError
-        If a turn lies outside the series.
 
     Examples
     --------
@@ -499,11 +469,6 @@ def energy_missed_by_polygon(
         [J m-1]
     between : ndarray, shape (n_samples,)
         Area missing about each reading; 0 beside a corner. [J m-1]
-
-    Raises
-    ------
-    ValueError
-        If the arrays differ in length.
 
     Examples
     --------
@@ -629,11 +594,6 @@ def missed_by_extreme(values: Floats, turn: Integers, extreme: Floats, *, sign: 
         The greater of the height of a parabola through three readings above them and of the rise
         along the steeper way to the crossing of the lines; at most the crossing, 0 where no
         lines cross. [any]
-
-    Raises
-    ------
-    ValueError
-        If the arrays differ in length.
 
     Notes
     -----

@@ -114,20 +114,7 @@ class HoldResult:
 def hold_numbers(holds: Sequence[HoldResult]) -> Integers:
     """Number of each hold in its test, by time from 1; shared by all specimens in the machine.
 
-    Parameters
-    ----------
-    holds : sequence of HoldResult
-        Of one test.
-
-    Returns
-    -------
-    numbers : ndarray of int, shape (n_holds,)
-        Equal where the holds begin together. [1]
-
-    Raises
-    ------
-    AttributeError
-        If an entry is no hold.
+    Equal where the holds begin together.
 
     Notes
     -----

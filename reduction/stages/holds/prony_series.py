@@ -119,11 +119,6 @@ def terms_by_shape_of_ramp(
     tension : ndarray, shape (n_terms,)
         [N]
 
-    Raises
-    ------
-    ValueError
-        If the terms do not pair up with their times.
-
     Examples
     --------
     A constant-rate ramp of a term that relaxes as fast:

@@ -54,11 +54,6 @@ def ramp_end_time(time: Floats, place: Floats, *, band: float) -> tuple[float, f
     end_time, standard_uncertainty : float
         The last time if a step of the log is within the noise. [s], [s]
 
-    Raises
-    ------
-    IndexError
-        If there is no sample.
-
     Notes
     -----
     No source: the last step of a ramp sampled at even steps is cut short if the ramp ends
@@ -175,11 +170,6 @@ def level_at_end(
     level : _LevelAtEnd
         The mean if there are fewer than three samples. [unit of the series]
 
-    Raises
-    ------
-    IndexError
-        If there is no sample.
-
     Notes
     -----
     Method of [1]_: lines through 3, 5, 7, 10, ... samples, each 1.4 times as long, until the
@@ -264,11 +254,6 @@ def at_length_of_ramp_end(
     -------
     tension : ndarray, shape (n_samples,)
         Tension at the length of the end of the ramp. [N]
-
-    Raises
-    ------
-    ValueError
-        If the series do not pair up.
 
     Notes
     -----

@@ -131,11 +131,6 @@ def jump_of_mean(
         Number of the last cycle before it, from 1, and its size; None where creep or relaxation
         may explain everything. [1]
 
-    Raises
-    ------
-    ValueError
-        If the arrays differ in length.
-
     Notes
     -----
     Creep and relaxation are fastest at first and slow down, even in a pause between
@@ -204,11 +199,6 @@ def jump_at_stop(
         Number of the last cycle before it, from 1, its size, and what may be a change of the
         specimen; None where that is as much. [N]
 
-    Raises
-    ------
-    ValueError
-        If the arrays differ in length.
-
     Notes
     -----
     What relaxes or recovers in a stop passes again in the first cycles behind it.  After as many
@@ -268,11 +258,6 @@ def is_shift_of_curve(
         False where the mean tension follows the strain, or falls while the crosshead keeps
         the strain: such cycles belong where they were measured. [1]
 
-    Raises
-    ------
-    ValueError
-        If the arrays differ in shape.
-
     Notes
     -----
     In load control the machine returns to the same tensions, and a specimen that creeps reaches
@@ -324,11 +309,6 @@ def alignment_moves(
         True where the mean tension of some bin would move by a tenth of its standard uncertainty
         or more; where the cycles are further apart than a bin is wide, so that bins at the ends
         belong to some of them; and where the cycles as measured have no mean. [1]
-
-    Raises
-    ------
-    ValueError
-        If the arrays do not have one row per specimen.
 
     Notes
     -----
@@ -407,11 +387,6 @@ def aligned_strain(strain: Floats, shift: Floats, cycle_number: NDArray[np.int32
     -------
     aligned : ndarray, shape (n_specimens, n_samples)
         Stored like ``strain``, in memory or on disk. [1]
-
-    Raises
-    ------
-    IndexError
-        If a sample belongs to a cycle that has no shift.
 
     Notes
     -----

@@ -704,11 +704,6 @@ def curve_at(
     at_strain : ndarray, shape (n,)
         NaN outside the curve and in its gaps. [SI]
 
-    Raises
-    ------
-    IndexError
-        If the curve does not have one value per bin.
-
     Examples
     --------
     >>> nan = float("nan")

@@ -253,11 +253,6 @@ def late_change(values: Floats) -> float:
     change : float
         [SI]
 
-    Raises
-    ------
-    ValueError
-        Never by itself.
-
     Examples
     --------
     >>> late_change(np.array([106.0, 102.0, np.nan, 100.0, 100.0]))

@@ -114,23 +114,8 @@ def constant_volume_diameter(strain: ArrayLike, stretched_diameter: ArrayLike) -
 def check_constant_volume(specimen: Specimen) -> tuple[Note, ...]:
     """Compare the stated diameter with what the stretched diameters imply.
 
-    Parameters
-    ----------
-    specimen : Specimen
-        With ``diameter`` and ``stretched_diameters``.
-
-    Returns
-    -------
-    notes : tuple of Note
-        One where the two differ by more than the readings scatter
-        (Student's t, 95 %), or more than 10 % where a single stretched reading
-        gives no scatter; empty where they agree.
-
-    Raises
-    ------
-    DataError
-        If a diameter or strain is impossible, or no diameter is stated beside
-        stretched ones.
+    One where the two differ by more than the readings scatter (Student's t, 95 %), or more than 10
+    % where a single stretched reading gives no scatter; empty where they agree.
 
     Notes
     -----

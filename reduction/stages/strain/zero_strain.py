@@ -241,11 +241,6 @@ def jumps_of_length(
     jumps : list of tuple of float
         Time of the first reading after it, and its size. [s], [m]
 
-    Raises
-    ------
-    IndexError
-        If the arrays differ in length.
-
     Notes
     -----
     Causes are a stroke that is reset to zero under load, and a grip or extensometer that slips.

@@ -58,11 +58,6 @@ def relative_deviations(
     deviations : ndarray, shape (n_inputs, n_specimens, n_cycles)
         Relative to the mean; NaN in cycles that lack a quantity. [1]
 
-    Raises
-    ------
-    AttributeError
-        If the table has no such quantity.
-
     Notes
     -----
     A cycle that lacks one quantity is left out of all, as required for type A of several quantities
@@ -117,11 +112,6 @@ def covariance_of_means(deviations: Floats) -> tuple[Floats, Floats]:
         NaN where there are fewer than three cycles. [1]
     degrees_of_freedom : ndarray, shape (n_specimens,)
         Cycles less one. [1]
-
-    Raises
-    ------
-    DataError
-        Never.
 
     Notes
     -----

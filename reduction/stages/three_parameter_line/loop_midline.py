@@ -56,11 +56,6 @@ def tension_above_midline(
         Mean over the cycles, and scatter of that mean; NaN with fewer than three cycles of 12
         samples. [N]
 
-    Raises
-    ------
-    ValueError
-        If strain or tension is not numeric.
-
     Notes
     -----
     See the module.  Each cycle is fitted separately, so that drift and creep add no curvature.
@@ -140,11 +135,6 @@ def chord_of_spring(
     -------
     chord, above : ndarray, shape (...)
         NaN where K_0 is not known as far as the ends. [N], [N]
-
-    Raises
-    ------
-    ValueError
-        If the shapes do not match.
 
     Notes
     -----

@@ -560,11 +560,6 @@ def slope_of_cubic(tension: ArrayLike, coefficient: ArrayLike) -> Floats:
     quasi_static_spring_constant : ndarray, shape (...)
         NaN where the slope of strain is not positive. [N]
 
-    Raises
-    ------
-    IndexError
-        If there are fewer than four coefficients.
-
     Notes
     -----
     Source: [1]_, sec. 4.4.2, and Tables 8 and 9 for the cubic.
@@ -901,11 +896,6 @@ def quasi_static_spring_constant(pull: SlowPull, tension: ArrayLike) -> tuple[Fl
         NaN outside the range of use, extended by a hundredth of the range, and
         where the slope is not positive. [N]
 
-    Raises
-    ------
-    ValueError
-        If the tension is not numeric.
-
     Notes
     -----
     Source: [1]_, sec. 4.4.2: it "must be calculated at the mean load level of interest and
@@ -955,11 +945,6 @@ def strain_at_tension(pull: SlowPull, tension: ArrayLike) -> tuple[Floats, Float
     -------
     strain, standard_uncertainty : ndarray, shape (...)
         From the spline, relative to the reference length; NaN outside the range of use. [1]
-
-    Raises
-    ------
-    ValueError
-        If the tension is not numeric.
 
     Notes
     -----
@@ -1040,11 +1025,6 @@ def spring_constant_ratio(
     -------
     ratio, standard_uncertainty : ndarray, shape (...)
         NaN where either pull has no K_0. [1]
-
-    Raises
-    ------
-    ValueError
-        If the tension is not numeric.
 
     Notes
     -----
