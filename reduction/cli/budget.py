@@ -68,8 +68,8 @@ def show_budget(path: Path, quantity: str, places: Sequence[str], *, output: Com
         )
     output.show(table)
     output.say(
-        f"value {short(budget.value * scale)} {unit}, standard uncertainty "
-        f"{short(budget.standard_uncertainty * scale, 3)} {unit}"
+        f"value {short(budget.value * scale)} {unit}, standard uncertainty"
+        f" {short(budget.standard_uncertainty * scale, 3)} {unit}"
     )
     output.say(
         f"expanded uncertainty {short(budget.expanded_uncertainty * scale, 3)} {unit} "

@@ -616,11 +616,11 @@ def _stiffness_in_words(state: WorkingState, share: float, output: CommandOutput
             " includes what its loop leaves open about a smaller cycle"
         )
     return (
-        f"EA {per_newton * state.secant_spring_constant:.4g} {force} over {span}, "
-        f"{per_newton * state.least_spring_constant:.4g} to "
-        f"{per_newton * state.greatest_spring_constant:.4g} from the tests that cover it ({tests}, "
-        f"each from {per_newton * state.common_low:.4g} to "
-        f"{per_newton * state.common_high:.4g} {force}{nearest})"
+        f"EA {per_newton * state.secant_spring_constant:.4g} {force} over {span},"
+        f" {per_newton * state.least_spring_constant:.4g} to"
+        f" {per_newton * state.greatest_spring_constant:.4g} from the tests that cover it ({tests},"
+        f" each from {per_newton * state.common_low:.4g} to {per_newton * state.common_high:.4g}"
+        f" {force}{nearest})"
     )
 
 
@@ -638,8 +638,8 @@ def _show_working(number: int, state: WorkingState, share: float, output: Comman
         told += f"; cycles {per_newton * state.low:.4g} to {per_newton * state.high:.4g} {force}"
         if np.isfinite(state.secant_spring_constant):
             told += (
-                f", {per_metre * state.minimum_length:.5g} to "
-                f"{per_metre * state.peak_length:.5g} {length}"
+                f", {per_metre * state.minimum_length:.5g} to {per_metre * state.peak_length:.5g}"
+                f" {length}"
             )
     share = float(point.peak_share.max())
     told += (
@@ -648,8 +648,7 @@ def _show_working(number: int, state: WorkingState, share: float, output: Comman
     ) + (f", {100 * share:.3g} % of its strength" if np.isfinite(share) else "")
     if state.sharing is not None:
         told += (
-            f"; by the tolerance of the lengths "
-            f"{per_newton * float(state.sharing.least_load):.4g} to "
-            f"{per_newton * float(state.sharing.greatest_load):.4g} {force} at the mean"
+            f"; by the tolerance of the lengths {per_newton * float(state.sharing.least_load):.4g}"
+            f" to {per_newton * float(state.sharing.greatest_load):.4g} {force} at the mean"
         )
     output.say(told + ("" if point.is_tested else "; NOT TESTED there"))

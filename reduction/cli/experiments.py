@@ -497,14 +497,14 @@ def _show_surfaces(
             continue
         _show_terms(surfaces, index, shown.scale, output)
         output.say(
-            f"r2{within} {short(surfaces.r2[index])}, "
-            f"adjusted {short(surfaces.adjusted_r2[index])}, "
-            f"predicted {short(surfaces.predicted_r2[index])}; "
-            f"F {short(surfaces.overall_f[index])}, p {short(surfaces.overall_p_value[index], 3)}"
+            f"r2{within} {short(surfaces.r2[index])}, adjusted"
+            f" {short(surfaces.adjusted_r2[index])}, predicted"
+            f" {short(surfaces.predicted_r2[index])}; F {short(surfaces.overall_f[index])}, p"
+            f" {short(surfaces.overall_p_value[index], 3)}"
         )
         output.say(
-            f"sigma {short(shown.scale * surfaces.sigma[index])} with "
-            f"{surfaces.degrees_of_freedom[index]} degrees of freedom"
+            f"sigma {short(shown.scale * surfaces.sigma[index])} with"
+            f" {surfaces.degrees_of_freedom[index]} degrees of freedom"
         )
         _show_anova(surfaces, index, shown.scale, output)
         _show_between_runs(surfaces, index, output)
@@ -522,9 +522,9 @@ def _show_between_runs(surfaces: ResponseSurfaces, index: int, output: CommandOu
     if not np.isfinite(share).any():
         return
     output.say(
-        f"lack of fit between the levels (standard uncertainty, not in the standard errors): "
-        f"{100 * np.nanmedian(share):.2g} % of the value at the median, "
-        f"{100 * np.nanmax(share):.2g} % at most"
+        "lack of fit between the levels (standard uncertainty, not in the standard errors):"
+        f" {100 * np.nanmedian(share):.2g} % of the value at the median,"
+        f" {100 * np.nanmax(share):.2g} % at most"
     )
 
 
@@ -658,11 +658,11 @@ def _show_effects(
         output.show(table)
         of = "the dummies" if effects.error_from == "dummy" else "Lenth"
         output.say(
-            f"significant at {100 * (1 - SIGNIFICANCE):g} %: above "
-            f"{short(scale * effects.minimum_significant_effect[index])}, all factors together "
-            f"{short(scale * effects.simultaneous_minimum_effect[index])}; standard error by {of} "
-            f"{short(scale * effects.effect_standard_error[index])} with "
-            f"{short(effects.degrees_of_freedom, 3)} degrees of freedom"
+            f"significant at {100 * (1 - SIGNIFICANCE):g} %: above"
+            f" {short(scale * effects.minimum_significant_effect[index])}, all factors together"
+            f" {short(scale * effects.simultaneous_minimum_effect[index])}; standard error by {of}"
+            f" {short(scale * effects.effect_standard_error[index])} with"
+            f" {short(effects.degrees_of_freedom, 3)} degrees of freedom"
         )
         output.say("")
     output.say_each("note", notes)

@@ -305,9 +305,9 @@ def _filled(wanted: LookupRequest, lines: Sequence[LineSource]) -> dict[str, Flo
         high = min(one[name][1] for one in ends if name in one)
         if low > high and name not in wanted.levels:
             raise DataError(
-                f"the tested ranges of {wanted.quantity} of "
-                f"{' and '.join(line.name for line in lines)} has no {name.replace('_', ' ')} in "
-                "common",
+                f"the tested ranges of {wanted.quantity} of"
+                f" {' and '.join(line.name for line in lines)} has no {name.replace('_', ' ')} in"
+                " common",
                 found=f"one from {low:.5g}, one to {high:.5g} (SI)",
                 hint=f"Give --{name.replace('_', '-')}, and --extrapolate flag.",
             )

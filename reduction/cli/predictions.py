@@ -163,10 +163,10 @@ def _show_hose(hose: PredictedHose, output: CommandOutput) -> None:
     pressure, per_pascal = output.unit("Pa")
     small = shown("small length", output.system)
     output.say(
-        f"hose {hose.plan.name}: {np.degrees(float(hose.plan.design.wrap_angle)):.4g} degrees from "
-        f"the axis, {hose.number_of_cords:.1f} cords, ribbon "
-        f"{' and '.join(short(small.factor * width, 4) for width in hose.ribbon_width)} "
-        f"{small.unit} wide"
+        f"hose {hose.plan.name}: {np.degrees(float(hose.plan.design.wrap_angle)):.4g} degrees from"
+        f" the axis, {hose.number_of_cords:.1f} cords, ribbon"
+        f" {' and '.join(short(small.factor * width, 4) for width in hose.ribbon_width)}"
+        f" {small.unit} wide"
     )
     table = table_of(
         "event", "strain [%]", "u [%]", f"tension [{force}]", f"u [{force}]",
@@ -395,9 +395,9 @@ def _show_armour(found: PredictedArmour, output: CommandOutput) -> None:
     )
     if found.strength is not None:
         output.say(
-            f"first yield: {found.layer_names[found.strength.governing_layer]} at "
-            f"{100 * found.strength.strain:.4g} %, tension of the cable "
-            f"{short(per_newton * found.strength.tension)} {force}"
+            f"first yield: {found.layer_names[found.strength.governing_layer]} at"
+            f" {100 * found.strength.strain:.4g} %, tension of the cable"
+            f" {short(per_newton * found.strength.tension)} {force}"
         )
     for sentence in found.use[0].statement:
         output.say(f"  {sentence}")
@@ -487,10 +487,10 @@ def _show_wave_load(found: PredictedWaveLoad, output: CommandOutput) -> None:
     section, theory = found.load.section, found.theory
     depth = float(section.immersion_depth)
     output.say(
-        f"immersed {per_metre * depth:.4g} {length} of "
-        f"{per_metre * float(section.outer_diameter):.4g} {length} "
-        f"({100 * depth / float(section.outer_diameter):.1f} %), "
-        f"{1e4 * float(section.submerged_section_area):.4g} cm2 of its section"
+        f"immersed {per_metre * depth:.4g} {length} of"
+        f" {per_metre * float(section.outer_diameter):.4g} {length}"
+        f" ({100 * depth / float(section.outer_diameter):.1f} %),"
+        f" {1e4 * float(section.submerged_section_area):.4g} cm2 of its section"
     )
     output.say(
         f"wave of {per_metre * theory.wave_length:.4g} {length}: d/L {theory.relative_depth:.3g}, "
@@ -499,9 +499,9 @@ def _show_wave_load(found: PredictedWaveLoad, output: CommandOutput) -> None:
     )
     regime = found.regime
     output.say(
-        f"Keulegan-Carpenter {float(regime.keulegan_carpenter_number):.3g}, "
-        f"Reynolds {short(float(regime.reynolds_number), 3)}, "
-        f"drag over inertia {float(regime.drag_to_inertia):.3g}"
+        f"Keulegan-Carpenter {float(regime.keulegan_carpenter_number):.3g}, Reynolds"
+        f" {short(float(regime.reynolds_number), 3)}, drag over inertia"
+        f" {float(regime.drag_to_inertia):.3g}"
     )
     table = table_of(
         f"load [{force}/{length}]", "maximum", "at [s]", "minimum", "at [s]", "classic maximum",
@@ -521,10 +521,10 @@ def _show_wave_load(found: PredictedWaveLoad, output: CommandOutput) -> None:
     output.show(table)
     anchor = found.anchor
     output.say(
-        f"anchor force: {short(per_newton * float(anchor.combined))} {force} combined; "
-        f"{short(per_newton * float(anchor.separate))} {force} as the sum of wave "
-        f"{short(per_newton * float(anchor.wave), 4)}, current "
-        f"{per_newton * float(anchor.current):.4g} and wind {per_newton * float(anchor.wind):.4g}"
+        f"anchor force: {short(per_newton * float(anchor.combined))} {force} combined;"
+        f" {short(per_newton * float(anchor.separate))} {force} as the sum of wave"
+        f" {short(per_newton * float(anchor.wave), 4)}, current"
+        f" {per_newton * float(anchor.current):.4g} and wind {per_newton * float(anchor.wind):.4g}"
     )
     output.say_each("note", found.notes)
 

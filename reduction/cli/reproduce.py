@@ -146,9 +146,9 @@ def _numbers(counts: Counts) -> list[str]:
 def _unexplained(item: ReproducedItem) -> str:
     cell = item.cell
     return (
-        f"{cell.report}, table {cell.table}, {cell.row}, {cell.column}: printed number does not "
-        f"come back; found {cell.printed} {cell.unit}; "
-        f"needed {number_beside(item.recomputed, cell.printed) or 'a number'} ({item.how})."
+        f"{cell.report}, table {cell.table}, {cell.row}, {cell.column}: printed number does not"
+        f" come back; found {cell.printed} {cell.unit}; needed"
+        f" {number_beside(item.recomputed, cell.printed) or 'a number'} ({item.how})."
     )
 
 

@@ -304,9 +304,9 @@ def _over(
             found.append(
                 Caution(
                     "share-over-limit",
-                    f"the peak tension of {_named(runs, names)} is above "
-                    f"{100 * peak_share_limit:.4g} % of the rated break strength, up to "
-                    f"{100 * float(np.max(sheet.peak_share)):.4g} %",
+                    f"the peak tension of {_named(runs, names)} is above"
+                    f" {100 * peak_share_limit:.4g} % of the rated break strength, up to"
+                    f" {100 * float(np.max(sheet.peak_share)):.4g} %",
                     "Lower the levels: the line may creep, heat or break in these runs.",
                     runs,
                 )

@@ -787,11 +787,10 @@ def _notes_of(
         worst = int(np.argmax(np.abs(change)))
         notes.append(
             "the mean of the pieces falls where one ends and the next begins:"
-            f" {100 * moved.mean():.0f} %"
-            " of the nodes were moved to keep the curve from being softer than"
-            f" {rule.least_slope:g} of the softest piece there, by "
-            f"{np.sqrt(np.mean(change**2)):.4g} N rms, most by {change[worst]:+.4g} N "
-            f"({100 * share[worst]:+.1f} %) at strain {strain[worst]:.4g}"
+            f" {100 * moved.mean():.0f} % of the nodes were moved to keep the curve from being"
+            f" softer than {rule.least_slope:g} of the softest piece there, by"
+            f" {np.sqrt(np.mean(change**2)):.4g} N rms, most by {change[worst]:+.4g} N"
+            f" ({100 * share[worst]:+.1f} %) at strain {strain[worst]:.4g}"
         )
         # over all nodes: near slack a local share means nothing
         off = float(np.sqrt(np.sum(change**2) / np.sum(blend.tension**2)))

@@ -151,8 +151,8 @@ def _orcaflex_text(line: ExportLine) -> str:
         f"    Cd: [{real_number(normal)}, ~, {real_number(axial)}]",
         f"    NormalDragLiftDiameter: {real_number(nominal)}",
         f"    AxialDragLiftDiameter: {real_number(nominal)}",
-        f"    Ca: [{real_number(water.normal_added_mass)}, ~, "
-        f"{real_number(water.axial_added_mass)}]",
+        f"    Ca: [{real_number(water.normal_added_mass)}, ~,"
+        f" {real_number(water.axial_added_mass)}]",
         "",
     ]
     return "\n".join(text)
@@ -190,15 +190,14 @@ def _raft_text(line: ExportLine) -> str:
     head = header_lines(
         line,
         None,
-        "RAFT has one stiffness and no damping per line: this is the linear stiffness of one"
-        " cycle, "
-        f"K_ap {plain_number(cycle.stiffness, 6)} N about {plain_number(cycle.tension, 6)} N and "
-        f"strain {cycle.strain:.6g}, {cycle.holds}",
+        "RAFT has one stiffness and no damping per line: this is the linear stiffness of one cycle,"
+        f" K_ap {plain_number(cycle.stiffness, 6)} N about {plain_number(cycle.tension, 6)} N and"
+        f" strain {cycle.strain:.6g}, {cycle.holds}",
         f"its hysteresis energy, {plain_number(cycle.hysteresis_energy, 4)} J/m, is NOT included",
-        f"it differs from the slow curve by up to "
-        f"{plain_number(100 * float(off[inside].max(initial=0)), 2)} "
-        "percent of the greatest tension within three amplitudes of the mean, and by "
-        f"{plain_number(100 * float(off.max()), 2)} percent over the whole of it: export again for"
+        "it differs from the slow curve by up to"
+        f" {plain_number(100 * float(off[inside].max(initial=0)), 2)} percent of the greatest"
+        " tension within three amplitudes of the mean, and by"
+        f" {plain_number(100 * float(off.max()), 2)} percent over the whole of it: export again for"
         " another mean",
         f"a line of {length:g} m is written as {length * share:.6g} m, the length at which the "
         f"straight line has no tension: take {share:.6g} times the length of yours, too; "
@@ -377,9 +376,9 @@ def _whoicable_text(line: ExportLine, *, form: WhoiCableForm = "expression") -> 
     start, powers = _with_straight_ends(smooth, end_slope(at, load))
     tension = _expression(start, powers)
     remarks = [
-        f"expressions: {smooth.start.size} cubic pieces, greatest error "
-        f"{plain_number(smooth.error, 3)} N {local_words(smooth)}; beyond strain "
-        f"{smooth.end:.6g} and below zero a straight line goes on and nothing is known"
+        f"expressions: {smooth.start.size} cubic pieces, greatest error"
+        f" {plain_number(smooth.error, 3)} N {local_words(smooth)}; beyond strain {smooth.end:.6g}"
+        " and below zero a straight line goes on and nothing is known"
     ]
     if form == "table":
         # Cable continues with the last step of a table, which may be a bend
@@ -599,6 +598,6 @@ def closeness_of(line: ExportLine, to: str, form: str | None) -> tuple[str, ...]
     damping = line.damping if form == "damped-table" else None
     return (
         *(() if damping is None else (damping_words(damping),)),
-        f"{doubt}the written curve differs from the computed one by at most "
-        f"{plain_number(found.error, 3)} N {local_words(found)}",
+        f"{doubt}the written curve differs from the computed one by at most"
+        f" {plain_number(found.error, 3)} N {local_words(found)}",
     )

@@ -325,13 +325,12 @@ def moordyn_files(line: ExportLine, stem: str, *, form: MoorDynForm = "table") -
 def _stiffness_words(part: Viscoelasticity) -> tuple[str, ...]:
     """Description of the stiffness values."""
     return (
-        f"EA_s {plain_number(part.static_stiffness, 6)} N is K_0; EA_d "
-        f"{plain_number(part.fast_stiffness, 6)} N is K_0 + "
-        f"K_1; relaxation time {part.relaxation_time:.4g} s",
-        f"the dashpot beside the slow spring is "
-        f"{plain_number(part.slow_dashpot_coefficient, 6)} N s, which "
-        f"behaves as N = K_1 tau = {plain_number(part.dashpot_coefficient, 6)} N s of the "
-        f"Maxwell form",
+        f"EA_s {plain_number(part.static_stiffness, 6)} N is K_0; EA_d"
+        f" {plain_number(part.fast_stiffness, 6)} N is K_0 + K_1; relaxation time"
+        f" {part.relaxation_time:.4g} s",
+        f"the dashpot beside the slow spring is {plain_number(part.slow_dashpot_coefficient, 6)} N"
+        f" s, which behaves as N = K_1 tau = {plain_number(part.dashpot_coefficient, 6)} N s of the"
+        " Maxwell form",
         f"found at {part.holds}" if part.holds else "",
     )
 
@@ -344,12 +343,11 @@ def _running_words(part: Viscoelasticity) -> str:
     # H = pi T_a^2 E'' / K_ap^2: a cycle of the same tension amplitude strains less if stiffer
     energy = running.imag / held.imag * (abs(held) / abs(running)) ** 2
     return (
-        "MoorDyn uses the running tension of the slow part as the mean: a small cycle at "
-        f"{plain_number(part.frequency, 4)} Hz differs from static-dynamic by "
-        f"{100 * (abs(running) / abs(held) - 1):+.1f} percent in K_ap, "
-        f"{plain_number(abs(running))} N, and by "
-        f"{100 * (energy - 1):+.1f} percent in hysteresis energy at equal tension amplitude; where "
-        "the energy matters, use static-dynamic"
+        "MoorDyn uses the running tension of the slow part as the mean: a small cycle at"
+        f" {plain_number(part.frequency, 4)} Hz differs from static-dynamic by"
+        f" {100 * (abs(running) / abs(held) - 1):+.1f} percent in K_ap,"
+        f" {plain_number(abs(running))} N, and by {100 * (energy - 1):+.1f} percent in hysteresis"
+        " energy at equal tension amplitude; where the energy matters, use static-dynamic"
     )
 
 

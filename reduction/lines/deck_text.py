@@ -54,9 +54,8 @@ def header_lines(line: ExportLine, curve: ThinnedCurve | None, *remarks: str) ->
             f"Curve: {line.curve}",
             f"Range: {range_of(line)}. The curve ends at strain {curve.strain[-1]:.6g} and "
             f"tension {plain_number(curve.tension[-1], 6)} N; not known beyond",
-            f"{min(curve.strain.size, line.strain.size)} points of {line.strain.size}; greatest "
-            "error "
-            f"{plain_number(curve.error, 3)} N {local_words(curve)}",
+            f"{min(curve.strain.size, line.strain.size)} points of {line.strain.size}; greatest"
+            f" error {plain_number(curve.error, 3)} N {local_words(curve)}",
         ]
         if curve.words:
             told.append(f"At the start: {curve.words}")

@@ -361,11 +361,10 @@ def _said_identified(
     """
     spring = part.fast_stiffness - part.static_stiffness
     return (
-        f"K_1 {plain_number(spring)} N and tau {plain_number(part.relaxation_time, 4)} s "
-        f"are identified from {measured_as} "
-        f"of K_ap and H and from K_0 at these levels: the three-parameter line gives back K_ap "
-        f"{plain_number(part.apparent_stiffness)} N and H "
-        f"{plain_number(part.hysteresis_energy_at(part.frequency, amplitude), 4)} J/m there"
+        f"K_1 {plain_number(spring)} N and tau {plain_number(part.relaxation_time, 4)} s are"
+        f" identified from {measured_as} of K_ap and H and from K_0 at these levels: the"
+        f" three-parameter line gives back K_ap {plain_number(part.apparent_stiffness)} N and H"
+        f" {plain_number(part.hysteresis_energy_at(part.frequency, amplitude), 4)} J/m there"
         + _said_known(half, is_exact=is_exact)
     )
 
@@ -379,8 +378,8 @@ def _said_known(half: Mapping[str, Floats], *, is_exact: bool) -> str:
         return "; K_ap or H has no interval, and so have K_1 and tau none"
     without = ", K_0 taken as exact: it has no interval" if is_exact else ""
     return (
-        f"; 95 percent of K_1 +-{plain_number(spring, 3)} N, of tau "
-        f"+-{plain_number(time, 3)} s{without}"
+        f"; 95 percent of K_1 +-{plain_number(spring, 3)} N, of tau +-{plain_number(time, 3)}"
+        f" s{without}"
     )
 
 
@@ -411,10 +410,9 @@ def _said_instead(
     """Statement that the printed K_1 and tau are used, and how far off they are."""
     spring = part.fast_stiffness - part.static_stiffness
     return (
-        f"DOUBTFUL: K_1 {plain_number(spring)} N and tau "
-        f"{plain_number(part.relaxation_time, 4)} s are those of the "
-        f"line's own surfaces; none give back K_ap and H there: {REASONS[reason]}. They give "
-        f"{_against(part, measured, amplitude)}"
+        f"DOUBTFUL: K_1 {plain_number(spring)} N and tau {plain_number(part.relaxation_time, 4)} s"
+        " are those of the line's own surfaces; none give back K_ap and H there:"
+        f" {REASONS[reason]}. They give {_against(part, measured, amplitude)}"
     )
 
 
@@ -475,8 +473,8 @@ def _said_over_frequency(part: Viscoelasticity, frequencies: Floats, found: Desi
         outside = "" if inside or math.isnan(found.surface_low[row]) else ", OUTSIDE its interval"
         share = f" ({100 * (model / own - 1):+.1f} percent{outside})" if own > 0 else ""
         rows.append(
-            f"{plain_number(frequency, 3)} Hz {plain_number(model)} against "
-            f"{plain_number(own)} N{share}"
+            f"{plain_number(frequency, 3)} Hz {plain_number(model)} against {plain_number(own)}"
+            f" N{share}"
         )
     return (
         "one K_1 and tau do not fit every frequency; K_ap of the exported line against the "
@@ -489,8 +487,8 @@ def _interval_of(found: DesignValues) -> str:
     if not math.isfinite(float(found.surface_low)):
         return "an interval, which the source does not have"
     return (
-        f"{plain_number(float(found.surface_low), 4)} to "
-        f"{plain_number(float(found.surface_high), 4)} {found.unit}"
+        f"{plain_number(float(found.surface_low), 4)} to"
+        f" {plain_number(float(found.surface_high), 4)} {found.unit}"
     )
 
 
@@ -824,8 +822,8 @@ def _over_tests(
             at, own = one.at[row], float(one.value[row])
             model = part.apparent_stiffness_at(float(at[frequency]))
             rows.append(
-                f"{one.tests[row]} ({plain_number(at[frequency], 3)} Hz,"
-                f" +- {plain_number(at[amplitude], 4)} N) {plain_number(model, 4)} against"
+                f"{one.tests[row]} ({plain_number(at[frequency], 3)} Hz, +-"
+                f" {plain_number(at[amplitude], 4)} N) {plain_number(model, 4)} against"
                 f" {plain_number(own, 4)} N ({100 * (model / own - 1):+.1f} percent)"
             )
     if not rows:
@@ -867,10 +865,9 @@ def _growth(
     slope, start = (float(one) for one in np.polyfit(means, total, 1))
     worst = float(np.abs(slope * means + start - total).max())
     words = (
-        f"growth of the dynamic stiffness with the mean tension: {slope:.4g}, a straight line "
-        f"through {means.size} of {n_means} means over the tested ones, off by up to "
-        f"{plain_number(worst, 3)} N, "
-        f"{100 * worst / fast:.2g} percent of EA_d"
+        f"growth of the dynamic stiffness with the mean tension: {slope:.4g}, a straight line"
+        f" through {means.size} of {n_means} means over the tested ones, off by up to"
+        f" {plain_number(worst, 3)} N, {100 * worst / fast:.2g} percent of EA_d"
     )
     if slope * np.ptp(means) < _ROUNDING * np.abs(total).max():
         return 0.0, f"{words}; it does not increase, so no slope is exported"

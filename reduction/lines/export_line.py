@@ -223,11 +223,10 @@ def damping_words(damping: CycleDamping) -> str:
     known = f" +-{plain_number(spread, 2)} (95 percent)" if math.isfinite(spread) else ""
     doubt = "DOUBTFUL, the interval includes zero: " if spread >= energy else ""
     return (
-        f"{doubt}internal damping {plain_number(damping.coefficient, 4)} N s, by which a "
-        f"sinusoidal cycle of {damping.frequency:.4g} Hz and strain amplitude "
-        f"{damping.strain_amplitude:.4g} has the hysteresis energy of the test, "
-        f"{plain_number(energy, 4)} J/m{known}; at twice the frequency it has twice as much, which"
-        " was not measured"
+        f"{doubt}internal damping {plain_number(damping.coefficient, 4)} N s, by which a sinusoidal"
+        f" cycle of {damping.frequency:.4g} Hz and strain amplitude {damping.strain_amplitude:.4g}"
+        f" has the hysteresis energy of the test, {plain_number(energy, 4)} J/m{known}; at twice"
+        " the frequency it has twice as much, which was not measured"
     )
 
 
@@ -412,10 +411,10 @@ def start_against(
             worst = int(np.argmax(np.abs(off)))
             doubt = "DOUBTFUL: " if abs(off[worst]) > _DOUBT else ""
             said.append(
-                f"{doubt}the straight start is off by {100 * off[worst]:+.0f} percent at strain "
-                f"{plain_number(at[worst], 4)}, where {other.name} has "
-                f"{plain_number(measured[worst], 4)} N; exported "
-                "without the test, the tether has what each measured"
+                f"{doubt}the straight start is off by {100 * off[worst]:+.0f} percent at strain"
+                f" {plain_number(at[worst], 4)}, where {other.name} has"
+                f" {plain_number(measured[worst], 4)} N; exported without the test, the tether has"
+                " what each measured"
             )
     return tuple(said)
 
@@ -738,8 +737,8 @@ def without_damping(line: ExportLine) -> str:
         ends = continued_tension(line, np.array([cycle.strain - half, cycle.strain + half]))
         of, stiffness = "the curve over that cycle", float(np.ptp(ends)) / (2 * half)
     return (
-        f"no damping in this form: the hysteresis energy of a cycle, "
-        f"{plain_number(cycle.hysteresis_energy, 4)} J/m at {cycle.holds}, is NOT included; K_ap"
+        "no damping in this form: the hysteresis energy of a cycle,"
+        f" {plain_number(cycle.hysteresis_energy, 4)} J/m at {cycle.holds}, is NOT included; K_ap"
         f" of {of} is {plain_number(stiffness, 6)} N"
     )
 
@@ -953,9 +952,9 @@ def guards_of(line: ExportLine) -> tuple[str, ...]:
     is_stated = math.isfinite(line.wet_linear_density)
     if mass < SEA_WATER * math.pi / 4 * volume**2 and not is_stated:
         words.append(
-            f"DOUBTFUL: the line floats: {mass:.4g} kg/m displaces "
-            f"{SEA_WATER * math.pi / 4 * volume**2:.4g} kg/m of water. Unless it does, state "
-            "--wet-linear-density"
+            f"DOUBTFUL: the line floats: {mass:.4g} kg/m displaces"
+            f" {SEA_WATER * math.pi / 4 * volume**2:.4g} kg/m of water. Unless it does, state"
+            " --wet-linear-density"
         )
     elif volume > (_GREATEST_FILL if is_stated else 1 + _SAME) * diameter:
         words.append(

@@ -219,9 +219,9 @@ def _of_test(archive: xr.Dataset, curve: CurveName, name: str | None) -> dict[st
             spread = None if spread is None else _with_ends(spread, added)
             notes.append(
                 f"both branches are known from strain {plain_number(tested[0], 4)} to"
-                f" {plain_number(tested[1], 4)}; from there a straight line goes on to the"
-                " turning points of the mean cycle, at"
-                f" {plain_number(strain[0], 4)} and {plain_number(strain[-1], 4)}"
+                f" {plain_number(tested[1], 4)}; from there a straight line goes on to the turning"
+                f" points of the mean cycle, at {plain_number(strain[0], 4)} and"
+                f" {plain_number(strain[-1], 4)}"
             )
         if turns.strain[1] - strain[-1] > _SHORT * (turns.strain[1] - turns.strain[0]):
             notes.append(
@@ -472,8 +472,8 @@ def line_from_assembly(line: DeployedLine, **stated: Any) -> ExportLine:
                 },
             ),
             *(f"DOUBTFUL: {doubt}" for doubt in line.doubts),
-            f"strain is of the unstretched length of the whole assembly, "
-            f"{assembly.total_length[0]:.6g} m: this is the length of the line in the deck",
+            "strain is of the unstretched length of the whole assembly,"
+            f" {assembly.total_length[0]:.6g} m: this is the length of the line in the deck",
             *line.notes,
         ),
         is_synthetic=line.source.is_synthetic,
@@ -888,9 +888,8 @@ def _points(source: LineSource, curve: LineCurve) -> tuple[Floats, Floats, list[
     below = (strain < 0) | ((strain == 0) & (tension > 0))
     if below.any() and tension[below][-1] < _LEAST_CUT * tension[-1]:
         notes.append(
-            f"the polynomial has strain below zero up to "
-            f"{plain_number(tension[below][-1], 4)} N, from the constant of its fit; that part is"
-            " left out"
+            f"the polynomial has strain below zero up to {plain_number(tension[below][-1], 4)} N,"
+            " from the constant of its fit; that part is left out"
         )
         strain, tension = strain[~below], tension[~below]
     if curve.coefficient.size and strain[0] > 0 and tension[0] == 0:
@@ -911,11 +910,10 @@ def _without_constant(strain: Floats, tension: Floats) -> tuple[Floats, Floats, 
     first = int(np.argmax(joins))
     doubt = "DOUBTFUL: " if constant > _LARGE_CONSTANT else ""
     said = (
-        f"{doubt}the regression has strain {constant:.4g} at no tension, a constant of the fit,"
-        " not measured slack: replaced by a straight line from zero that joins it at strain "
-        f"{plain_number(strain[first], 4)} and {plain_number(tension[first], 4)} N; as "
-        f"slack it would be "
-        f"{100 * constant:.2g} m in 100 m of line"
+        f"{doubt}the regression has strain {constant:.4g} at no tension, a constant of the fit, not"
+        " measured slack: replaced by a straight line from zero that joins it at strain"
+        f" {plain_number(strain[first], 4)} and {plain_number(tension[first], 4)} N; as slack it"
+        f" would be {100 * constant:.2g} m in 100 m of line"
     )
     return strain[first:], tension[first:], said
 

@@ -399,8 +399,7 @@ def table_of_difference(
         _column("other_is_inside", "", "within the tested range, second line", b.is_inside),
         _column("is_untested", "", "farther from the runs than any run, first line",
                 a.is_untested),
-        _column("other_is_untested", "", "farther from the runs than any run, second"
-                                         " line",
+        _column("other_is_untested", "", "farther from the runs than any run, second line",
                 b.is_untested),
         _column(f"peak_{_PERCENT}", "%", "greatest tension so, first line", 100 * a.peak_share),
         _column(f"minimum_{_PERCENT}", "%", "least tension so, first line", 100 * a.minimum_share),

@@ -469,8 +469,8 @@ def column_warnings(
     worst = own[0].worst
     unit = quantity_of(name).unit
     given = " or ".join(
-        f"{plain_number(one.consistent[worst], 4)} {unit} ({one.slow_pull}; "
-        f"{_shown(abs(one.z[worst]))} standard errors away)"
+        f"{plain_number(one.consistent[worst], 4)} {unit} ({one.slow_pull};"
+        f" {_shown(abs(one.z[worst]))} standard errors away)"
         for one in own
     )
     return (

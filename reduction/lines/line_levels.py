@@ -281,8 +281,7 @@ def evaluate_levels(levels: LineLevels, at: Floats, name: str) -> _LevelPoints:
         near = min(known, key=lambda one: _distance(levels, one.at, first))
         raise DataError(
             f"{int((~is_found).sum())} of {size} points are neither a level at which"
-            f" {levels.quantity} of "
-            f"{name} was tested nor between two tested levels",
+            f" {levels.quantity} of {name} was tested nor between two tested levels",
             found=_level_words(levels, first.tolist()),
             needed=f"one of the {len(known)} tested levels; the nearest is {near.words}",
             hint="`--list` shows every level; nothing is extrapolated, not even flagged.",

@@ -270,8 +270,7 @@ def _design_values(
     if below:
         notes.append(
             f"{below} of {inside.size} values {'is' if below == 1 else 'are'} negative, which"
-            f" {of.quantity} cannot be: the"
-            " surface is not valid there"
+            f" {of.quantity} cannot be: the surface is not valid there"
         )
     return DesignValues(
         quantity=of.quantity,
@@ -303,9 +302,8 @@ def _scatter_note(of: LineSurface | LineCurve | LineLevels, words: tuple[str, st
     """Scatter that the intervals include or leave out."""
     if isinstance(of, LineSurface) and np.isfinite(of.line_scatter):
         return (
-            f"specimens of this kind scatter by about {100 * of.line_scatter:.0f} % "
-            "(CG-D-39-80, sec. 4.4.1): included only in the intervals of the kind and of another "
-            "specimen"
+            f"specimens of this kind scatter by about {100 * of.line_scatter:.0f} % (CG-D-39-80,"
+            " sec. 4.4.1): included only in the intervals of the kind and of another specimen"
         )
     return interval_note(*words)
 
@@ -381,8 +379,8 @@ def _values_of_curve(
             if low < first < high
         )
         raise DataError(
-            f"outside the tested range of {curve.quantity} of {line.name}: "
-            f"{int((~inside).sum())} of {inside.size} points",
+            f"outside the tested range of {curve.quantity} of {line.name}: {int((~inside).sum())}"
+            f" of {inside.size} points",
             found=f"{curve.variable} {plain_number(first)}{unit}",
             needed=f"{plain_number(curve.low)} to {plain_number(curve.high)}{unit}{gaps}",
             hint=". ".join(
@@ -481,9 +479,9 @@ def _joints(curve: LineCurve, at: Floats) -> list[str]:
         return []
     meet = (np.diff(curve.at) == 0) & (np.diff(curve.value) != 0)
     return [
-        f"at {curve.variable} {plain_number(curve.at[place])} two pieces meet: "
-        f"{plain_number(curve.value[place], 4)}"
-        f"{_unit(curve.quantity)} below, {plain_number(curve.value[place + 1], 4)} above"
+        f"at {curve.variable} {plain_number(curve.at[place])} two pieces meet:"
+        f" {plain_number(curve.value[place], 4)}{_unit(curve.quantity)} below,"
+        f" {plain_number(curve.value[place + 1], 4)} above"
         for place in np.flatnonzero(meet)
         if np.any(at == curve.at[place])
     ]
@@ -619,8 +617,8 @@ def _refuse_outside(
             asked, least, most = (plain_number(factor * float(one)) for one in (value, low, high))
             told.append(f"{name} {asked} {unit}, tested {least} to {most} {unit}")
     raise DataError(
-        f"outside the tested range of {surface.quantity} of {line.name}: "
-        f"{int((~inside).sum())} of {inside.size} points",
+        f"outside the tested range of {surface.quantity} of {line.name}: {int((~inside).sum())} of"
+        f" {inside.size} points",
         found="; ".join(told),
         needed="levels inside the tested range",
         hint=_HOW_FLAGGED,

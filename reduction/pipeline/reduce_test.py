@@ -701,8 +701,8 @@ def _stage_lines(located: Located, models: Sequence[StrainModel]) -> tuple[Step,
         Step("ingest", f"{record.n_rows_read} rows read, {record.n_samples} kept"),
         Step(
             "phases",
-            f"standstills: {standstills.n_standstills}, within "
-            f"{standstills.position_tolerance:.4g} m"
+            f"standstills: {standstills.n_standstills}, within {standstills.position_tolerance:.4g}"
+            " m"
             + (
                 ""
                 if standstills.tension_tolerance is None

@@ -955,13 +955,13 @@ def verdict_words(
         way = "above" if difference > 0 else "below"
         return (
             f"differs by {round(difference, places_of(difference, 4)):+,.9g} {unit} at"
-            f" {100 * validation.largest_ratio_strain:.4g} % strain,"
-            f" {validation.largest_ratio:.1f} times its standard uncertainty (a correct prediction"
-            f" stays below {validation.coverage_factor:.1f}): the prediction is {way} the test"
+            f" {100 * validation.largest_ratio_strain:.4g} % strain, {validation.largest_ratio:.1f}"
+            " times its standard uncertainty (a correct prediction stays below"
+            f" {validation.coverage_factor:.1f}): the prediction is {way} the test"
         )
     size = (
-        f"{factor * validation.median_limit:.3g} {unit} or "
-        f"{100 * validation.uncertainty_share:.2g} % of the {of} at the median"
+        f"{factor * validation.median_limit:.3g} {unit} or {100 * validation.uncertainty_share:.2g}"
+        f" % of the {of} at the median"
     )
     words = f"agrees within U, {size}"
     if validation.chi_square_probability < LEAST_PROBABILITY:

@@ -1036,9 +1036,8 @@ def predict_wave_load(
     slender = float(regime.diameter_to_length)
     if slender > GREATEST_DIAMETER_TO_LENGTH:
         notes.append(
-            f"the diameter is {100 * slender:.0f} % of the wave length: the hose scatters the "
-            "wave, and Morison's equation does not hold above "
-            f"{100 * GREATEST_DIAMETER_TO_LENGTH:.0f} %"
+            f"the diameter is {100 * slender:.0f} % of the wave length: the hose scatters the wave,"
+            f" and Morison's equation does not hold above {100 * GREATEST_DIAMETER_TO_LENGTH:.0f} %"
         )
     length = 2 * pi / wave.wave_number
     if abs(length / described.wave_length - 1) > _SAME_LENGTH:

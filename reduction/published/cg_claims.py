@@ -494,10 +494,10 @@ def _jacket(cell: Cell, pages: Pages) -> ReproducedItem:
     middle = np.mean if cell.column.endswith("low") else np.median
     return judge(
         cell, float(middle(of_mode)),
-        f"{middle.__name__} of three lives over the mode: "
-        f"{', '.join(f'{one:.1f}' for one in of_mode)}; medians of the lives of the text "
-        f"{medians:.1f}; over the mean life of Table 20 {lives.mean() / mean:.1f}, medians "
-        f"{ratio:.1f} ({low:.1f} to {high:.1f})",
+        f"{middle.__name__} of three lives over the mode:"
+        f" {', '.join(f'{one:.1f}' for one in of_mode)}; medians of the lives of the text"
+        f" {medians:.1f}; over the mean life of Table 20 {lives.mean() / mean:.1f}, medians"
+        f" {ratio:.1f} ({low:.1f} to {high:.1f})",
     )  # fmt: skip
 
 

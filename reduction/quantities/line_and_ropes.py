@@ -742,8 +742,8 @@ OF_PROGRAMME: tuple[Quantity, ...] = (
         measured(
             "creep_compliance_per_decade",
             "1",
-            "strain gained per decade of time, divided by the held tension "
-            "relative to the rated break strength",
+            "strain gained per decade of time, divided by the held tension relative to the rated"
+            " break strength",
             shares_errors=True,
             tables=("creep",),
         ),

@@ -835,8 +835,8 @@ OF_RECORD: tuple[Quantity, ...] = (
         measured(
             "test_slope_reading_spread",
             "1",
-            "loop slope between tension extremes minus that between strain "
-            "extremes, relative to K_ap",
+            "loop slope between tension extremes minus that between strain extremes, relative to"
+            " K_ap",
             tables=("amplitude",),
         ),
         measured(

@@ -697,8 +697,8 @@ def _check_size(part: Floats, piece: _Piece, key: str) -> None:
     )
     if absurd.size:
         raise DataError(
-            f"{key} has {absurd.size} values that no instrument can read, "
-            f"first at {piece.row_of(int(absurd[0]))}",
+            f"{key} has {absurd.size} values that no instrument can read, first at"
+            f" {piece.row_of(int(absurd[0]))}",
             found=f"{part[absurd[0]]:g} in SI",
             needed=f"at most {_ABSURD:g}",
             hint="Check the unit and the column; list a value that stands for a missing reading in"
@@ -736,8 +736,8 @@ def _counter(pieces: Sequence[_Piece], n_samples: int) -> tuple[Integers | None,
         odd = np.flatnonzero(whole[part] != numbers)
         if odd.size:
             raise DataError(
-                "the cycle counter is not a whole number, first at sample "
-                f"{part.start + int(odd[0]) + 1}",
+                "the cycle counter is not a whole number, first at sample"
+                f" {part.start + int(odd[0]) + 1}",
                 found=f"{block[odd[0]]:g}",
                 needed="whole numbers",
             )

@@ -64,10 +64,9 @@ def _unknown_mass(mass: float, usual: float, effect: float, cell: str) -> str:
         else "the position of the load cell and the mass attached to it are not stated"
     )
     return (
-        f"{lacks}: {mass:.3g} kg at a moving load cell would change EA by one standard"
-        f" uncertainty, {usual:g} kg (a grip for 22 kN) by {100 * effect:+.2f} %; a load cell on"
-        " the fixed"
-        " frame is not affected. State load_cell_at and attached_mass in the layout"
+        f"{lacks}: {mass:.3g} kg at a moving load cell would change EA by one standard uncertainty,"
+        f" {usual:g} kg (a grip for 22 kN) by {effect:+.2%}; a load cell on the fixed frame"
+        " is not affected. State load_cell_at and attached_mass in the layout"
     )
 
 
@@ -85,7 +84,7 @@ def _share(error: float) -> str:
 
 def _slack_growth(growth: float, effect: float) -> str:
     return (
-        f"the slack length grows by {1e3 * growth:.0f} mm ({100 * effect:.1f} %) from the first"
+        f"the slack length grows by {1e3 * growth:.0f} mm ({effect:.1%}) from the first"
         " test to the last (permanent set, or a splice that slipped; else check the slack row of"
         " the first test); strain refers to the mean slack length, and the intervals allow for"
         " another length in each test"
@@ -95,9 +94,8 @@ def _slack_growth(growth: float, effect: float) -> str:
 def _unknown_friction(size: float, of_energy: float, of_constant: float) -> str:
     return (
         "no mark was read during unloading: if friction makes the extension of the splices"
-        f" {100 * size:.0f} % larger there than during loading, the hysteresis energy is too"
-        " large by"
-        f" {100 * of_energy:.0f} % and EA by {100 * of_constant:.1f} %. Read marks during unloading"
+        f" {size:.0%} larger there than during loading, the hysteresis energy is too large by"
+        f" {of_energy:.0%} and EA by {of_constant:.1%}. Read marks during unloading"
         ' (hold "centre down"), or state splice_friction in [uncertainty]'
     )
 
@@ -107,7 +105,7 @@ def _unknown_compliance(compliance: float, usual: float, effect: float) -> str:
     return (
         f"the compliance of frame, load cell and grips is not stated: {compliance:.3g} m/N would"
         f" change EA by one standard uncertainty, {usual:.2g} m/N (a frame for 100 kN, without"
-        f" grips) by {100 * effect:+.2f} %. State machine_compliance in the layout"
+        f" grips) by {effect:+.2%}. State machine_compliance in the layout"
     )
 
 
@@ -116,10 +114,9 @@ def _unknown_hysteresis(reversibility: float, play: float | None, lag: float | N
     or_play = "" if play is None else f", or {1000 * play:.2g} mm of play in the position,"
     or_lag = "" if lag is None else f", or {1000 * lag:.2g} ms between the two channels,"
     return (
-        f"the hysteresis of the load cell is not stated: {100 * reversibility:.2f} % at half its"
+        f"the hysteresis of the load cell is not stated: {reversibility:.2%} at half its"
         f" load{or_play}{or_lag} would change the hysteresis energy by one standard uncertainty."
-        " State"
-        " reversibility in [uncertainty.tension], from the calibration"
+        " State reversibility in [uncertainty.tension], from the calibration"
         + ("" if lag is None else ", and lag in [uncertainty]")
     )
 
@@ -276,11 +273,11 @@ _OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "cycles-unlike": (
         "warning",
         lambda mean, ratio, of_periods, steps: (
-            f"the cycles differ (90 % of their mean levels lie within {100 * mean:.0f} % of the"
-            f" range of a cycle, 90 % of their ranges within a factor of {ratio:.2f}, and 90 % of"
-            f" their periods within a factor of {of_periods:.2f}): a mean over them represents"
-            " none of them"
-            f". {f'Its levels are {steps}' if steps else 'Declare each level as a step of its own'}"
+            f"the cycles differ (90 % of their mean levels lie within {mean:.0%} of the range of a"
+            f" cycle, 90 % of their ranges within a factor of {ratio:.2f}, and 90 % of their"
+            f" periods within a factor of {of_periods:.2f}): a mean over them represents none of"
+            " them."
+            f" {f'Its levels are {steps}' if steps else 'Declare each level as a step of its own'}"
         ),
     ),
     "held-load-repeats": (
@@ -359,8 +356,8 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "warning",
         lambda load, n_rests, zero, effect: (
             f"the load cell reads {load:.4g} N at slack ({_rests(n_rests)}),"
-            f" {100 * abs(effect):.2g} % of the peak load, and load rises with stretch: its"
-            f" zero is wrong{', not its sign' if load < 0 else ', or the specimen pulls there'}. "
+            f" {100 * abs(effect):.2g} % of the peak load, and load rises with stretch: its zero is"
+            f" wrong{', not its sign' if load < 0 else ', or the specimen pulls there'}. "
             + (
                 f'Set zero = "{zero}" for this channel'
                 if zero
@@ -399,8 +396,7 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "load-zero-off": (
         "note",
         lambda load, n_rests, zero: (
-            f"the load cell reads {load:.4g} N at slack ({_rests(n_rests)}),"
-            " more than its noise"
+            f"the load cell reads {load:.4g} N at slack ({_rests(n_rests)}), more than its noise"
             + (f'. Set zero = "{zero}" for this channel' if zero else "")
         ),
     ),
@@ -506,7 +502,7 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         lambda law, weight, chance, second, effect: (
             f"the splice law that fits best is {law} (weight {weight:.2f}, p-value of its fit"
             f" {chance:.2g})"
-            + (f"; {second} would change moduli by {100 * effect:+.1f} %" if second else
+            + (f"; {second} would change moduli by {effect:+.1%}" if second else
                "; no other law fits")
         ),
     ),
@@ -515,7 +511,7 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         lambda n_marks, carried, effect: (
             f"no splice law with fewer coefficients than marks agrees with the {n_marks} stretched"
             f" mark{_plural(n_marks)}; the laws that do agree would also fit a misread mark"
-            + (f"; {carried} would move moduli by {100 * effect:+.1f} %, which is in the intervals"
+            + (f"; {carried} would move moduli by {effect:+.1%}, which is in the intervals"
                if carried else "")
             + ". Read marks at one more stretch"
         ),
@@ -722,10 +718,9 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "wave-not-periodic": (
         "warning",
         lambda share, is_open: (
-            f"the wave does not repeat from cycle to cycle (it differs by {100 * share:.0f} % of"
-            " half its"
-            " range), as when two frequencies are combined: a cycle is not a closed loop, and its"
-            " stiffness does not belong to one frequency"
+            f"the wave does not repeat from cycle to cycle (it differs by {share:.0%} of"
+            " half its range), as when two frequencies are combined: a cycle is not a closed loop,"
+            " and its stiffness does not belong to one frequency"
             + (". Its energy and loss are not given" if is_open else "")
             + ". Test each frequency separately"
         ),
@@ -753,9 +748,9 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "warning",
         lambda frequency, size, effect: (
             f"tension oscillates at {frequency:.3g} Hz by {size:.3g} N beside its wave (mains hum,"
-            f" or a vibration): its extremes are off by up to {100 * effect:.1f} % of the"
-            " tension amplitude"
-            ", and EA with them. Remove the cause, or filter both channels alike before the run"
+            f" or a vibration): its extremes are off by up to {effect:.1%} of the tension"
+            " amplitude, and EA with them. Remove the cause, or filter both channels alike before"
+            " the run"
         ),
     ),
     "loops-give-work": (
@@ -803,8 +798,8 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "warning",
         lambda energy, closed, effect: (
             f"the loop area as logged is {closed:.4g} J/m, of which {closed - energy:+.3g} J/m"
-            f" ({100 * effect:+.1f} % of the result) is due to drift of the"
-            f" cycles: the hysteresis energy of {energy:.4g} J/m excludes it"
+            f" ({effect:+.1%} of the result) is due to drift of the cycles: the hysteresis"
+            f" energy of {energy:.4g} J/m excludes it"
         ),
     ),
     "slack-in-cycles": (
@@ -843,9 +838,9 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "inertia-taken-off": (
         "note",
         lambda mass, force, width, n_lost, cell: (
-            f"tension is corrected for inertia: {mass:.4g} kg at the moving end, up"
-            f" to {force:.4g} N at the load cell at the {cell} end;"
-            f" acceleration from position, in windows of {width:.3g} s"
+            f"tension is corrected for inertia: {mass:.4g} kg at the moving end, up to {force:.4g}"
+            f" N at the load cell at the {cell} end; acceleration from position, in windows of"
+            f" {width:.3g} s"
             + (
                 f"; {n_lost} samples in cycles have no acceleration and so no tension"
                 if n_lost else ""
@@ -863,10 +858,9 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "warning",
         lambda force, effect: (
             f"the inertia that is not corrected at the reversals is {force:.3g} N,"
-            f" {100 * effect:.1f} % of"
-            " the tension amplitude: the machine reverses faster than the log resolves. EA, energy"
-            " and the moduli near the reversals may be off by this share. Test with a sine, or with"
-            " a load cell at the fixed end, or log faster"
+            f" {effect:.1%} of the tension amplitude: the machine reverses faster than the"
+            " log resolves. EA, energy and the moduli near the reversals may be off by this share."
+            " Test with a sine, or with a load cell at the fixed end, or log faster"
         ),
     ),
     "specimen-near-resonance": (
@@ -874,9 +868,8 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         lambda share, effect: (
             f"the test ran at {share:.2g} of the resonance frequency of the specimen (from its"
             " stated mass), and higher at sharp reversals: waves run along it, and even after the"
-            f" correction for its mass EA and energy may be off by {100 * effect:.1f} %. Test"
-            " more slowly,"
-            " or with a sine"
+            f" correction for its mass EA and energy may be off by {effect:.1%}. Test more"
+            " slowly, or with a sine"
         ),
     ),
     "own-mass-unknown": (
@@ -967,9 +960,9 @@ _OF_MODULI: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "warning",
         lambda effect, error, is_coarse, of_lag, is_of_turns: (
             "the difference between the mean slopes of the two branches does not match the tension"
-            f" lost over a cycle: residual {100 * effect:+.1f} % of the modulus (standard error"
+            f" lost over a cycle: residual {effect:+.1%} of the modulus (standard error"
             f" {_share(error)}). "
-            + (f"The stated channel lag explains up to {100 * of_lag:.1f} % of it" if of_lag else
+            + (f"The stated channel lag explains up to {of_lag:.1%} of it" if of_lag else
                "The readings at the reversals explain it: in all cycles the reversal lies between"
                " the same two readings" if is_of_turns else
                "Possible causes: channel lag, a dwell at the reversals, slip or slack"
@@ -984,10 +977,9 @@ _OF_MODULI: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         lambda cycles, length, excess, effect: (
             f"the splices slipped at {cycles}, by {_slip_in_words(length)} in all"
             + ("" if excess != excess else
-               f": from there on, and in later tests without marks of their own, strain is at least"
-               f" {100 * excess:.1f} percentage points too large ({100 * effect:.1f} % of the"
-               " mean strain),"
-               " and the intervals allow for three times that")
+               ": from there on, and in later tests without marks of their own, strain is at least"
+               f" {100 * excess:.1f} percentage points too large ({effect:.1%} of the mean"
+               " strain), and the intervals allow for three times that")
             + ". Read the marks after the test, or use the cycles before the slip"
         ),
     ),
@@ -997,9 +989,8 @@ _OF_MODULI: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             f"before this test the splices slipped by {_slip_in_words(length)}, and no"
             " marks were read in it"
             + ("" if excess != excess else
-               f": strain is at least {100 * excess:.1f} percentage points too large"
-               f" ({100 * effect:.1f} % of the mean strain), and the intervals allow for three"
-               " times that")
+               f": strain is at least {100 * excess:.1f} percentage points too large ({effect:.1%}"
+               " of the mean strain), and the intervals allow for three times that")
             + ". Read marks in this test"
         ),
     ),
@@ -1048,7 +1039,7 @@ _OF_MODULI: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "law-of-softened-rubber": (
         "note",
         lambda strain: (
-            f"not a first loading: earlier tests reached {100 * strain:.0f} % strain, and the"
+            f"not a first loading: earlier tests reached {strain:.0%} strain, and the"
             " rubber is softened below that (Mullins effect)"
             if strain == strain
             else "not a first loading: the strain reached in earlier tests is not known"
@@ -1078,11 +1069,10 @@ _OF_MODULI: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "reading-inconsistent": (
         "warning",
         lambda length, strain, recorded, corrected, speaks_for, beside: (
-            f"a length of {1e3 * length:.1f} mm gives {100 * strain:.0f} %, but"
-            f" {100 * recorded:.0f} % is recorded; the row gives no modulus. A length of"
-            f" {1e3 * corrected:.1f} mm would agree"
-            f"{f' (the eye-to-eye length supports the {speaks_for})' if speaks_for else ''}, and"
-            f" the moduli of the adjacent intervals would be"
+            f"a length of {1e3 * length:.1f} mm gives {strain:.0%}, but {recorded:.0%} is recorded;"
+            f" the row gives no modulus. A length of {1e3 * corrected:.1f} mm would"
+            f" agree{f' (the eye-to-eye length supports the {speaks_for})' if speaks_for else ''},"
+            " and the moduli of the adjacent intervals would be"
             f" {' and '.join(f'{one / 1e6:.2f}' for one in beside)} MPa"
         ),
     ),
@@ -1123,9 +1113,9 @@ _OF_HOLDS: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "no-hold": (
         "refusal",
         lambda slack_tension, channel, tolerance, unit, duration, key: (
-            "no hold found: above the slack tension of"
-            f" {slack_tension:.3g} N {channel} never stays within {tolerance:.3g} {unit} for"
-            f" {duration:g} s. Check kind and control, or state phases.{key}"
+            f"no hold found: above the slack tension of {slack_tension:.3g} N {channel} never stays"
+            f" within {tolerance:.3g} {unit} for {duration:g} s. Check kind and control, or state"
+            f" phases.{key}"
         ),
     ),
     "hold-samples-left-out": ("note", "{n_left_out} of {n_samples} samples are not used"),
@@ -1153,9 +1143,8 @@ _OF_HOLDS: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "hold-crosshead-moves": (
         "refusal",
         lambda motion, worth: (
-            "drop, rate per decade and Prony series not given: the crosshead moves by"
-            f" {motion:.2g} m in the hold"
-            f"{f', equivalent to {worth:.3g} N' if worth == worth else ''}"
+            f"drop, rate per decade and Prony series not given: the crosshead moves by {motion:.2g}"
+            f" m in the hold{f', equivalent to {worth:.3g} N' if worth == worth else ''}"
         ),
     ),
     "hold-settles": (
@@ -1419,8 +1408,8 @@ _OF_EXPERIMENTS: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "no-effect": (
         "refusal",
         lambda responses, reason, without: (
-            f"effects on {responses} not given: {reason}"
-            f"{f'; no value of {without}' if without else ''}"
+            f"effects on {responses} not given:"
+            f" {reason}{f'; no value of {without}' if without else ''}"
         ),
     ),
     "error-by-lenth": (
@@ -1529,7 +1518,7 @@ _OF_HOSES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "layer-stretched": (
         "warning",
         lambda layer, strain, limit, angle: (
-            f"layer {layer} is stretched by {100 * strain:.1f} % at the working load, above its"
+            f"layer {layer} is stretched by {strain:.1%} at the working load, above its"
             f" limit of {100 * limit:g} %: use a wrap angle of {degrees(angle):.1f} degrees or more"
         ),
     ),
@@ -1562,14 +1551,14 @@ _OF_HOSES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "cords-broken": (
         "refusal",
-        lambda strain: f"the cords are broken from {100 * strain:.1f} % strain on: no load given",
+        lambda strain: f"the cords are broken from {strain:.1%} strain on: no load given",
     ),
     "hose-without-uncertainty": (
         "note", "no uncertainty is stated for the hose: the prediction has none",
     ),
     "working-load-uncertain": (
         "warning",
-        lambda effect: f"the safe working load is uncertain by {100 * effect:.0f} % (k = 1)",
+        lambda effect: f"the safe working load is uncertain by {effect:.0%} (k = 1)",
     ),
     "cycles-pooled": ("note", "each row pools {n_cycles} consecutive cycles"),
     "one-branch": (
@@ -1778,9 +1767,8 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "tension-above-strength": (
         "warning",
         lambda share: (
-            f"tension reaches {100 * share:.0f} % of the rated_break_strength, but the test is not"
-            " marked as failed. Check the unit and the gain of the load, and the"
-            " rated_break_strength"
+            f"tension reaches {share:.0%} of the rated_break_strength, but the test is not marked"
+            " as failed. Check the unit and the gain of the load, and the rated_break_strength"
         ),
     ),
     "tension-far-below-strength": (

@@ -295,9 +295,8 @@ def _sets_of_breaks(tests: Sequence[TestView]) -> list[str]:
         found.append(
             f"Breaks of {loads.size} specimens ({of}): mean {texts[0]} {force.unit}, standard"
             f" deviation {texts[1]} {force.unit} ({100 * (deviation / mean):.1f} %), least"
-            f" {texts[2]}"
-            f" {force.unit}. Breaks in a splice or grip are included; a table of outcomes"
-            " separates them."
+            f" {texts[2]} {force.unit}. Breaks in a splice or grip are included; a table of"
+            " outcomes separates them."
         )
     return found
 

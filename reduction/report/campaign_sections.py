@@ -255,8 +255,8 @@ def _make_hose_section(view: HoseView) -> TestSection:
         title=f"Predicted hose {view.name}",
         subtitle=(
             f"wrap angle {DEGREES.factor * view.wrap_angle:.4g} deg from the axis;"
-            f" {view.scalar('number_of_cords'):.0f} cords in two layers;"
-            f" {view.text('rubber_law')} rubber"
+            f" {view.scalar('number_of_cords'):.0f} cords in two layers; {view.text('rubber_law')}"
+            " rubber"
         ),
         parts=tuple(part for part in parts if part.figures or part.tables or part.sentences),
         notes=(("Notes on these numbers", notes),) if notes else (),

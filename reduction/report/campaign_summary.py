@@ -146,8 +146,8 @@ def summary_sentence(tests: Sequence[TestView]) -> str:
     of_kinds = ", ".join(f"{number} {kind}" for kind, number in kinds.items())
     names = all_specimens(tests)
     return (
-        f"{len(tests)} {'test' if len(tests) == 1 else 'tests'} ({of_kinds}) of"
-        f" {len(names)} {'specimen' if len(names) == 1 else 'specimens'}:"
+        f"{len(tests)} {'test' if len(tests) == 1 else 'tests'} ({of_kinds}) of {len(names)}"
+        f" {'specimen' if len(names) == 1 else 'specimens'}:"
         f" {shorten(', '.join(names), _MOST_NAMES)}."
     )
 

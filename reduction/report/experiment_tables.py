@@ -734,9 +734,9 @@ def negative_words(
         else f'Request one that cannot: transform = {{ {name} = "log" }} in the campaign.'
     )
     return [
-        f"This surface falls to {number_text(least * unit.factor, 3)}"
-        f"{'' if unit.unit == '1' else ' ' + unit.unit} inside the tested range (at {at}), and"
-        f" a {in_words(name)} cannot be negative. {instead}"
+        "This surface falls to"
+        f" {number_text(least * unit.factor, 3)}{'' if unit.unit == '1' else ' ' + unit.unit}"
+        f" inside the tested range (at {at}), and a {in_words(name)} cannot be negative. {instead}"
     ]
 
 

@@ -347,8 +347,7 @@ def calibration_table(view: ComparisonView) -> PageTable | None:
             )
             + " Intervals are not cut at the bounds.",
             f"The residuals are equivalent to {view.scalar('effective_points'):.0f} independent"
-            " points;"
-            f" extra scatter needed to explain them: {added} {force.unit}.",
+            f" points; extra scatter needed to explain them: {added} {force.unit}.",
         ],
     )  # fmt: skip
 

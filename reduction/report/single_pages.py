@@ -454,11 +454,10 @@ def _working_table(found: DeployedLine, units: UnitSystem) -> PageTable | None:
         remarks=[
             f"±: expanded uncertainty, 95 % ({factor_words([NORMAL])}), of the curve at that"
             " length. EA is that of the cycle, peak to valley, or without a cycle of"
-            f" {100 * found.deployed.assembly.span_share:.2g} % of the length to each side."
-            " It is a mean over the tests that cover at least 70 % of it,"
-            " over their common loads, weighted towards those nearest in mean and amplitude;"
-            " least and greatest are the interval of these tests, 95 %. Loads by the tolerance of"
-            " the lengths are at the mean tension."
+            f" {100 * found.deployed.assembly.span_share:.2g} % of the length to each side. It is a"
+            " mean over the tests that cover at least 70 % of it, over their common loads, weighted"
+            " towards those nearest in mean and amplitude; least and greatest are the interval of"
+            " these tests, 95 %. Loads by the tolerance of the lengths are at the mean tension."
         ],
     )  # fmt: skip
 

@@ -386,8 +386,7 @@ def draw_specimens_together(tests: Sequence[TestView]) -> list[Figure]:
         make_figure(
             "campaign-together", f"Modulus of {_of_specimens(names)}, all tests",
             "Mean tangent modulus of each test. One colour per specimen; ascending solid,"
-            " descending dashed. Shaded: range over all cycles and both branches."
-            f"{rest}",
+            f" descending dashed. Shaded: range over all cycles and both branches.{rest}",
             data, synthetic=any_synthetic(chosen), height=480, is_wide=True,
             annotations=labels if len(labels) <= _MOST_LABELS else [],
             xaxis=axis(in_strain.label("strain")),

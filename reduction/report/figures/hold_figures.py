@@ -171,8 +171,7 @@ def draw_pull(view: TestView) -> list[Figure]:
         make_figure(
             f"{view.key}-pull-constant", f"{view.id}: quasi-static spring constant",
             "K_0, the slope of tension on strain, against tension. Use the value at the mean"
-            " tension of interest."
-            f" {_about_band(view)}",
+            f" tension of interest. {_about_band(view)}",
             slopes, synthetic=view.is_synthetic, height=400,
             xaxis=axis(force.label("tension")),
             yaxis=axis(force.label("K_0"), rangemode="tozero"),

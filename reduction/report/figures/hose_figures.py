@@ -461,9 +461,9 @@ def draw_comparison(view: ComparisonView) -> list[Figure]:
     return if_any(
         make_figure(
             f"{view.key}-tension", f"Measured and predicted tension, {view.name}",
-            f"{about}Thick: the {judged} of the test, which is compared with the prediction."
-            f"{fitted}"
-            " Filled marks: predicted cord events; open: where the test reached that tension.",
+            f"{about}Thick: the {judged} of the test, which is compared with the"
+            f" prediction.{fitted} Filled marks: predicted cord events; open: where the test"
+            " reached that tension.",
             data, synthetic=view.is_synthetic, height=460, is_wide=True,
             xaxis=_strain_axis(), yaxis=axis(force.label("tension"), rangemode="tozero"),
         )

@@ -334,9 +334,8 @@ def draw_steps(view: TestView) -> list[Figure]:
         )  # fmt: skip
     readings = make_figure(
         f"{view.key}-steps", f"{view.id}: tension against strain",
-        "Each reading of the stepwise test; ascending solid, descending dashed; ringed readings"
-        " are flagged and not used for moduli"
-        f"{_reasons(view, words)}.",
+        "Each reading of the stepwise test; ascending solid, descending dashed; ringed readings are"
+        f" flagged and not used for moduli{_reasons(view, words)}.",
         data, synthetic=view.is_synthetic, height=400,
         xaxis=axis(in_strain.label("strain")), yaxis=axis(in_tension.label("tension")),
     )  # fmt: skip
@@ -384,9 +383,8 @@ def _moduli(view: TestView) -> Figure:
     )
     return make_figure(
         f"{view.key}-step-moduli", f"{view.id}: interval and secant modulus",
-        "Interval modulus: slope of stress on strain between two readings, at their middle."
-        " Secant modulus: stress over strain of one reading."
-        f" {said}",
+        "Interval modulus: slope of stress on strain between two readings, at their middle. Secant"
+        f" modulus: stress over strain of one reading. {said}",
         [trace for trace in data if trace["y"]], synthetic=view.is_synthetic, height=400,
         xaxis=axis(in_strain.label("strain")), yaxis=axis(in_stress.label("modulus")),
     )  # fmt: skip

@@ -145,8 +145,7 @@ def draw_errors(found: PredictedArmour) -> list[Figure]:
             make_figure(
                 f"armour-error-{quantity.replace('_', '-')}", f"Error of the {words}",
                 f"Magnitude of (theory - exact) / exact; thick: within {tolerance:g} %. More than"
-                f" 1000 % and less than 0.001 % are not drawn.{relative}"
-                f" {_of_wire(found)}",
+                f" 1000 % and less than 0.001 % are not drawn.{relative} {_of_wire(found)}",
                 data, synthetic=False, height=400, xaxis=_angle_axis(),
                 yaxis=axis("error against exact [%]", type="log", exponentformat="power",
                            **_decades(data)),

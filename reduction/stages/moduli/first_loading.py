@@ -386,8 +386,8 @@ def first_loading_curves(
         tangent_modulus_by_cycle=none_selected,
         tangent_modulus_by_cycle_standard_uncertainty=none_selected.copy(),
         made=(
-            f"{max(rise.n_pieces for rise in rises)} rising "
-            f"pieces between holds, window {grid.window:g} of strain",
+            f"{max(rise.n_pieces for rise in rises)} rising pieces between holds, window"
+            f" {grid.window:g} of strain",
         ),
     )
 

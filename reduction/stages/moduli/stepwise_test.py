@@ -336,9 +336,9 @@ def _made(gauge: float, readings: StepReadings, is_inconsistent: Bools) -> tuple
     difference = readings.length / gauge - 1 - readings.printed_strain
     agreeing = known & ~is_inconsistent
     return (
-        f"gauge length {1e3 * gauge:.1f} mm from length and recorded elongation; "
-        f"{int(agreeing.sum())} of {int(known.sum())} rows agree within "
-        f"{100 * float(np.abs(difference[agreeing]).max(initial=0.0)):.1f} points of strain",
+        f"gauge length {1e3 * gauge:.1f} mm from length and recorded elongation;"
+        f" {int(agreeing.sum())} of {int(known.sum())} rows agree within"
+        f" {100 * float(np.abs(difference[agreeing]).max(initial=0.0)):.1f} points of strain",
     )
 
 

@@ -244,8 +244,8 @@ def _fit_tension_driven(readings: PooledMarks) -> StrainModel:
         )
     elif (uncertainty := float(np.sqrt(fit.covariance[1, 1]))) > EXPONENT_UNCERTAINTY:
         made = (
-            "the marks fix the exponent of the splice law only to "
-            f"{fit.values[1]:.2f} +- {uncertainty:.2f}; it is held at 1",
+            f"the marks fix the exponent of the splice law only to {fit.values[1]:.2f} +-"
+            f" {uncertainty:.2f}; it is held at 1",
         )
         fit = law(HELD_EXPONENT)
     return StrainModel(
