@@ -170,9 +170,9 @@ def readings_that_fit(
     >>> readings_that_fit(0.25e6, (0.3e6, 3.2e6), load_unit="lbf")[:80]
     'load in daN, not lbf; load in kgf, not lbf; half that diameter (was it doubled?)'
 
-    A load in percent of 4 kN, read as newtons:
+    A load in percent of 4 kN, read as kilonewtons:
 
-    >>> readings_that_fit(25e3, (0.3e6, 3.2e6), load_unit="N", strength=4000.0)[:37]
+    >>> readings_that_fit(25e6, (0.3e6, 3.2e6), load_unit="kN", strength=4000.0)[:37]
     'load in % of the rated_break_strength'
     """
     low, high = band

@@ -290,3 +290,12 @@ def test_a_load_cell_that_pushes_at_the_length_of_the_reference_is_at_slack():
     assert pulls_as_at_reference(stands, load, reference_tension=20.0, half=4.0).tolist() == [
         True, False,
     ]  # fmt: skip
+
+
+@pytest.mark.parametrize(("later", "drift"), [(-8.0, -14.0), (-0.5, 0.0), (0.2, 0.0)])
+def test_a_load_that_falls_below_zero_has_drifted_by_its_whole_fall(later, drift):
+    """A line cannot push; up to a tenth of the first reading below zero counts as falling to it."""
+    noise = np.random.default_rng(8).normal(0, 0.1, 900)
+    load = np.repeat([6.0, 400.0, later], 300) + noise
+    found = load_at_slack(load, rests((0, 299), (600, 899)), np.array([True, True]), stroke=1.0)
+    assert found.drift == pytest.approx(drift, abs=0.05)

@@ -146,3 +146,16 @@ def test_a_strain_that_is_none_is_refused(strain):
     design = HoseDesign(np.radians(64.0), (0.09, 0.09), 0.06, 0.13, 1300.0, 5e-4, 1.4e6, CORD)
     with pytest.raises(DataError, match=r"strain.*not finite|stretch_ratio are not positive"):
         hose_sensitivity(design, strain)
+
+
+@pytest.mark.parametrize("event", EVENTS)
+def test_the_stiffness_at_an_event_is_the_slope_of_the_tension_below_it(event):
+    """Of the strain of the whole length, of which the dead ends have no part."""
+    design = dataclasses.replace(hoses(), wrap_angle=np.radians(np.linspace(57, 75, 12)))
+    at, step = getattr(find_events(design), event).strain, 1e-5
+    one, two, three = (
+        np.diagonal(predict_hose(design, at - count * step).tension) for count in (1, 2, 3)
+    )
+    slope = (5 * one - 8 * two + 3 * three) / (2 * step)  # second order, from the side of slack
+    found = getattr(hose_sensitivity(design, STRAIN), event).stiffness
+    np.testing.assert_allclose(found, slope, rtol=1e-4)

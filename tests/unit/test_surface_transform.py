@@ -4,7 +4,7 @@ from scipy import stats
 
 from reduction.experiments.designs import box_behnken, model_matrix, quadratic_exponents
 from reduction.experiments.fit_results import FIT_REASONS
-from reduction.experiments.response_surfaces import fit_surfaces
+from reduction.experiments.response_surfaces import fit_surfaces, scatter_by_scale
 from reduction.experiments.response_transform import (
     back_transform,
     box_cox_exponent,
@@ -128,3 +128,24 @@ def test_the_end_of_an_interval_may_lie_beyond_every_number():
 def test_values_not_above_nought_are_refused():
     with pytest.raises(DataError, match="2 of 3 values are not above zero .* found -1"):
         transform([-1.0, 0.0, 1.0], 0.5)
+
+
+def test_scatter_by_scale_is_the_ratio_of_two_regressions():
+    """Box and Cox: residual scatter of the logarithm times the geometric mean, over that of y."""
+    level = np.linspace(-1, 1, 12)
+    runs = np.exp(level) * (1 + 0.02 * np.random.default_rng(4).normal(size=(2, 12)))
+    runs[1] *= 1000  # in another unit: the ratio has none
+
+    def fit(values, names, scales):
+        return fit_surfaces(
+            level[:, None], values, factor_names=["load"], response_names=names, units="coded",
+            low=[-1.0], high=[1.0], transforms=scales,
+        )  # fmt: skip
+
+    ratio, p = scatter_by_scale(runs, fit)
+    matrix = np.vander(level, 3)
+    for row, values in enumerate(runs):
+        ss = [np.linalg.lstsq(matrix, one, rcond=None)[1][0] for one in (np.log(values), values)]
+        expected = stats.gmean(values) * np.sqrt(ss[0] / ss[1])
+        assert ratio[row] == pytest.approx(expected, rel=1e-9)
+        assert p[row] == pytest.approx(stats.f.sf(max(expected, 1 / expected) ** 2, 9, 9))

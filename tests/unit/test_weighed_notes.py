@@ -1,12 +1,14 @@
 """Doubts that are told as notes where the interval of an answer holds what they would do."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from reduction.record.contributions import Component, Contributions, InstrumentErrors
 from reduction.record.notes import note
-from reduction.uncertainty.effects_on_answers import with_weighed_notes
+from reduction.uncertainty.effects_on_answers import splice_friction_notes, with_weighed_notes
 
 
 @pytest.mark.parametrize(("effect", "known_to", "severity"), [
@@ -38,3 +40,32 @@ def test_drift_of_a_step_in_which_the_rope_beds_in_is_no_warning(rich_test):
             test, contributions=None, amplitude=replace(test.amplitude, uncertainty=uncertainty)
         )
         assert [one.severity for one in with_weighed_notes(test).loop_notes] == [severity]
+
+
+@pytest.mark.parametrize(("random", "code"), [
+    (0.5, "splice-friction-matters"),  # half the interval is 6.1 of 50, the effect 12
+    (6.0, "splice-friction-unknown"),  # half the interval is 13.4
+])  # fmt: skip
+def test_possible_friction_of_splices_is_weighed_against_the_interval_of_the_energy(random, code):
+    """Friction of a tenth in place of 2 %: five times its contributions.
+
+    3 of 50 J/m become 15, 30 %, of which four fifths are in a loop: 24 %; 40 of 1600 N: 12.5 %.
+    """
+    values = {"hysteresis_energy": 50.0, "apparent_spring_constant": 1600.0}
+    summary = SimpleNamespace(
+        **{name: np.array([value]) for name, value in values.items()},
+        uncertainty={name: np.array([random]) for name in values},
+    )
+    found = Contributions(
+        (Component("splice_friction", "rope"),),
+        {
+            "test_hysteresis_energy": np.array([[3.0]]),
+            "test_apparent_spring_constant": np.array([[40.0]]),
+        },
+    )
+    errors = replace(InstrumentErrors("rope"), splice_friction=0.02)
+    test = SimpleNamespace(amplitude=summary, contributions=found)
+    [told] = splice_friction_notes(test, [errors])
+    assert told.code == code
+    assert told.numbers["of_energy"] == pytest.approx(0.24)
+    assert told.numbers["of_constant"] == pytest.approx(0.125)
