@@ -144,3 +144,15 @@ def test_a_pull_that_never_stretches_is_refused():
 def test_too_few_intervals_are_refused():
     with pytest.raises(DataError, match="too few strain intervals hold a sample; found 5"):
         fit_elastomers(np.linspace(0.1, 1, 5), np.ones(5), specimen="new")
+
+
+def test_the_criterion_is_that_of_akaike_corrected_for_few_readings():
+    """n ln(S/n) + 2p + 2p(p+1)/(n-p-1) with p - 1 parameters, from the rms residual."""
+    rng = np.random.default_rng(3)
+    stress = hyperelastic_stress(STRAIN, law="yeoh", parameters=EXAMPLE["yeoh"])
+    stress = stress + 500 * rng.standard_normal(STRAIN.size)
+    n = even_grid(STRAIN, stress)[0].size
+    for fit in fit_elastomers(STRAIN, stress, specimen="new"):
+        p = len(fit.parameters) + 1
+        expected = n * np.log(fit.rms_stress**2) + 2 * p + 2 * p * (p + 1) / (n - p - 1)
+        assert fit.aicc == pytest.approx(expected)

@@ -1,6 +1,7 @@
 """Tangent curves: known laws come back; trend, break-in, gaps, blocks and pooling do no harm."""
 
 import dataclasses
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -351,3 +352,13 @@ def test_the_tension_of_a_log_in_step_with_its_cycles_is_no_surer_than_its_windo
     stated = curves.branch_tension_standard_uncertainty[0][known]
     assert np.abs(error).max() > 10
     assert np.sqrt(np.mean((error / stated) ** 2)) < 1.5
+
+
+@pytest.mark.parametrize(("n_short", "is_told"), [(4, False), (5, True)])
+def test_bins_that_few_cycles_reach_are_told_above_a_tenth_of_all(n_short, is_told):
+    reached = np.arange(40) >= n_short
+    trimmed = SimpleNamespace(
+        is_reached=lambda: reached, level=SimpleNamespace(n_curves=np.ones(40, dtype=int))
+    )
+    found = specimencurves._notes(0, [SimpleNamespace(trimmed=trimmed, n_outside=0)])
+    assert [one.code for one in found] == ["bins-of-some-cycles"] * is_told

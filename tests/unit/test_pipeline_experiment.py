@@ -1,11 +1,17 @@
 """From runs to surfaces: what an experiment gives, and what it refuses in which words."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from reduction.experiments.designs import FactorLevels, box_behnken, plackett_burman
 from reduction.experiments.experiment import RunTable
-from reduction.experiments.experiment_fit import LineOfRuns, fit_experiment
+from reduction.experiments.experiment_fit import (
+    LineOfRuns,
+    _single_time_of_runs,
+    fit_experiment,
+)
 from reduction.experiments.surface_points import evaluate_surfaces
 from reduction.record.notes import note
 
@@ -428,3 +434,28 @@ def test_specimens_in_tests_of_their_own_have_cautions_of_their_own():
     repeats = [one.message for one in found if one.kind == "pure-error-excludes-drift"]
     assert len(repeats) == 2
     assert "A13, A14, A15" in repeats[0] and "B13, B14, B15" in repeats[1]
+
+
+def test_whether_there_is_one_relaxation_time_does_not_hang_on_its_unit():
+    """Of two runs the stated uncertainty is all that is known; it enters relative to the time.
+
+    tau as f^-n: the standard uncertainty of n is sqrt(2) times the relative one over ln 5.
+    """
+    frequency, time = np.array([0.1, 0.5]), np.array([3.0, 2.0])
+
+    def check(scale, relative):
+        runs = SimpleNamespace(
+            response=(scale * time)[None],
+            response_standard_uncertainty=(scale * relative * time)[None],
+            specimen=["rope"] * 2, frequency=frequency,
+        )  # fmt: skip
+        line = SimpleNamespace(
+            loss_spring_constant=0.1 * frequency, storage_spring_constant=np.ones(2)
+        )
+        coded = np.array([[-1.0, 0.0], [1.0, 0.0]])
+        return _single_time_of_runs(runs, coded, 0, ("relaxation_time",), line)[0]
+
+    for scale in (1.0, 1e3):  # s, ms
+        found = check(scale, 0.02)
+        assert found.exponent == pytest.approx(np.log(3 / 2) / np.log(5))
+        assert found.exponent_standard_uncertainty == pytest.approx(0.02 * 2**0.5 / np.log(5))
