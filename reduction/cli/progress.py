@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-import textwrap
 from collections.abc import Iterator
 from contextlib import contextmanager
 
@@ -22,6 +21,7 @@ from rich.text import Text
 
 from reduction.batch.campaign_status import TestStatus
 from reduction.cli.output import CommandOutput
+from reduction.record.notes import first_clauses
 
 _WORDS = {
     "survey": "reading", "reduce": "reducing", "tables": "writing tables",
@@ -29,7 +29,7 @@ _WORDS = {
 }  # fmt: skip
 """Descriptions of the stages of a run."""
 
-_MOST_LETTERS = 100  # of the text beside the status of a test
+_MOST_LETTERS = 100  # of the clauses beside the status of a test
 
 
 class _Count(MofNCompleteColumn):
@@ -75,7 +75,7 @@ class _CampaignProgress:
         width = len(str(self._total))
         words = [f"{self._done:{width}}/{self._total} {test} {status.status}"]
         if status.message and not status.exit_status:  # an error is printed only once, at the end
-            words[0] += f": {textwrap.shorten(status.message, _MOST_LETTERS, placeholder='...')}"
+            words[0] += f": {first_clauses(status.message, _MOST_LETTERS)}"
         if status.status != "unchanged":
             words.append(f"{status.seconds:.1f} s")
         if status.worker:

@@ -1245,8 +1245,8 @@ _OF_LINE: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "line-slack-in-loops": (
         "warning",
-        "the line goes slack in {n_slack} of {n_loops} loops; the spring-dashpot model does not"
-        " apply there",
+        "the spring-dashpot model does not apply to {n_slack} of {n_loops} loops, in which the line"
+        " goes slack",
     ),
     "no-line": ("refusal", "K_1 and tau not given in {n_lines} of {n_all} cases: {reason}"),
     "line-by-monte-carlo": (

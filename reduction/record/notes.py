@@ -6,6 +6,7 @@ A stage raises a note by its code.  The severity and the sentence of each code a
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from math import isfinite
@@ -114,3 +115,37 @@ def full_note(stage: str, text: str) -> str:
     specimen = stage.split(" ")[-1]
     is_said = text.startswith((f"{stage}:", f"{specimen}:", f"{specimen},"))
     return text if is_said or " " not in stage else f"{stage}: {text}"
+
+
+_CLAUSE_END = re.compile(r"\.(?=\s+[A-Z])|[:;](?=\s)|$")
+
+_SHORTEST = 30
+"""Letters of a clause that says something; a shorter one names a specimen or a stage."""
+
+
+def first_clauses(text: str, room: int) -> str:
+    """Return as many clauses of a note as a line has room for, at least one, none in part.
+
+    Parameters
+    ----------
+    text : str
+        The note; its clauses end at a full stop, semicolon or colon.
+    room : int
+        Letters wanted at most. A longer first clause stays whole. [1]
+
+    Returns
+    -------
+    text : str
+        Without the mark at which it ends.
+
+    Examples
+    --------
+    >>> first_clauses("new: the splices slipped at cycle 599: strain is 3.5 % off", 40)
+    'new: the splices slipped at cycle 599'
+    >>> first_clauses("the tension falls; it was filtered at 2.5 Hz", 60)
+    'the tension falls; it was filtered at 2.5 Hz'
+    """
+    ends = [found.start() for found in _CLAUSE_END.finditer(text)]
+    said = [end for end in ends if end >= _SHORTEST] or [len(text)]
+    fitting = [end for end in said if end <= room]
+    return text[: fitting[-1] if fitting else said[0]]

@@ -65,7 +65,7 @@ _ANSWERS: tuple[tuple[str, str, Kind], ...] = (
     ("interval_modulus", "", "stress"),
 )
 
-_NAMES = " K_ap: apparent spring constant. H: hysteresis energy."
+_NAMES = " K_ap: apparent spring constant, the EA of the design table. H: hysteresis energy."
 
 _LINE_NAMES = " K_1, tau: dissipation spring constant and relaxation time of the line."
 
@@ -218,8 +218,8 @@ def design_modulus_table(tests: Sequence[TestView]) -> PageTable | None:
     )
     return make_table(
         f"Design {'stiffness' if is_of_lines else 'moduli'}. EA: tension amplitude over strain"
-        f" amplitude.{whole} Ascending, descending: {tangents} at mid-strain. Means over the"
-        " cycles.",
+        f" amplitude, the apparent spring constant K_ap.{whole} Ascending, descending: {tangents}"
+        " at mid-strain. Means over the cycles.",
         columns, found, is_compact=True,
         is_tall=len(found) > _MOST_ROWS,
         remarks=[

@@ -55,14 +55,25 @@ _FIRST = (0, float("-inf"))
 _NUMBER = re.compile(r"[-+]?\d[\d.,]*(e[-+]?\d+)?")
 
 
+TOPICS = {
+    code: ("slack", place)
+    for place, code in enumerate(("slack-in-cycles", "line-slack-in-loops", "run-slack", "slack"))
+}
+"""Topic of notes and cautions, by code, that tell one matter, and their order in the item."""
+
+
 @dataclass(frozen=True)
 class SummaryFinding:
-    """One finding for the reader, with the tests it concerns; urgent ones first."""
+    """One finding for the reader, with the tests it concerns; urgent ones first.
+
+    Findings of one ``topic`` are one item.
+    """
 
     severity: Severity
     tests: tuple[str, ...]
     text: str
     urgency: tuple[int, float] = (len(CAUSES), 0.0)
+    topic: tuple[str, int] | None = None
 
 
 @dataclass(frozen=True)
@@ -94,7 +105,25 @@ def find_faults(
         worst = min(own, key=lambda one: one.urgency)
         names = _names(one for one in own if one.text == worst.text)
         found.append(replace(worst, tests=names, text=worst.text + _similar(worst, own)))
-    return sorted([*found, *others], key=lambda one: (_ORDER.index(one.severity), one.urgency))
+    joined = _by_topic([*found, *others])
+    return sorted(joined, key=lambda one: (_ORDER.index(one.severity), one.urgency))
+
+
+def _by_topic(found: Sequence[SummaryFinding]) -> Iterator[SummaryFinding]:
+    """Yield findings, those of one topic as one item that names all their tests."""
+    groups: dict[str | int, list[SummaryFinding]] = {}
+    for place, one in enumerate(found):
+        groups.setdefault(one.topic[0] if one.topic else place, []).append(one)
+    for group in groups.values():
+        own = sorted(group, key=lambda one: one.topic[1] if one.topic else 0)
+        others = [f"{one.text[:1].upper()}{one.text[1:]}" for one in own[1:]]
+        yield replace(
+            own[0],
+            severity=min((one.severity for one in own), key=_ORDER.index),
+            tests=_names(own),
+            text=". ".join([own[0].text, *others]),
+            urgency=min(one.urgency for one in own),
+        )
 
 
 def _names(findings: Iterable[SummaryFinding]) -> tuple[str, ...]:
@@ -226,8 +255,9 @@ def _all_faults(
         for one in view.notes:
             text = str(one)
             finding = SummaryFinding(
-                one.severity, (view.id,), full_note(one.stage, text), urgency(one)
-            )
+                one.severity, (view.id,), full_note(one.stage, text), urgency(one),
+                TOPICS.get(one.code),
+            )  # fmt: skip
             yield _pattern(view, text), finding
 
 

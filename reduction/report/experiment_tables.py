@@ -34,7 +34,7 @@ from reduction.record.contributions import CONFIDENCE, coverage_factor, effectiv
 from reduction.record.measurement import Floats, Integers
 from reduction.record.notes import urgency
 from reduction.report.answer_tables import AnswerBudget
-from reduction.report.campaign_summary import SummaryFinding
+from reduction.report.campaign_summary import TOPICS, SummaryFinding
 from reduction.report.product_views import (
     FORM_WORDS,
     ExperimentView,
@@ -59,6 +59,7 @@ from reduction.report.text_style import (
     PageTable,
     Shown,
     TableCell,
+    f_text,
     in_order,
     make_table,
     number,
@@ -408,15 +409,15 @@ def quality_table(view: ExperimentView, surfaces: ResponseSurfaces) -> PageTable
             "standard deviation of a run, s [its unit]",
             [number(float(one), unit) for one, unit in zip(surfaces.sigma, units, strict=True)],
         )
-        .numbers("F of all terms", surfaces.overall_f, "number")
+        .f_values("F of all terms", surfaces.overall_f)
         .texts("degrees of freedom", [f"{n_terms}, {one}" for one in surfaces.degrees_of_freedom])
         .probabilities("p of F", surfaces.overall_p_value)
-        .numbers("F of lack of fit", lack.f, "number")
+        .f_values("F of lack of fit", lack.f)
         .probabilities("p of lack of fit", lack.p_value)
     )
     is_printed = bool(np.isfinite(surfaces.printed_f).any())
     if is_printed:
-        sheet.numbers("F as printed in CG-D-39-80", surfaces.printed_f, "number")
+        sheet.f_values("F as printed in CG-D-39-80", surfaces.printed_f)
     return sheet.table(
         "Quality of each surface. p: probability of an F this large if the terms were zero (F of"
         " all terms) or the surface were adequate (lack of fit).",
@@ -494,7 +495,7 @@ def anova_table(view: ExperimentView, surfaces: ResponseSurfaces, index: int) ->
             ],
         )
     return (
-        sheet.numbers("F", anova.f[index], "number")
+        sheet.f_values("F", anova.f[index])
         .probabilities("p", anova.p_value[index])
         .texts("tested against", anova.error_term)
         .table(f"{in_words(name).capitalize()}: sequential analysis of variance.")
@@ -694,9 +695,15 @@ def coefficient_budget_table(
 def experiment_findings(view: ExperimentView) -> list[SummaryFinding]:
     """Return what a reader must know about an experiment before its numbers."""
     name = f"experiment {view.name}"
+    cautions = view.own_rows("caution")
     found = [
-        SummaryFinding("warning", (name,), _caution_words(row)) for row in view.own_rows("caution")
+        SummaryFinding(
+            "warning", (name,), _caution_words(row), topic=TOPICS.get(row["caution_kind"])
+        )
+        for row in cautions
     ]
+    # the caution names these runs
+    told = {"run-slack"} if any(row["caution_kind"] == "slack" for row in cautions) else set()
     surfaces = view.surfaces
     if surfaces is not None:
         negative = negative_inside(surfaces)
@@ -706,7 +713,9 @@ def experiment_findings(view: ExperimentView) -> list[SummaryFinding]:
             for text in negative_words(view, surfaces, one, negative)
         ]
     return found + [
-        SummaryFinding(one.severity, (name,), str(one), urgency(one)) for one in view.notes
+        SummaryFinding(one.severity, (name,), str(one), urgency(one), TOPICS.get(one.code))
+        for one in view.notes
+        if one.code not in told
     ]
 
 
@@ -754,7 +763,7 @@ def quality_words(view: ExperimentView, surfaces: ResponseSurfaces, index: int) 
         f"r² {shares[0]}, adjusted {shares[1]}, predicted {shares[2]}; standard deviation of a run"
         f" about the surface {scatter}{'' if unit.unit == '1' else ' ' + unit.unit}."
         f" F({len(surfaces.term_names) - 1}, {freedom}) ="
-        f" {number_text(float(surfaces.overall_f[index]))},"
+        f" {f_text(float(surfaces.overall_f[index]))},"
         f" {_p(float(surfaces.overall_p_value[index]))}."
     ]
     reason = LACK_OF_FIT_REASONS[int(lack.reason[index])]
@@ -769,13 +778,13 @@ def quality_words(view: ExperimentView, surfaces: ResponseSurfaces, index: int) 
         )
         sentences.append(
             f"Lack of fit: F({lack.degrees_of_freedom[index]},"
-            f" {lack.pure_error_degrees_of_freedom[index]}) = {number_text(float(lack.f[index]))},"
+            f" {lack.pure_error_degrees_of_freedom[index]}) = {f_text(float(lack.f[index]))},"
             f" {_p(p)}: {verdict}."
         )
     if np.isfinite(surfaces.printed_f[index]):
         sentences.append(
             "For comparison only: the F that CG-D-39-80 prints, with the mean among the terms, is"
-            f" {number_text(float(surfaces.printed_f[index]))} here."
+            f" {f_text(float(surfaces.printed_f[index]))} here."
         )
     return " ".join(sentences)
 

@@ -512,7 +512,8 @@ def bedding_table(view: RopeView) -> PageTable | None:
 def level_table(view: RopeView) -> PageTable | None:
     """Return the levels of dynamic stiffness."""
     return _of_steps(
-        view, "specimen", "dynamic_stiffness", "Levels of dynamic stiffness, last cycles of each.",
+        view, "specimen", "dynamic_stiffness",
+        "Levels of dynamic stiffness: EA (K_ap) of the last cycles of each.",
         ("mean tension", "dynamic_mean_tension"),
         ("tension amplitude", "dynamic_tension_amplitude"),
         ("frequency", "dynamic_frequency"),

@@ -21,6 +21,7 @@ from plotly.offline import get_plotlyjs  # type: ignore[import-untyped]
 from reduction import __version__
 from reduction.archive.scratch_file import ScratchFile
 from reduction.quantities.units import UnitSystem
+from reduction.record.notes import first_clauses
 from reduction.report.campaign_summary import SummaryFinding, Tile
 from reduction.report.figure_data import Figure
 from reduction.report.test_section import Part, TestSection
@@ -242,4 +243,5 @@ def _environment() -> Environment:
         trim_blocks=True, lstrip_blocks=True,
     )  # fmt: skip
     environment.globals["packed"] = _packed
+    environment.filters["clauses"] = first_clauses
     return environment

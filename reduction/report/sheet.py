@@ -176,6 +176,10 @@ class Sheet:
         """Add a column of probabilities."""
         return self._each(heading, htmltable.probability, source)
 
+    def f_values(self, heading: str, source: Source) -> Self:
+        """Add a column of F, ratios of variances."""
+        return self._each(heading, htmltable.f_value, source)
+
     def numbers(self, heading: str, source: Source, unit: Unit = None, digits: int = 4) -> Self:
         """Add a column of numbers to so many digits."""
         own = self.unit_of(source, unit)

@@ -431,6 +431,22 @@ def probability(value: float) -> TableCell:
     return TableCell(text, _exact(value), is_number=True)
 
 
+def f_text(value: float) -> str:
+    """Return an F, a ratio of variances of few runs, to four digits.
+
+    Examples
+    --------
+    >>> f_text(2412095.3), f_text(15.588)
+    ('2,412,000', '15.59')
+    """
+    return number_text(float(f"{value:.3e}"))
+
+
+def f_value(value: float) -> TableCell:
+    """Return a cell with an F."""
+    return TableCell(f_text(value), _exact(value), is_number=True)
+
+
 def share_text(value: float) -> str:
     """Return a share with the first digits in which it differs from the whole.
 

@@ -1,6 +1,7 @@
 """What a person sees while a campaign runs."""
 
 import io
+from dataclasses import replace
 
 import pytest
 from rich.console import Console
@@ -30,6 +31,16 @@ def test_each_test_has_a_line_with_its_number_time_and_worker(capsys):
         " 2/12 T-2 unchanged",
         " 3/12 T-3 reduced, 1.3 s",
     ]
+
+
+def test_a_reason_ends_at_the_end_of_a_clause(capsys):
+    said = "new: the splices slipped at cycle 599: from there on, and in later tests without marks"
+    progress = _CampaignProgress()
+    progress.stage("reduce", 1)
+    progress.ended("T-1", replace(row("T-1", "check"), message=f"{said}, strain is 3.5 % off"))
+    assert capsys.readouterr().err == (
+        "1/1 T-1 check: new: the splices slipped at cycle 599, 1.3 s\n"
+    )
 
 
 @pytest.mark.parametrize("options", [{"json": True}, {"quiet": True}])

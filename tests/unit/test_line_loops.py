@@ -230,7 +230,7 @@ def test_a_slack_line_is_noted():
     time, tension, strain = series(4)
     loops = loops_of(time, np.maximum(tension - 1600, 0), strain)
     notes = tuple(map(str, identify_cycles(loops, **K0).notes))
-    assert any("goes slack in 4 of 4 loops" in note for note in notes)
+    assert any("does not apply to 4 of 4 loops" in note for note in notes)
 
 
 def test_an_uncertain_rest_spring_is_noted():

@@ -15,6 +15,7 @@ from reduction.report.experiment_tables import (
     form_words,
     negative_inside,
     negative_words,
+    quality_table,
     quality_words,
     single_time_words,
     stationary_words,
@@ -52,6 +53,16 @@ def test_quality_has_the_freedom_of_fifteen_runs_and_the_statistic_of_the_report
     assert "Lack of fit: F(3, 2) = " in text
     assert "no lack of fit beyond the scatter of repeated runs" in text
     assert "For comparison only: the F that CG-D-39-80 prints" in text
+
+
+def test_a_large_f_has_four_digits():
+    """The lack of fit of a hysteresis energy had F = 2,412,095, of two degrees of freedom."""
+    view = view_of(law_experiment({"apparent_spring_constant": hollow}))
+    lack = replace(view.surfaces.lack_of_fit, f=np.full(1, 2412095.0))
+    surfaces = replace(view.surfaces, lack_of_fit=lack)
+    assert "F(3, 2) = 2,412,000, p" in quality_words(view, surfaces, 0)
+    table = quality_table(view, surfaces)
+    assert table.rows[0][table.columns.index("F of lack of fit")].text == "2,412,000"
 
 
 def test_without_repeats_there_is_no_test_of_lack_of_fit():

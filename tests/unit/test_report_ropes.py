@@ -149,6 +149,18 @@ def test_what_is_no_tests_fault_stands_among_those_as_serious():
     assert find_faults([], [], {"a.nc": "broken"}, [other])[-1] == other
 
 
+def test_findings_of_one_matter_are_one_item_that_names_the_tests():
+    """Three notes on one slack line took three of the five places on the screen."""
+    others = [
+        SummaryFinding("warning", ("experiment",), "run R05 reaches zero", topic=("slack", 3)),
+        SummaryFinding("warning", ("R07",), "the mean drifts"),
+        SummaryFinding("warning", ("R05",), "R05 goes slack", topic=("slack", 0)),
+    ]
+    one, two = find_faults([], [], {}, others)
+    assert (one.tests, one.text) == (("R05", "experiment"), "R05 goes slack. Run R05 reaches zero")
+    assert two == others[1]
+
+
 @pytest.fixture
 def page(tmp_path):
     def make(*results, **attributes):
