@@ -485,24 +485,7 @@ def _show_wave_load(found: PredictedWaveLoad, output: CommandOutput) -> None:
     length, per_metre = output.unit("m")
     force, per_newton = output.unit("N")
     section, theory = found.load.section, found.theory
-    depth = float(section.immersion_depth)
-    output.say(
-        f"immersed {per_metre * depth:.4g} {length} of"
-        f" {per_metre * float(section.outer_diameter):.4g} {length}"
-        f" ({100 * depth / float(section.outer_diameter):.1f} %),"
-        f" {1e4 * float(section.submerged_section_area):.4g} cm2 of its section"
-    )
-    output.say(
-        f"wave of {per_metre * theory.wave_length:.4g} {length}: d/L {theory.relative_depth:.3g}, "
-        f"H/L {theory.steepness:.3g}, {100 * theory.breaking_ratio:.0f} % of the height at which "
-        f"it breaks; computed by {found.used} at {per_metre * found.elevation:+.4g} {length}"
-    )
-    regime = found.regime
-    output.say(
-        f"Keulegan-Carpenter {float(regime.keulegan_carpenter_number):.3g}, Reynolds"
-        f" {short(float(regime.reynolds_number), 3)}, drag over inertia"
-        f" {float(regime.drag_to_inertia):.3g}"
-    )
+    output.say_each("warning", found.doubts)
     table = table_of(
         f"load [{force}/{length}]", "maximum", "at [s]", "minimum", "at [s]", "classic maximum",
         "classic minimum", "reduction from classic [%]",
@@ -525,6 +508,24 @@ def _show_wave_load(found: PredictedWaveLoad, output: CommandOutput) -> None:
         f" {short(per_newton * float(anchor.separate))} {force} as the sum of wave"
         f" {short(per_newton * float(anchor.wave), 4)}, current"
         f" {per_newton * float(anchor.current):.4g} and wind {per_newton * float(anchor.wind):.4g}"
+    )
+    depth = float(section.immersion_depth)
+    output.say(
+        f"immersed {per_metre * depth:.4g} {length} of "
+        f"{per_metre * float(section.outer_diameter):.4g} {length} "
+        f"({100 * depth / float(section.outer_diameter):.1f} %), "
+        f"{1e4 * float(section.submerged_section_area):.4g} cm2 of its section"
+    )
+    output.say(
+        f"wave of {per_metre * theory.wave_length:.4g} {length}: d/L {theory.relative_depth:.3g}, "
+        f"H/L {theory.steepness:.3g}, {100 * theory.breaking_ratio:.0f} % of the height at which "
+        f"it breaks; computed by {found.used} at {per_metre * found.elevation:+.4g} {length}"
+    )
+    regime = found.regime
+    output.say(
+        f"Keulegan-Carpenter {float(regime.keulegan_carpenter_number):.3g}, "
+        f"Reynolds {short(float(regime.reynolds_number), 3)}, "
+        f"drag over inertia {float(regime.drag_to_inertia):.3g}"
     )
     output.say_each("note", found.notes)
 
@@ -555,6 +556,7 @@ def _wave_load_document(found: PredictedWaveLoad) -> dict[str, Any]:
         "regime": {key: plain(value) for key, value in asdict(found.regime).items()},
         "anchor_force": {key: plain(value) for key, value in asdict(found.anchor).items()},
         "notes": list(found.notes),
+        "doubts": list(found.doubts),
     }
 
 

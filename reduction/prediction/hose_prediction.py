@@ -148,9 +148,12 @@ def predict_from_plan(plan: HosePlan) -> PredictedHose:
         number_of_cords=float(
             number_of_cords(design.wrap_diameter, design.wrap_angle, design.cords_per_length)
         ),
+        # that of layers of one diameter would be rounding
         working_torque=float(
             predict_two_layers(design, float(design.wrap_angle), [working]).torque[0]
-        ),
+        )
+        if np.ptp(design.layer_diameter)
+        else 0.0,
         balanced_wrap_angle=torque_balanced_angle(design, working),
         layers=layers,
         notes=tuple(notes),

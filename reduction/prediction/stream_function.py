@@ -169,7 +169,8 @@ def _solved(
     for _ in range(_MOST_STEPS):
         eta, series, number, speed = state[eta_at], state[series_at], state[-4], state[-3]
         up, flat = np.multiply.outer(eta, order * number), order * number
-        if np.max(up - flat) > 300 or not 0 < number:
+        # also where an unsound step has left no number
+        if not (np.max(np.abs(up) - flat) <= 300 and number > 0):
             return None
         rising, falling = np.exp(up - flat), np.exp(-up - flat)
         scale = 1 + np.exp(-2 * flat)

@@ -169,9 +169,13 @@ def immerse_hose(
         as_finite("content_density", content_density),
         as_positive("water_density", water_density),
     )
-    _refuse(content_mass < 0, "content_density is below zero", content_mass, "0 or more kg/m3")
+    _refuse(
+        content_mass < 0, "content_density is below zero", content_mass, "kg/m3", "0 or more kg/m3"
+    )
     bore = diameter - 2 * wall
-    _refuse(bore < 0, "the wall is thicker than half the hose", wall, "at most half the diameter")
+    _refuse(
+        bore < 0, "the wall is thicker than half the hose", wall, "m", "at most half the diameter"
+    )
     bore_share = (bore / diameter) ** 2
     mass = wall_mass * (1 - bore_share) + content_mass * bore_share
     is_sinking = mass > water
@@ -179,7 +183,9 @@ def immerse_hose(
         first = int(np.flatnonzero(np.ravel(is_sinking))[0])
         raise DataError(
             f"{int(np.sum(is_sinking))} of {mass.size} hoses are heavier than water, "
-            f"first at index {first}",
+            f"first at index {first}"
+            if mass.size > 1
+            else "the hose is heavier than water",
             found=f"{np.ravel(mass)[first]:.5g} kg/m3 with a wall of "
             f"{np.ravel(wall_mass)[first]:g} and a content of "
             f"{np.ravel(content_mass)[first]:g} kg/m3",
@@ -218,7 +224,7 @@ def _immersion_depth_of(submerged_section_area: ArrayLike, outer_diameter: Array
     )
     share = area / (pi * diameter**2 / 4)
     _refuse(
-        (share < 0) | (share > 1 + 4e-16), "no segment of the circle is this large", area,
+        (share < 0) | (share > 1 + 4e-16), "no segment of the circle is this large", area, "m2",
         "an area from 0 to that of the circle",
     )  # fmt: skip
     smaller = np.maximum(np.minimum(share, 1 - share), 0.0)
@@ -252,13 +258,14 @@ def _segment_of(angle: Floats) -> Floats:
     return np.asarray(np.where(angle < 1, angle**3 / 6 * tail, angle - np.sin(angle)))
 
 
-def _refuse(bad: Bools, problem: str, values: Floats, needed: str) -> None:
+def _refuse(bad: Bools, problem: str, values: Floats, unit: str, needed: str) -> None:
     if not np.any(bad):
         return
     first = int(np.flatnonzero(np.ravel(bad))[0])
+    place = f": {int(np.sum(bad))} of {bad.size}, first at index {first}" if bad.size > 1 else ""
     raise DataError(
-        f"{problem}: {int(np.sum(bad))} of {bad.size}, first at index {first}",
-        found=f"{np.ravel(values)[first]:g} in SI",
+        f"{problem}{place}",
+        found=f"{np.ravel(values)[first]:g} {unit}",
         needed=needed,
     )
 
@@ -952,6 +959,7 @@ class PredictedWaveLoad:
     regime: _FlowRegime
     anchor: _AnchorForce
     notes: tuple[str, ...]
+    doubts: tuple[str, ...]
 
 
 def predict_wave_load(
@@ -1032,29 +1040,33 @@ def predict_wave_load(
         drag_coefficient=drag_coefficient,
         inertia_coefficient=inertia_coefficient,
     )
-    notes = list(described.reasons)
+    notes, doubts = list(described.reasons), list[str]()
     slender = float(regime.diameter_to_length)
     if slender > GREATEST_DIAMETER_TO_LENGTH:
-        notes.append(
-            f"the diameter is {100 * slender:.0f} % of the wave length: the hose scatters the wave,"
-            f" and Morison's equation does not hold above {100 * GREATEST_DIAMETER_TO_LENGTH:.0f} %"
+        doubts.append(
+            f"the diameter is {100 * slender:.0f} % of the wave length: the hose scatters the "
+            "wave, and Morison's equation does not hold above "
+            f"{100 * GREATEST_DIAMETER_TO_LENGTH:.0f} %"
         )
     length = 2 * pi / wave.wave_number
     if abs(length / described.wave_length - 1) > _SAME_LENGTH:
         notes.append(f"the wave of {used} is {length:.4g} m long, for it is high")
     if used != "stream function":
         if used != described.theory:
-            notes.append(f"computed by {used}, as asked for; by depth {described.theory} applies")
+            notes.append(
+                f"computed by {used}, as asked for; Zhang (2015) takes {described.theory} at"
+                " this depth"
+            )
         try:
             true = _find_extremes(
                 wave_by("stream function"), section, vertical_width=vertical_width, **given
             )
         except (DataError, FitError):
-            notes.append(
+            doubts.append(
                 f"the stream function finds no such wave: the error of {used} is not known"
             )
         else:
-            notes += _error_words(used, extremes, true)
+            doubts += _error_words(used, extremes, true)
     return PredictedWaveLoad(
         theory=described,
         used=used,
@@ -1079,20 +1091,22 @@ def predict_wave_load(
             **given,
         ),
         notes=tuple(notes),
+        doubts=tuple(doubts),
     )
 
 
 def _error_words(used: str, found: _LoadExtremes, true: _LoadExtremes) -> list[str]:
-    """Difference of the greatest loads of a theory from those of the stream function."""
+    """Errors of the greatest loads of a theory, by the stream function."""
     said = []
     for name in ("horizontal", "vertical"):
         own, right = (float(getattr(one, name).greatest) for one in (found, true))
         # far below the surface there is no motion
         if right > 0 and abs(own / right - 1) > _SMALL_ERROR:
-            said.append(f"{100 * (own / right - 1):+.0f} % {name}")
+            size = f"{100 * abs(own / right - 1):.0f} %"
+            said.append(f"greatest {name} load is {size} too {'high' if own > right else 'low'}")
     if not said:
         return []
     return [
-        f"{used} does not hold for this wave: beside the stream function its greatest load is "
-        f'{" and ".join(said)} off; wave_theory = "stream function" is right'
+        f"{used} does not hold for this wave: the {' and the '.join(said)}."
+        ' Use wave_theory = "stream function"'
     ]

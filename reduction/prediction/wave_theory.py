@@ -247,7 +247,9 @@ def _refuse_blocked(is_blocked: np.ndarray, current: Floats) -> None:
     first = int(np.flatnonzero(np.ravel(is_blocked))[0])
     raise DataError(
         f"the opposing current stops {int(np.sum(is_blocked))} of {np.size(is_blocked)} waves, "
-        f"first at index {first}",
+        f"first at index {first}"
+        if np.size(is_blocked) > 1
+        else "the opposing current stops the wave",
         found=f"a current of {np.ravel(current)[first]:g} m/s",
         needed="an opposing current slower than the group velocity of the wave",
     )

@@ -247,7 +247,7 @@ def write_wave_page(
     ]  # fmt: skip
     return write_single_page(
         out, _title("Wave load", name), "load", parts, answer=extremes_table(found, units),
-        tiles=tiles, notes=found.notes, units=units, about=_OF_WAVE,
+        tiles=tiles, notes=(*found.doubts, *found.notes), units=units, about=_OF_WAVE,
     )  # fmt: skip
 
 

@@ -76,6 +76,16 @@ def test_a_wave_load_is_told_in_words(predict):
     assert predict("wave-load", WAVE, "--quiet").stdout == ""
 
 
+def test_a_theory_that_does_not_hold_is_the_first_line(predict):
+    """A wave of 0.64 of breaking in 0.05 lengths of water: linear theory gives half the load."""
+    shallow = LEAST_WAVE.replace("6 m", "4 m").replace("1.25 m", "2 m").replace("3.57", "12")
+    done = predict("wave-load", f'{shallow}wave_theory = "airy"\n')
+    first, _ = done.stdout.split("\n", 1)
+    assert first.startswith("warning: airy does not hold for this wave: the greatest horizontal")
+    assert "% too low" in first
+    assert 'Use wave_theory = "stream function"' in first
+
+
 def test_a_wave_load_has_a_table_and_a_page(predict, tmp_path):
     done = predict("wave-load", WAVE, "--out", "p")
     assert done.returncode == 0, done.stderr
@@ -98,7 +108,7 @@ def test_a_wave_load_has_a_table_and_a_page(predict, tmp_path):
         ('"114 mm"', '"114"', SETTINGS, "wave_load.outer_diameter: a value has no unit"),
         ('"20 m"', '"0 m"', SETTINGS, "wave_load.wave_length: is not positive"),
         ('"airy"', '"linear"', SETTINGS, "wave_load.wave_theory"),
-        ('"1.25 g/cm^3"', '"2.5 g/cm^3"', DATA, "case.toml: 1 of 1 hoses are heavier than water"),
+        ('"1.25 g/cm^3"', '"2.5 g/cm^3"', DATA, "case.toml: the hose is heavier than water"),
         ('"1.25 m"', '"4 m"', DATA, "case.toml: a wave 20 m long breaks before it is this high"),
         ('"0.5 m/s"', '"-20 m/s"', DATA, "the opposing current stops"),
         ('"6 mm"', '"60 mm"', DATA, "the wall is thicker than half the hose"),

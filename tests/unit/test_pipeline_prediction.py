@@ -88,6 +88,11 @@ def test_ribbons_and_cords_are_those_of_the_fabric():
     assert hose.number_of_cords == pytest.approx(280.1, abs=0.05)
 
 
+def test_layers_of_one_diameter_have_no_torque():
+    """-1.35e-15 N m was shown for the example of the documentation."""
+    assert predicted(layer_diameter=(0.0889, 0.0889)).working_torque == 0.0
+
+
 def test_a_layer_is_followed_to_the_working_load_and_to_the_break():
     (one,) = idle(66).layers
     way = np.linspace(1, stretch_at(68, AT_WORK), 100_001)

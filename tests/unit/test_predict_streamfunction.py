@@ -74,3 +74,9 @@ def test_waves_that_break_or_are_too_long_are_refused():
         stream_wave(wave_height=5.0, wave_period=5.0, water_depth=6.0, elevation=0.0)
     with pytest.raises(FitError, match="do not change with the period"):
         stream_wave(wave_height=2.0, wave_period=400.0, water_depth=6.0, elevation=0.0)
+
+
+def test_a_search_that_runs_off_ends_without_a_warning_of_the_arithmetic():
+    """A wave of .87 of the depth: a step of Newton's method left surfaces without a number."""
+    with np.errstate(all="raise"), pytest.raises(DataError, match="breaks before"):
+        stream_wave(wave_height=3.5, wave_period=9.0, water_depth=4.0, elevation=0.0)
