@@ -139,8 +139,9 @@ def locate(
     on_tension = standstills.tension_tolerance is not None
     crosshead = position
     record, position, tension = without_load_train(
-        record, position, tension, standstills=standstills, cycles=cycles, specimens=specimens
-    )
+        record, position, tension, standstills=standstills, cycles=cycles, specimens=specimens,
+        parted=parted,
+    )  # fmt: skip
     if not on_tension:
         # the crosshead stands still in a hold; slack is a fraction of the tension of the specimen
         standstills = find_standstills(

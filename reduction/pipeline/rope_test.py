@@ -248,6 +248,12 @@ def rope_step(
             note("cycles-counted-until", name, how=how)
             for name, how in zip(names, lasted.how, strict=True)
         ]
+        cycles = located.cycles
+        if cycles is not None and not cycles.is_count_sure:
+            notes.append(
+                note("life-across-gaps", n_hidden=int(cycles.number[-1]) - cycles.n_cycles,
+                     n_cycles=cycles.n_cycles)
+            )  # fmt: skip
         step = replace(step, lasted=lasted)
     if is_rope and kind == "quasi-static":
         pairs = held_pairs(
@@ -345,12 +351,11 @@ def _lasted(
     failed: bool | None,
     settings: RopeSettings,
 ) -> CyclesToFailure:
-    """Cycles by the machine's own count if it has one, until the record shows a failure."""
-    cycles, counter = located.cycles, located.record.cycle_counter
+    """Cycles until the record shows a failure, with those that its gaps hold."""
+    cycles = located.cycles
     number = parted_in = None
     if cycles is not None:
-        if counter is not None:
-            number = cycles.count
+        number = cycles.number
         parted_in = _parted_in(located, tension, cycles, loops, settings.failure_share)
     return cycles_to_failure(
         loops,

@@ -18,6 +18,7 @@ References
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -348,6 +349,7 @@ def without_load_train(
     standstills: Standstills,
     cycles: Cycles | None,
     specimens: tuple[Specimen, ...],
+    parted: Sequence[int] = (),
 ) -> tuple[Record, Floats, Floats]:
     """Correct position and tension of a record to those of its specimens.
 
@@ -363,6 +365,9 @@ def without_load_train(
         Without them no acceleration is assumed.
     specimens : tuple of Specimen
         Used for their mass; in the order of the record.
+    parted : sequence of int, optional
+        Sample from which each specimen no longer pulls, -1 if it does to the end; none has parted
+        if left out. [1]
 
     Returns
     -------
@@ -417,7 +422,7 @@ def without_load_train(
     notes = list(record.notes)
     given, raw = np.zeros(position.shape), record.tension
     if compliance:
-        given = compliance * tension.sum(axis=0)
+        given = compliance * _pull_of_all(tension, parted)
     if moves and cycles is not None:
         periods = take_samples(record.time, cycles.last) - take_samples(record.time, cycles.first)
         # for steps of several frequencies, the fastest one
@@ -430,7 +435,7 @@ def without_load_train(
             found = acceleration(time, place, half_width=width)[own]
             # outside the cycles a log may be too sparse, and nothing moves fast
             inertia = mass[:, None] * np.where(cycling, found, np.nan_to_num(found))
-            given = compliance * (tension - inertia).sum(axis=0)
+            given = compliance * _pull_of_all(tension - inertia, parted)
         tension, raw = _less(tension, inertia), _less(raw, np.nan_to_num(inertia))
         left = turn_acceleration(np.asarray(record.time), position - given, cycles, found=found)
         train = replace(train, force_left_at_turns=tuple((np.abs(mass) * left).tolist()))
@@ -453,6 +458,15 @@ def without_load_train(
         crosshead_position=_less(record.crosshead_position, np.nan_to_num(given)),
     )  # fmt: skip
     return corrected, position, tension
+
+
+def _pull_of_all(tension: Floats, parted: Sequence[int]) -> Floats:
+    """Sum of the tensions; a specimen that has parted, whose readings are not usable, has none."""
+    pull = np.zeros(tension.shape[1:])
+    for row, load in enumerate(tension):
+        stop = parted[row] if row < len(parted) and parted[row] > 0 else None
+        pull[:stop] += load[:stop]
+    return pull
 
 
 def _less(values: Floats, part: Floats) -> Floats:

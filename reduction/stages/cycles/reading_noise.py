@@ -30,9 +30,9 @@ _CLEAR = 3.0  # standard errors, between the codes that noise fills and those th
 
 
 def reading_noise(values: Floats) -> float:
-    r"""Standard deviation of one reading, from third differences.
+    r"""Standard deviation of one reading, from third differences, or fifth or seventh.
 
-    .. math:: \sigma = 1.4826 \, \mathrm{median} |\Delta^3 y| / \sqrt{20}
+    .. math:: \sigma_k = 1.4826 \, \mathrm{median} |\Delta^k y| / \sqrt{\binom{2k}{k}}
 
     Parameters
     ----------
@@ -48,7 +48,9 @@ def reading_noise(values: Floats) -> float:
     Notes
     -----
     A third difference of white noise has 1 + 9 + 9 + 1 = 20 times its variance ([1]_).  With
-    the median ([2]_) the turns of a triangular test have no effect.
+    the median ([2]_) the turns of a triangular test have no effect.  A sine of 24 readings has
+    third differences as of noise of 0.4 % of its amplitude, and fifth ones of 0.008 %: the higher
+    order counts where it shows less than half as much, which noise does not.
 
     Examples
     --------
@@ -56,11 +58,28 @@ def reading_noise(values: Floats) -> float:
     >>> print(round(reading_noise(noise + np.arange(10_000) ** 2), 2))
     0.25
     """
-    third = np.diff(values[:_NOISE_SAMPLES], n=3)
-    third = third[np.isfinite(third)]
-    if third.size == 0:
+    level = values[:_NOISE_SAMPLES]
+    found = _noise_by_differences(np.diff(level, n=3), 3)
+    for order in (5, 7):
+        higher = np.diff(level, n=order)
+        if np.count_nonzero(np.isfinite(higher)) < _FEWEST_DIFFERENCES:
+            break
+        by_higher = _noise_by_differences(higher, order)
+        if not by_higher < found / 2:
+            break
+        found = by_higher
+    return found
+
+
+def _noise_by_differences(differences: Floats, order: int) -> float:
+    """Standard deviation of white noise that has such differences of this order."""
+    size = np.abs(differences[np.isfinite(differences)])
+    if size.size == 0:
         return 0.0
-    return float(1.4826 * np.median(np.abs(third)) / np.sqrt(20))
+    return float(1.4826 * np.median(size) / np.sqrt(scipy.special.comb(2 * order, order)))
+
+
+_FEWEST_DIFFERENCES = 48  # of a higher order: with fewer, those of noise may differ by half
 
 
 def within_scatter(noise: float, top: Floats) -> float:
