@@ -626,8 +626,9 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "life-across-gaps": (
         "warning",
-        "{n_hidden} of the cycles counted to failure are not in the log: its gaps could hold them, if"
-        " the machine ran on. {n_cycles} are logged. Add the machine's cycle_counter to the layout",
+        "{n_hidden} of the cycles counted to failure are not in the log: its gaps could hold them,"
+        " if the machine ran on. {n_cycles} are logged. Add the machine's cycle_counter to the"
+        " layout",
     ),
     "counted-without-stroke": (
         "note", "{n_cycles} machine-counted cycles have no stroke, first machine cycle {first}",

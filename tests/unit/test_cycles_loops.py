@@ -1150,6 +1150,32 @@ def test_a_sine_stored_one_by_one_has_its_period_and_its_whole_range():
     assert loops.tension_amplitude == pytest.approx(140.0, rel=1e-3)
 
 
+def test_the_drift_of_two_cycles_that_are_stored_in_a_row_is_no_loss():
+    # pairs of a hundred apart; each reaches 0.01 further, without which it has the loss of the sine
+    time, tension, strain = ellipse(60, 12)
+    drift = 0.01 * time / 10
+    first = np.add.outer(np.array([0, 240, 480]), [0, 60]).ravel()
+    ends = np.column_stack([first, first + 30])
+    none = np.zeros(time.size)
+    pairs = Cycles(
+        first, first + 60, ends, ends + 30, np.ones((6, 2)), none.astype(np.int32),
+        none.astype(np.int8), none > 0, 0.1,
+    )  # fmt: skip
+    loops = close_loops(
+        time, tension[None], strain[None] + drift, pairs, waveform="sinusoidal", control="load"
+    )
+    energy = np.pi * LOSS * AMPLITUDE**2
+    assert np.abs(loops.closed_loop_energy[0] - energy).min() > 0.1 * energy
+    assert loops.hysteresis_energy[0] == pytest.approx(energy, rel=0.01)
+
+
+@pytest.mark.parametrize("per_cycle", [14, 24])
+def test_a_sine_of_few_readings_is_not_its_own_noise(per_cycle):
+    angle = 2 * np.pi * np.arange(600) * 1.01 / per_cycle
+    noise = np.random.default_rng(7).normal(0, 1e-3, 600)
+    assert reading_noise(np.sin(angle) + noise) == pytest.approx(1e-3, rel=0.3)
+
+
 def test_a_cycle_without_time_is_refused():
     with pytest.raises(DataError, match="cycle 1 takes no time"):
         cycle_basis(np.zeros(5), np.array([0]), np.array([4]))

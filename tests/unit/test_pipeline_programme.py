@@ -117,6 +117,19 @@ def test_cycles_are_those_of_the_machine_where_it_counts():
     assert step_of(record(load, counter=counter), "fatigue").lasted.cycles == 1011
 
 
+def test_a_life_counts_the_cycles_that_the_gaps_of_its_log_hold_and_says_so():
+    # twelve cycles of ten seconds; the logger was off for fifty after the sixth
+    one = record(cycles(12))
+    late = np.arange(one.time.size) > 20 + 6 * 20
+    one = replace(one, time=one.time + 500.0 * late)
+    step = step_of(one, "fatigue")
+    assert step.lasted.cycles == 12 + 50
+    (said,) = [one for one in step.notes if one.code == "life-across-gaps"]
+    assert said.severity == "warning"
+    # the cycle next to the gap ends in it
+    assert said.numbers == {"n_hidden": 51, "n_cycles": 11}
+
+
 @pytest.mark.parametrize(
     ("back", "failed"), [(False, True), (True, False)], ids=["parted", "unloaded"]
 )
@@ -217,6 +230,20 @@ def test_one_that_comes_loose_beside_another_leaves_the_other_as_it_is():
     )
     assert located.parted == (100, -1)
     assert np.isfinite(located.tension[1]).all()
+
+
+def test_a_break_under_a_stated_compliance_leaves_the_position_to_the_other():
+    # X = x + c (T_1 + T_2): the frame that one has left is stretched by the other alone
+    whole = cycles(12)
+    load = whole.copy()
+    load[100:] = 0.0
+    given = 2e-5 * (whole + load)
+    one = replace(
+        of_two(load, whole, 10 + whole / 200 + given), load_train=LoadTrain(machine_compliance=2e-5)
+    )
+    located = locate(one, kind="cyclic", settings=ReductionSettings(), specimens=(ROPE, TETHER))
+    assert located.parted == (100, -1)
+    assert located.position == pytest.approx(10 + whole / 200, abs=2e-4)
 
 
 @pytest.mark.parametrize("low", [0.0, 100.0])

@@ -207,8 +207,9 @@ def _own_drift(
     missed = np.zeros(cycles.n_cycles)
     begins = np.flatnonzero(~touching(cycles))
     for start, stop in zip(begins.tolist(), [*begins[1:].tolist(), cycles.n_cycles], strict=True):
-        # a cycle that is stored alone has no neighbours either, however many are stored
-        is_short = cycles.n_cycles <= _SHORT_RUN or stop - start == 1
+        # one or two cycles that are stored alone show no drift of their means, however many are
+        is_alone = stop - start <= _ALONE
+        is_short = cycles.n_cycles <= _SHORT_RUN or is_alone
         if is_short:
             drifts[start:stop] = 0.0
         for place in range(start, min(start + _SHORT_RUN, stop if is_short else stop - 1)):
@@ -235,7 +236,7 @@ def _own_drift(
                 drifts[place] = drift
             elif is_later:
                 missed[place] = np.nan_to_num(np.abs(drift - drifts[place]))
-            elif stop - start == 1:
+            elif is_alone:
                 missed[place] = np.abs(drift) if np.isfinite(drift) else error
             if not is_own[place] and not is_short:
                 break
@@ -366,6 +367,8 @@ def _from_valley_to_valley(
 _CLEAR_DRIFT = 3.0  # of its standard uncertainty
 
 _SHORT_RUN = 3  # cycles
+
+_ALONE = 2  # cycles of a run among others: a drift of means needs three
 
 _OF_GAP = 8  # part of a cycle, from its first turn on
 
