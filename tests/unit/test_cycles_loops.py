@@ -2090,8 +2090,8 @@ def test_a_cycle_with_one_reading_more_has_the_same_fundamental(readings, second
     np.testing.assert_allclose(mean, 3, atol=least)
 
 
-def period_of(wave, first, readings):
-    """Period by the phase of a sampled wave whose cycles begin at given readings."""
+def periods_of(wave, first, readings):
+    """Period about each cycle, its own and the spread of a turn, of cycles that begin at readings."""
     n = round(readings)
     pair = np.column_stack([first, first + n // 2])
     cycles = Cycles(
@@ -2099,7 +2099,7 @@ def period_of(wave, first, readings):
         np.zeros(wave.size, np.int32), np.zeros(wave.size, np.int8), np.zeros(wave.size, bool), 0.1,
     )  # fmt: skip
     time = np.arange(wave.size) * 1.0
-    return sine_period(time, wave, cycles, np.full(first.size, 1.0 * n))[0]
+    return sine_period(time, wave, cycles, np.full(first.size, 1.0 * n))
 
 
 def test_the_period_of_blocks_of_three_sines_does_not_depend_on_where_their_readings_lie():
@@ -2108,13 +2108,31 @@ def test_the_period_of_blocks_of_three_sines_does_not_depend_on_where_their_read
     within = at % 200
     wave = -np.cos(2 * np.pi * np.minimum(within, 3 * readings) / readings)
     first = (200 * np.arange(8)[:, None] + 60 * np.arange(3)).ravel()
-    np.testing.assert_allclose(period_of(wave, first, 60), readings, rtol=4e-6)
+    np.testing.assert_allclose(periods_of(wave, first, 60)[0], readings, rtol=4e-6)
 
 
 def test_the_period_of_a_wave_that_grows_all_the_time_is_that_of_all_its_cycles():
     at, readings = np.arange(1261.0), 60.0
     wave = (1 + 0.14 * at / readings) * -np.cos(2 * np.pi * at / readings)
-    np.testing.assert_allclose(period_of(wave, 60 * np.arange(20), 60), readings, rtol=2e-5)
+    np.testing.assert_allclose(periods_of(wave, 60 * np.arange(20), 60)[0], readings, rtol=2e-5)
+
+
+def test_own_periods_of_sines_whose_phase_turns_are_those_of_their_phase():
+    """Phase that lags by 0.2 rad and settles over three cycles; 80 readings with some noise."""
+    readings, at = 80.0, np.arange(41 * 80 + 1.0)
+    lag = 0.2 * np.exp(-at / readings / 3)
+    noise = np.random.default_rng(5).normal(0, 1e-3, at.size)
+    wave = -np.cos(2 * np.pi * at / readings - lag) + noise
+    first = 80 * np.arange(40)
+    _, own, spread = periods_of(wave, first, 80)
+    # when the phase is a whole number of turns, by iteration
+    ends = readings * np.arange(41.0)
+    for _ in range(20):
+        ends = readings * (np.arange(41) + 0.2 * np.exp(-ends / readings / 3) / (2 * np.pi))
+    z = (own - np.diff(ends)) / (np.sqrt(2) * spread)
+    assert 0.2 < np.sqrt(np.mean(z**2)) < 1.5
+    lagged = readings * 0.2 / (2 * np.pi)
+    assert own[1:-1].sum() == pytest.approx(ends[-2] - ends[1], abs=0.1 * lagged)
 
 
 @pytest.mark.parametrize("readings", [4, 5, 6, 7])

@@ -7,7 +7,7 @@ import pytest
 from reduction.record.errors import DataError
 from reduction.stages.cycles.cycle_product import Cycles, Loops
 from reduction.stages.cycles.loops import close_loops
-from reduction.stages.moduli.secant_modulus import _mean_frequency, summarise_amplitude
+from reduction.stages.moduli.secant_modulus import mean_frequency, summarise_amplitude
 from reduction.stages.three_parameter_line.line_model import (
     _storage_and_loss,
     apparent_spring_constant,
@@ -279,5 +279,29 @@ def test_the_frequency_of_slow_and_fast_cycles_is_their_number_over_their_time()
             "strain_amplitude", "tension_amplitude", "storage_over_time", "loss_over_time",
         )},
     )  # fmt: skip
-    (mean,), _ = _mean_frequency(loops, 0)
+    (mean,), _ = mean_frequency(loops, slice(None))
     assert mean == pytest.approx(90 / (30 * 40 + 60 * 4))
+
+
+@pytest.mark.parametrize("cycles_to_settle", [2.0, 4.0, 8.0])
+def test_the_interval_of_a_frequency_includes_that_to_which_a_searching_machine_settles(
+    cycles_to_settle,
+):
+    """Phase of the wave against its command: 0.05 rad that dies out over some of 40 cycles."""
+    at = np.arange(41.0)
+    turn = (at + 0.05 / (2 * np.pi) * (1 - np.exp(-at / cycles_to_settle))) / FREQUENCY
+    period = np.diff(turn)
+    same = {name: np.ones((1, 40)) for name in (
+        "strain_amplitude", "tension_amplitude", "storage_over_time", "loss_over_time",
+    )}  # fmt: skip
+    loops = SimpleNamespace(
+        frequency=1 / period[None],
+        cycle_start_time=turn[None, :-1],
+        uncertainty={"frequency": np.full((1, 40), 1e-6)},
+        **same,
+    )
+    (mean,), (spread,) = mean_frequency(loops, slice(None))
+    assert mean == pytest.approx(40 / (turn[-1] - turn[0]))
+    assert 0.5 * spread < abs(mean - FREQUENCY) < 2 * spread
+    (late,), (spread,) = mean_frequency(loops, np.arange(40)[-10:])
+    assert abs(late - 10 / (turn[-1] - turn[-11])) < 1e-12

@@ -270,6 +270,9 @@ def cycle_basis(
     )
 
 
+_ONE_SIDED = np.sqrt(5 / 2)
+
+
 def steady_cycles(*amplitudes: Floats) -> Bools:
     """Cycles without those at both ends whose amplitude still differs from that of the next one.
 
@@ -470,9 +473,11 @@ _PASSES = 12  # each divides the error by the number of cycles of a run, which m
 
 def sine_period(
     time: Floats, driven: Floats, cycles: Cycles, period: Floats
-) -> tuple[Floats, Floats]:
-    """Period of the wave in each cycle, and the spread of one turn, by the driven channel's phase.
+) -> tuple[Floats, Floats, Floats]:
+    """Period about each cycle, its own period, and the spread of a turn, by the driven phase.
 
+    The first is a mean over neighbours, at which fundamentals are fitted; the second is
+    from one phase to the next, so that the own periods of a test add up to its duration.
     Noise shifts the turns of a log by a sample; the phase of a fundamental over a
     hundred samples is known to a hundredth of one.  The phase of the other channel changes with its
     loss angle, which settles over a test.
@@ -493,7 +498,8 @@ def sine_period(
     # a wave that grows by g within a cycle seems to turn g / (4 pi) early
     follows = cycles.last[:-1] == cycles.first[1:]
     grows = turn_over_cycle(np.log(amplitude), np.append(False, follows))
-    phased += np.nan_to_num(grows) / (4 * np.pi) * period / (2 * np.pi)
+    grows = np.nan_to_num(grows)
+    phased += grows / (4 * np.pi) * period / (2 * np.pi)
     # a wrong period rotates the phase about the middle of the cycle, where it has no effect
     middle = (take_samples(time, cycles.first) + take_samples(time, cycles.last)) / 2
     # the last cycle of a run is taken to end at the period of the others
@@ -515,8 +521,17 @@ def sine_period(
     spread = np.full_like(
         found, max(least, spread_of_turns(turns, cycles.first, cycles.last, step=0.0))
     )
+    spread = np.hypot(spread, grows**2 / (8 * np.pi**2) * found)  # what the first order leaves
     alone, own, of_own = periods_alone(
         time, driven, cycles, is_sine=True, noise=reading_noise(driven)
     )
     found[alone], spread[alone] = own, np.fmax(of_own / np.sqrt(2), least)
-    return found, spread
+    # the phase of a cycle is that of its middle: its own period is the mean of the two beside it
+    step = np.where(follows, np.diff(turns), np.nan)
+    before, after = np.append(np.nan, step), np.append(step, np.nan)
+    beside = np.where(np.isnan(after), before, after), np.where(np.isnan(before), after, before)
+    by_phase = np.isfinite(beside[0])
+    by_phase[alone] = False
+    # what a cycle has beside it on one side only counts one and a half times in a sum
+    spread[by_phase & (np.isnan(before) | np.isnan(after))] *= _ONE_SIDED
+    return found, np.where(by_phase, (beside[0] + beside[1]) / 2, found), spread

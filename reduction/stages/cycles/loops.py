@@ -1337,8 +1337,7 @@ def close_loops(
     moved = (tension if control == "load" else strain)[0] if driven is None else driven
     turn_spread: Floats | None = None
     if waveform == "sinusoidal" and np.all(period > 0):
-        period, turn_spread = sine_period(time, moved, cycles, period)
-        duration = period
+        period, duration, turn_spread = sine_period(time, moved, cycles, period)
     elif waveform != "sinusoidal":
         duration, turn_spread = own_periods(
             time, moved, cycles, duration, noise=reading_noise(moved)

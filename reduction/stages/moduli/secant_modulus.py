@@ -39,7 +39,7 @@ from scipy.special import stdtrit
 from reduction.record.arrays import as_positive
 from reduction.record.contributions import CONFIDENCE
 from reduction.record.errors import DataError
-from reduction.record.measurement import Floats
+from reduction.record.measurement import Floats, Integers
 from reduction.record.notes import note
 from reduction.record.samples import take_samples
 from reduction.stages.cycles.cycle_product import Cycles, Loops
@@ -264,34 +264,38 @@ def late_change(values: Floats) -> float:
     return float(known[known.size // 2 :].mean() - known.mean())
 
 
-def _mean_frequency(loops: Loops, break_in_cycles: int) -> tuple[Floats, Floats]:
-    r"""Frequency over all cycles, and its standard uncertainty, shape (n_specimens,) each.
+def mean_frequency(loops: Loops, cycles: slice | Integers) -> tuple[Floats, Floats]:
+    r"""Frequency over some cycles, and its standard uncertainty, shape (n_specimens,) each.
 
     .. math:: f = n / \sum P, \qquad u^2(f) = \left(\frac{f^2 \sqrt 2 \, u(t)}{n}\right)^2
               + \frac{1}{3} \left(\frac{\dot\delta}{2 \pi}\right)^2
+              + \left(\frac{2 f^2 L}{n}\right)^2
 
     Notes
     -----
+    A machine that searches its amplitude turns its phase: L is the span, beyond noise, of the
+    lead of its turns over even ones, and twice the span over the duration is how far the mean may
+    be from the frequency to which the machine settles.
+
     Cycles touch, so that only the first and the last turn are uncertain: by the scatter of
     the durations or, where it is larger, by the uncertainty of each cycle.  While the loss angle
     changes, the driven channel and the other one differ in frequency; between the two the frequency
     of a test is not defined, and the excess of that rate over its own uncertainty counts as limits
     of a uniform distribution.
     """
-    frequency = loops.frequency[:, break_in_cycles:]
-    angle = np.arctan2(
-        loops.loss_over_time[:, break_in_cycles:], loops.storage_over_time[:, break_in_cycles:]
-    )
-    time = loops.cycle_start_time[:, break_in_cycles:]
+    frequency = loops.frequency[:, cycles]
+    angle = np.arctan2(loops.loss_over_time[:, cycles], loops.storage_over_time[:, cycles])
+    time = loops.cycle_start_time[:, cycles]
     n_specimens = frequency.shape[0]
     mean, spread = np.full(n_specimens, np.nan), np.full(n_specimens, np.nan)
-    own = loops.uncertainty.get("frequency", np.zeros(loops.frequency.shape))[:, break_in_cycles:]
+    own = loops.uncertainty.get("frequency", np.zeros(loops.frequency.shape))[:, cycles]
     for row in range(n_specimens):
         known = np.isfinite(frequency[row]) & (frequency[row] > 0)
+        run = known.copy()
         # the phase of a wave that still grows, or dies out, is not that of the machine
         steady = known & steady_cycles(
-            loops.strain_amplitude[row, break_in_cycles:],
-            loops.tension_amplitude[row, break_in_cycles:],
+            loops.strain_amplitude[row, cycles],
+            loops.tension_amplitude[row, cycles],
         )
         known = steady if 2 * steady.sum() > known.sum() else known
         # a cycle that includes a wait, as before the machine starts, is not typical of the others
@@ -313,12 +317,20 @@ def _mean_frequency(loops: Loops, break_in_cycles: int) -> tuple[Floats, Floats]
             n -= 1
         period = 1 / frequency[row, known]
         mean[row] = n / period.sum()
+        run &= np.abs(frequency[row] - mean[row]) < _WAITING * mean[row]
         jitter = np.sqrt(np.mean(np.diff(period) ** 2) / 3) if n > 1 else 0.0
         ends = float(np.hypot(*own[row, known][[0, -1]])) / np.sqrt(2)
         of_turns = max(ends, mean[row] ** 2 * float(jitter)) / max(n - 1, 1)
         # cycles separated by gaps have ends of their own, whose sampling errors may be equal
         n_rows = 1 + np.sum(np.diff(time[row, known]) > _APART * period[:-1])
         of_turns = max(of_turns, ends * n_rows / n) if n_rows > 1 else of_turns
+        # a driver that searches its wave: by how much its turns lead or lag even ones
+        whole = 1 / frequency[row, run]
+        lead = np.cumsum(np.append(0.0, whole - whole.sum() / max(whole.size, 1)))
+        of_turn = float(np.max(own[row, run], initial=0.0)) / mean[row] ** 2
+        of_noise = of_turn * np.sqrt(3 * np.log(n + 1.0))
+        wanders = np.sqrt(max(float(np.ptp(lead)) ** 2 - of_noise**2, 0.0))
+        of_turns = np.hypot(of_turns, 2 * wanders * mean[row] ** 2 / n)
         rate, of_rate = _line_over(time[row, known], angle[row, known])
         beyond = np.sqrt(max(rate**2 - of_rate**2, 0.0)) / (2 * np.pi)
         spread[row] = np.hypot(of_turns, beyond / np.sqrt(3))
@@ -430,7 +442,9 @@ def summarise_amplitude(
             getattr(loops, name)[:, break_in_cycles:],
             None if own is None else own[:, break_in_cycles:],
         )
-    means["frequency"], uncertainty["frequency"] = _mean_frequency(loops, break_in_cycles)
+    means["frequency"], uncertainty["frequency"] = mean_frequency(
+        loops, slice(break_in_cycles, None)
+    )
     alike = loops.shared_by_cycles(slice(break_in_cycles, None), turns_alike=turns_alike)
     for name, shared in alike.items():
         uncertainty[name] = np.hypot(uncertainty[name], shared)

@@ -27,6 +27,7 @@ from reduction.record.samples import step_of_codes
 from reduction.stages.cycles.cycle_product import Loops
 from reduction.stages.cycles.reading_noise import reading_noise
 from reduction.stages.moduli.least_squares import lag_one_inflation
+from reduction.stages.moduli.secant_modulus import mean_frequency
 from reduction.stages.three_parameter_line.hold_pairs import CreepOfHold, HeldPair
 from reduction.stages.three_parameter_line.line_product import mean_of_rows, one_a_specimen
 
@@ -282,7 +283,8 @@ def dynamic_stiffness(
         series = loops.apparent_spring_constant[:, cycles]
         used[:, column] = np.isfinite(series).sum(axis=1)
         numbers[:, :, column] = np.array([_mean_and_drift(row) for row in series]).T
-        for row, quantity in enumerate(("frequency", "mean_tension", "tension_amplitude")):
+        means[0, :, column], errors[0, :, column] = mean_frequency(loops, cycles)
+        for row, quantity in ((1, "mean_tension"), (2, "tension_amplitude")):
             values = getattr(loops, quantity)[:, cycles]
             means[row, :, column] = mean_of_rows(values)
             errors[row, :, column] = [_mean_and_drift(one)[1] for one in values]
