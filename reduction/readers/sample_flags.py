@@ -1135,11 +1135,17 @@ def _spikes(values: Floats, settings: QualitySettings, time: Floats) -> Bools:
     found = _find_spikes(values, noise=noise, factor=settings.spike_factor)
     if count_samples(found):
         rows = np.flatnonzero(found)
-        beside = rows[:, np.newaxis] + np.arange(-2 * _NEIGHBOURS, 2 * _NEIGHBOURS + 1)
+        first = rows[np.diff(rows, prepend=-2) > 1]
+        last = rows[np.diff(rows, append=values.size + 1) > 1]
+        beside = first[:, np.newaxis] + np.arange(-2 * _NEIGHBOURS, 2 * _NEIGHBOURS + 1)
         stamps = take_samples(time, np.clip(beside, 0, time.size - 1))
-        # two of each, since a single long step is a gap
-        steps = np.sort(np.diff(stamps, axis=1), axis=1)
-        found[rows[steps[:, -2] > _OTHER_RATE * steps[:, 1]]] = False
+        # the second shortest, since a clock repeats a stamp at times
+        usual = np.sort(np.diff(stamps, axis=1), axis=1)[:, 1]
+        out = take_samples(time, first) - take_samples(time, np.maximum(first - 1, 0))
+        back = take_samples(time, np.minimum(last + 1, time.size - 1)) - take_samples(time, last)
+        # a signal moves further in longer steps, on both sides of the rows; one is a gap
+        is_slow = np.minimum(out, back) > _OTHER_RATE * usual
+        found[rows[np.repeat(is_slow, last + 1 - first)]] = False
     return found
 
 

@@ -76,6 +76,19 @@ def test_no_spike_is_where_a_log_goes_on_at_another_rate():
     assert where(found.quality_flag[0], Quality.SPIKE) == [300]
 
 
+def test_a_drop_out_of_an_uneven_log_is_a_spike():
+    # readings as two instruments answer, 0.1 or 0.2 s apart; the position reads 0 for one of them
+    steps = np.where(np.random.default_rng(4).random(600) < 0.6, 0.1, 0.2)
+    time = np.cumsum(steps)
+    place = 6.0 + np.clip(time - 10, 0, 12) / 60
+    lost = [250, 400, 520]
+    assert any(max(steps[row - 6 : row + 6]) > 1.9 * min(steps[row - 6 : row + 6]) for row in lost)
+    place[lost] = 6.0
+    load = 100 * np.clip(time - 10, 0, 12) + RANDOM.normal(0, 1.0, time.size)
+    found = flagged(record(time=time, position=place, load=load))
+    assert where(found.crosshead_position_quality_flag, Quality.SPIKE) == lost
+
+
 def test_an_extensometer_that_drops_out_is_not_read_there():
     strain = 0.01 * WAVE + RANDOM.normal(0, 1e-5, TIME.size)
     lost = np.r_[350:354, 755:762]
