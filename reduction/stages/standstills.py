@@ -493,6 +493,14 @@ def _from_approaches(
     >>> values = np.clip(0.1 * time, 0, 1) - np.clip(0.2 * (time - 39.975), 0, None)
     >>> print(_from_approaches(time, values, np.array([10]), np.array([40]), noise=1e-5))
     (array([10]), array([39]))
+
+    A broad step of a position that goes on in steps is all approach and departure:
+
+    >>> down, on = np.linspace(89, 84.2, 108), np.linspace(83.5, 75, 560)
+    >>> values = np.round(np.r_[down, np.full(10, 84.0), np.full(10, 83.8), on], 1)
+    >>> time = 0.2 * np.arange(values.size)
+    >>> print(_from_approaches(time, values, np.array([108]), np.array([127]), noise=0.3))
+    (array([], dtype=int64), array([], dtype=int64))
     """
     starts, stops = first.copy(), last.copy()
     for index, (one, end) in enumerate(zip(first.tolist(), last.tolist(), strict=True)):
@@ -507,7 +515,8 @@ def _from_approaches(
         )  # fmt: skip
         if left is not None:
             stops[index] = _without_first_step(values, one, min(stop - 1 - left.end, end), noise)
-    return starts, stops
+    stands = starts <= stops  # else approach and departure overlap: it is all motion
+    return starts[stands], stops[stands]
 
 
 def _without_first_step(values: Floats, first: int, last: int, noise: float) -> int:
