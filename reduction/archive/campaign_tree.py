@@ -16,8 +16,8 @@ from reduction.record.errors import ArchiveError, SettingsError
 # attributes of a single archive: excluded even for a campaign with one archive
 _OF_ONE_ARCHIVE = frozenset(
     {
-        "id", "test", "test_kind", "test_order", "raw_file", "raw_file_sha256", "raw_file_bytes",
-        "raw_metadata", "stored_samples", "settings", "key", "history",
+        "id", "test", "test_kind", "test_order", "test_status", "raw_file", "raw_file_sha256",
+        "raw_file_bytes", "raw_metadata", "stored_samples", "settings", "key", "history",
     }
 )  # fmt: skip
 

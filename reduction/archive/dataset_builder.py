@@ -22,6 +22,7 @@ from reduction.archive.variables import Values
 from reduction.quantities.row import Quantity
 from reduction.record.errors import ArchiveError
 from reduction.record.measurement import Origin, Source, Step
+from reduction.record.notes import full_note
 from reduction.record.samples import release_pages
 from reduction.stages.reduced_test import ReducedTest
 
@@ -235,6 +236,17 @@ _OF_PART: dict[PartName, tuple[str, str]] = {
 _LEGAL = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 
 
+def _status(test: ReducedTest) -> str:
+    """Status with the gravest warning, for a reader who sees only the root of the archive."""
+    warnings = [
+        full_note(one.stage, str(one)) for one in test.all_notes() if one.severity == "warning"
+    ]
+    if not warnings:
+        return "reduced"
+    more = f" (and {len(warnings) - 1} more in the group notes)" if len(warnings) > 1 else ""
+    return f"check: {warnings[0]}{more}"
+
+
 def global_attributes(
     test: ReducedTest, *, version: str, command: str, samples: str = "all"
 ) -> dict[str, str]:
@@ -253,6 +265,7 @@ def global_attributes(
             "control": about.control,
             "waveform": about.waveform,
             "test_order": "" if about.order is None else str(about.order),
+            "test_status": _status(test),
             **_raw_files(test.sources),
             "uncertainty_propagation": _PROPAGATION
             + ("" if test.line_spread is None else _OF_LINE),

@@ -37,7 +37,7 @@ def one_line(text: str) -> str:
     """Text valid as a remark in every grammar: one line, ASCII, no comment or rule characters."""
     plain = " ".join(text.split()).encode("ascii", "replace").decode()
     return re.sub(
-        "-{2,}",
+        "-{3,}",
         "-",
         re.sub(r"[#!%*\\\"|{}&]", " ", plain.replace(" %", "%").replace("%", " percent")),
     )

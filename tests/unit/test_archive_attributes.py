@@ -7,6 +7,7 @@ import pytest
 from reduction.archive.dataset_builder import global_attributes
 from reduction.record.errors import ArchiveError
 from reduction.record.measurement import Source
+from reduction.record.notes import note
 
 
 def attributes(test, **given):
@@ -41,6 +42,15 @@ def test_how_uncertainty_was_propagated_is_said(rich_test, bare_test):
     assert attributes(rich_test)["uncertainty_propagation"] == (
         f"{plain}; K_1, tau and K_1 tau as test_line_uncertainty_method says (JCGM 101:2008)"
     )
+
+
+def test_the_root_says_why_a_test_is_to_be_checked(rich_test, bare_test):
+    """A reader of `ncdump -h` sees no data, and so no note of the group notes."""
+    assert attributes(bare_test)["test_status"] == "reduced"
+    notes = (note("no-snap-loads", n_taut=1, n_cycles=2, slack_tension=3.0),
+             note("slack-in-cycles", "new", n_slack=1, n_cycles=2, slack_tension=3.0))  # fmt: skip
+    found = attributes(replace(bare_test, notes=notes))["test_status"]
+    assert found.startswith("check: new: the specimen goes slack in 1 of 2 cycles")
 
 
 def test_no_attribute_is_a_list_or_empty(any_test):

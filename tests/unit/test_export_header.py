@@ -16,8 +16,10 @@ def test_numbers_are_short_and_lose_nothing_that_was_measured():
 def test_remarks_have_no_sign_that_a_grammar_knows():
     told = one_line('30 % of "RBS" # \u00e9 --- a|b {c}\n * /* x */')
     assert not set(told) & set('%"#|{}*\n')
-    assert "--" not in told
+    assert "---" not in told
     assert told.isascii()
+    # with one hyphen it is no option of the command
+    assert one_line("state --wet-linear-density") == "state --wet-linear-density"
 
 
 def test_a_header_tells_range_error_source_and_that_it_is_synthetic():
@@ -38,6 +40,6 @@ def test_a_prediction_was_not_tested():
 
 
 def test_a_line_of_a_header_never_breaks_inside_an_option():
-    said = "9" * 84  # "Note: " and this leave nine signs: room for "-wet-", not for the option
+    said = "9" * 84  # "Note: " and this leave nine signs: room for "--wet-", not for the option
     lines = header_lines(line(notes=(f"{said} --wet-linear-density",)), None)
-    assert any(text.split() == ["-wet-linear-density"] for text in lines)
+    assert any(text.split() == ["--wet-linear-density"] for text in lines)
