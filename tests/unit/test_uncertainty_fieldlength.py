@@ -8,7 +8,7 @@ import pytest
 from reduction.record.contributions import InstrumentErrors
 from reduction.stages.strain.strain_model import StrainModel, strain_by_model
 from reduction.uncertainty.error_field import coefficient_errors, error_field
-from reduction.uncertainty.errors_of_curves import errors_of_material
+from reduction.uncertainty.errors_of_curves import _of_slack, errors_of_material
 
 COEFFICIENTS = {
     "relaxed_free_length": 2.55,
@@ -77,3 +77,24 @@ def test_gains_of_crosshead_and_strain_method_scale_the_strain_at_slack():
     assert found["strain_gain"] == pytest.approx(0.03 * 0.02)
     found = {one.source: row for one, row in slack_contributions(position_gain=0.01).items()}
     assert found["position_gain"] == pytest.approx(0.03 * 0.01)
+
+
+def test_the_strain_at_which_a_specimen_goes_slack_moves_with_gain_zero_and_lag():
+    """Per cent by per cent with the gain; a zero that reads high finds it at less tension.
+
+    0.1 % of 0.03; -0.5 N at 0.002 per N; 20 ms at 0.05 per s.
+    """
+    test = SimpleNamespace(
+        slack_strain=SimpleNamespace(
+            strain=np.array([0.03]), by_tension=np.array([2e-3]), by_lag=np.array([0.05])
+        ),
+        history=SimpleNamespace(
+            permanent_set=np.array([0.08]), permanent_set_by_tension=np.array([1e-3])
+        ),
+    )
+    errors = InstrumentErrors("rope", position_gain=1e-3, tension_offset=0.5, lag=0.02)
+    [found] = _of_slack(test, 0, errors, SimpleNamespace(coefficients={}))
+    assert [one.source for one in found.component] == ["position_gain", "tension_offset", "lag"]
+    assert found.values["slack_strain_at_unloading"] == pytest.approx([3e-5, -1e-3, 1e-3])
+    # a lag is the same in both first rises of a set
+    assert found.values["permanent_set"] == pytest.approx([8e-5, -5e-4, 0.0])

@@ -297,9 +297,11 @@ def scatter_over_cycles(values: Floats, cycles: Cycles, step: float) -> float:
     ...     np.zeros(1201), np.zeros(1201), np.zeros(1201), 0.1)
     >>> wave = 107.4 - 5.37 * np.abs(np.arange(1201) % 40 - 20)
     >>> noise = np.random.default_rng(1).normal(0, 1, 1201)
-    >>> print([round(scatter_over_cycles(np.round(wave + size * noise), cycles, 1.0), 1)
-    ...     for size in (0.0, 0.2, 0.6)])
-    [0.0, 0.2, 0.6]
+    >>> for size in (0.0, 0.2, 0.6):
+    ...     print(f"{scatter_over_cycles(np.round(wave + size * noise), cycles, 1.0):.2f}")
+    0.00
+    0.20
+    0.59
     """
     codes = _codes_of_branches(values, cycles, step)
     if not codes:
