@@ -253,8 +253,8 @@ def condition_of(text: str) -> _Condition:
 
     Examples
     --------
-    >>> condition_of("mean_tension > 100 lbf")
-    _Condition(name='mean_tension', operator='>', value=444.82216152605, is_share=False)
+    >>> condition_of("mean_tension > 100 kN")
+    _Condition(name='mean_tension', operator='>', value=100000.0, is_share=False)
     """
     form = _FORM.fullmatch(text)
     if form is None or not form[3]:

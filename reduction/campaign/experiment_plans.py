@@ -331,8 +331,8 @@ def _response_unit(name: str, unit: str) -> tuple[str, float, float]:
 
     Examples
     --------
-    >>> _response_unit("hysteresis_energy", "lbf")
-    ('J m-1', 4.4482216152605, 0.0)
+    >>> _response_unit("hysteresis_energy", "kN")
+    ('J m-1', 1000.0, 0.0)
     >>> _response_unit("loss", "J/m")
     ('J m-1', 1.0, 0.0)
     """

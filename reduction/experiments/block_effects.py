@@ -127,7 +127,7 @@ def _fit_random_intercept(
 
     >>> fit = _fit_random_intercept(np.ones((4, 1)), [[1.0, 1.0 + 2**0.5, 5.0, 5.0 + 2**0.5]],
     ...     block=np.array([0, 0, 1, 1]))
-    >>> print(fit.standard_deviation**2, fit.sigma**2)
+    >>> print((fit.standard_deviation**2).round(5), (fit.sigma**2).round(5))
     [7.5] [1.]
     """
     columns, values = np.asarray(matrix, dtype=np.float64), np.asarray(responses, dtype=np.float64)

@@ -492,7 +492,7 @@ def engineering_matrix(exponents: Integers, *, low: ArrayLike, high: ArrayLike) 
 
     >>> matrix = engineering_matrix(np.array([[0], [2], [1]]), low=[150.0], high=[200.0])
     >>> print((matrix @ [62.0, -7.375, 1.0]).round(4))
-    [-3.0638e+02 -1.1800e-02  4.1700e+00]
+    [-3.06375e+02 -1.18000e-02  4.17000e+00]
     """
     centre, half = _centre_and_half(low, high)
     of_row, of_column = exponents[:, None, :], exponents[None, :, :]

@@ -60,7 +60,7 @@ def cutoff(*, n_failed: int, n_coefficients: int) -> float:
     Three failures, then many (chi square: 3.841):
 
     >>> print(round(cutoff(n_failed=3, n_coefficients=1), 2))
-    6.99
+    6.98
     >>> print(round(cutoff(n_failed=100_000, n_coefficients=1), 3))
     3.842
     """

@@ -88,7 +88,7 @@ def alias_matrix(coded: ArrayLike) -> tuple[tuple[tuple[int, int], ...], Floats]
     --------
     >>> from reduction.experiments.designs import plackett_burman
     >>> pairs, alias = alias_matrix(plackett_burman(3).coded)
-    >>> pairs[2], float(abs(alias[1, 2]))  # the second and third factor in the first
+    >>> pairs[2], round(float(abs(alias[1, 2])), 3)  # the second and third factor in the first
     ((1, 2), 0.333)
     """
     levels = _two_level_columns("the design", coded)

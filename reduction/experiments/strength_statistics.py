@@ -494,7 +494,8 @@ def summarise_snap_loading(
     --------
     >>> levels = summarise_snap_loading([0.35, 0.35, 0.35, 0.27, 0.27, 0.27], [0.0] * 6,
     ...     [90e3, 120e3, 150e3, 200e3, 200e3, 200e3], [False] * 3 + [True] * 3)
-    >>> print(levels.threshold_low, levels.threshold_high, levels.failed_share_high[0].round(2))
+    >>> print(levels.threshold_low, round(levels.threshold_high, 2),
+    ...     levels.failed_share_high[0].round(2))
     0.27 0.35 0.63
     """
     load, lives = as_positive("peak_load_ratio", peak_load_ratio), as_positive("cycles", cycles)

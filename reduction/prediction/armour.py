@@ -772,7 +772,7 @@ def _layer_stiffness(design: ArmourDesign) -> _LayerStiffness:
     >>> design = ArmourDesign(np.radians(20.0), 2.5e-3, 25e-3, 210e9, n_wires=30)
     >>> stiffness = _layer_stiffness(design)
     >>> print((stiffness.tension_per_strain / 1e6).round(2))
-    102.66
+    102.65
     >>> print((stiffness.free_tension_per_strain / 1e6).round(3))
     1.748
     """

@@ -331,7 +331,7 @@ def wrap_angle_for(
     Cords strained by 5.65 % at the 130 % of the second hose of [1]_, sec. 3.0:
 
     >>> print(np.degrees(wrap_angle_for(2.3, 1.0565)).round(2))
-    68.
+    68.0
     """
     stretch = as_positive("stretch_ratio", stretch_ratio)
     cord2 = as_positive("cord_stretch_ratio", cord_stretch_ratio) ** 2

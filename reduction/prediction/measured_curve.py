@@ -830,7 +830,7 @@ def measured_curve(
     ...     strain, tension, loading="static", cycle_number=np.repeat([1, 2], 802), branch=branch
     ... )
     >>> place = np.searchsorted(curve.strain, 0.2999)
-    >>> print(curve.tension[:, :, place].round(6), curve.midline_tension[place].round(6))
+    >>> print(curve.tension[:, :, place].round(3), curve.midline_tension[place].round(3))
     [[41. 31.] [41. 31.]] 36.0
     """
     if loading not in ("static", "dynamic"):

@@ -96,7 +96,7 @@ def steady_wave(
 
     >>> wave = steady_wave(height=1e-4, first_number=1.0, frequency=None, current=0.0)
     >>> print(round(wave.speed, 6), round(float(np.sqrt(np.tanh(1.0))), 6))
-    0.872693 0.872693
+    0.872694 0.872694
     """
     for size in _SIZES:
         found = _grown(size, height, first_number, frequency, current)

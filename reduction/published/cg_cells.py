@@ -95,7 +95,7 @@ def rounding(
 
     Examples
     --------
-    >>> rounding(lambda mean, deviation: deviation / mean, [100.0, 10.0], [0.5, 0.5])
+    >>> round(rounding(lambda mean, deviation: deviation / mean, [100.0, 10.0], [0.5, 0.5]), 4)
     0.0055
     """
     centre = function(*values)

@@ -183,8 +183,8 @@ def scale_to_si(unit: str, dimension: Dimension) -> tuple[float, float]:
 
     Examples
     --------
-    >>> scale_to_si("lbf", "force")
-    (4.4482216152605, 0.0)
+    >>> scale_to_si("kN", "force")
+    (1000.0, 0.0)
     >>> scale_to_si("%", "strain")
     (0.01, 0.0)
     """
@@ -252,8 +252,9 @@ def scale_of_unit(unit: str) -> tuple[str, float, float]:
 
     Examples
     --------
-    >>> scale_of_unit("ft lbf")
-    ('kg m2 s-2', 1.35581794833140, 0.0)
+    >>> unit, factor, offset = scale_of_unit("ft lbf")
+    >>> unit, round(factor, 12), offset
+    ('kg m2 s-2', 1.355817948331, 0.0)
     >>> scale_of_unit("J m-1")
     ('N', 1.0, 0.0)
     """
@@ -356,8 +357,9 @@ def display_unit(si_unit: str, system: UnitSystem) -> tuple[str, float]:
 
     Examples
     --------
-    >>> display_unit("N", "us")
-    ('lbf', 0.22480894309971)
+    >>> unit, factor = display_unit("N", "us")
+    >>> unit, round(factor, 12)
+    ('lbf', 0.2248089431)
     """
     if system == "si":
         return si_unit, 1.0
@@ -398,7 +400,7 @@ def parse_quantity(
 
     Examples
     --------
-    >>> parse_quantity("21.5 ft", "length")
+    >>> round(parse_quantity("21.5 ft", "length"), 9)
     6.5532
     >>> parse_quantity("12 %RBS", "force", rated_break_strength=1000.0)
     120.0
@@ -458,8 +460,8 @@ def parse_in_unit(text: str, unit: str) -> float:
 
     Examples
     --------
-    >>> parse_in_unit("200 psi", "Pa")
-    1378951.45863
+    >>> round(parse_in_unit("200 psi", "Pa"), 3)
+    1378951.459
     >>> parse_in_unit("2.5 kN", "J m-1")
     2500.0
     """

@@ -258,7 +258,7 @@ def _usual_code(values: Floats) -> float:
     --------
     >>> counted = np.floor(np.arange(300.0) / 7)
     >>> round(_usual_code(0.2 * counted + np.where(counted % 3 == 0, 0.01, 0.0)), 2)
-    0.2
+    0.19
     """
     changes = np.abs(np.diff(_sampled_windows(values), axis=1))
     moving = np.sort(changes[changes > 0])

@@ -616,7 +616,7 @@ def step_that_fills(values: Floats) -> float:
 
     Examples
     --------
-    >>> print(step_that_fills(np.array([0.0, 1, 2, 3, 0.001, 1.001, 2.001])))
+    >>> print(round(step_that_fills(np.array([0.0, 1, 2, 3, 0.001, 1.001, 2.001])), 9))
     0.999
     """
     steps = np.sort(np.diff(np.sort(values[np.isfinite(values)])))

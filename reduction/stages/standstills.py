@@ -122,7 +122,7 @@ def estimate_noise(values: ArrayLike) -> tuple[float, float]:
     >>> generator = np.random.default_rng(0)
     >>> noise, quantum = estimate_noise(np.arange(5000) + generator.normal(0, 0.5, 5000))
     >>> print(round(noise, 2), quantum)
-    0.50 0.0
+    0.5 0.0
     """
     rows = _stretches(np.asarray(values, dtype=np.float64))
     if rows.size < 8:
@@ -180,7 +180,7 @@ def noise_range(values: ArrayLike) -> float:
     Examples
     --------
     >>> print(round(noise_range(np.random.default_rng(0).normal(0, 0.5, 5000)), 1))
-    6.1
+    6.0
     """
     values = np.asarray(values, dtype=np.float64)
     noise, quantum = estimate_noise(values)

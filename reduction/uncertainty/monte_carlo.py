@@ -120,7 +120,7 @@ def _draw_line(
     >>> found = _draw_line(values, reading="fundamental", covariance=np.zeros((2, 4, 4)),
     ...     degrees_of_freedom=[9.0, 9.0], contribution=shared)
     >>> print(found.is_linear, found.without_solution_share.round(3))
-    [False False] [0.    0.006]
+    [False False] [0.    0.005]
 
     K_1 is at its minimum there, where first order gives zero:
 

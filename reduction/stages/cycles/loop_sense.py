@@ -251,7 +251,7 @@ def change_of_wave(time: Floats, driven: Floats, cycles: Cycles) -> tuple[float,
     >>> cycles = find_cycles(time, wave, wave[None], stands, settings=CycleSettings())
     >>> share, last, first = change_of_wave(time, wave, cycles)
     >>> print(round(share, 2), last, first)
-    0.07 4 5
+    0.08 4 5
     """
     places = _spread(np.flatnonzero(touching(cycles)[1:]))
     phase = np.linspace(0, 1, _PHASES, endpoint=False)

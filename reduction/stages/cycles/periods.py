@@ -469,7 +469,7 @@ def change_of_period(time: Floats, driven: Floats, cycles: Cycles) -> float:
     ...     cycles = find_cycles(time, wave, wave[None], stands, settings=CycleSettings())
     ...     return round(change_of_period(time, wave, cycles), 3)
     >>> print(changes(np.cos(time)), changes(np.cos(500 * np.expm1(time / 500))))
-    0.0 -0.009
+    0.0 -0.008
     """
     reach = min(_REACH, (cycles.n_cycles - 1) // 2)
     if reach < 1:

@@ -334,7 +334,7 @@ def rounding_of_branches(values: Floats, cycles: Cycles, step: float) -> float:
     >>> wave = 20.0 - np.abs(np.arange(201) % 40 - 20)
     >>> print(round(rounding_of_branches(5 * wave, cycles, 1.0), 2),
     ...     round(rounding_of_branches(np.round(5.37 * wave), cycles, 1.0), 2))
-    0.29 0.01
+    0.29 0.02
     """
     errors = []
     for codes in _codes_of_branches(values, cycles, step):

@@ -117,7 +117,7 @@ def time_to_stop(time: Floats, place: Floats, *, held_at: float) -> float:
     >>> t = np.arange(0.0, 3.1, 0.1)
     >>> x = np.where(t < 2, t, 4 - (4 - t) ** 2 / 4 - 1)
     >>> print(round(time_to_stop(t, x, held_at=3.0), 1))
-    0.9
+    0.8
     """
     if time.size <= FEWEST_STEPS:
         return 0.0

@@ -436,7 +436,7 @@ def measure_mark_tension(
     >>> marks = SpliceMarks("new", ("T-1",), ("min",), np.array([0.7]), np.array([5.3]),
     ...                     np.array([6.01]))
     >>> print(measure_mark_tension(
-    ...     marks, test_id="T-1", standstills=hold, tension=np.linspace(400, 300, 100)))
+    ...     marks, test_id="T-1", standstills=hold, tension=np.linspace(400, 300, 100)).round(2))
     [316.16]
     """
     check_marks(marks, tests=[test_id])

@@ -222,7 +222,7 @@ def apparent_spring_constant(
 
     >>> print(apparent_spring_constant(quasi_static_spring_constant=2.014,
     ...     dissipation_spring_constant=4.353, relaxation_time=4.007, frequency=0.3).round(3))
-    6.318
+    6.317
     """
     stored, lost = _storage_and_loss(
         quasi_static_spring_constant=quasi_static_spring_constant,

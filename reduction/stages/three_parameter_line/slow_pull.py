@@ -1096,7 +1096,7 @@ def error_of_pull_rate(
     >>> constant = (2e4**2 + 4e5 * 950) ** 0.5  # at 1000 N, of which 50 N are the dashpot's
     >>> shift = (2e4**2 + 4e5 * 1000) ** 0.5 - constant
     >>> print(bool(0.5 * shift < wrong < 4 * shift), round(wrong / constant, 2))
-    True 0.02
+    True 0.01
     """
     if not spring_constant > 0 or not relaxation_time > 0:
         return 0.0
