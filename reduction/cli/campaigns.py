@@ -464,7 +464,7 @@ def run_campaign(
             progress=progress,
             opener=opener,
         )
-    _say_run(result, campaign.id, output)
+    _say_run(result, output)
     page = _refresh_design_page(processed, reports, output, made=campaign.id, opener=opener)
     if not tests and not output.names:
         keep_finished(result, _choices(processed, reports, output))
@@ -486,7 +486,7 @@ def say_unchanged(path: Path, *, processed: Path, reports: Path, output: Command
             with atomic_file(result.processed / "status.csv") as part:
                 part.write_text(status_csv(result.tests), encoding="utf-8", newline="")
     name = result.processed.name
-    _say_run(result, name, output)
+    _say_run(result, output)
     output.say(f"design values: {page}")
     output.answer(_document_of(result, name, str(page), output))
     return True
@@ -500,7 +500,7 @@ def _choices(processed: Path, reports: Path, output: CommandOutput) -> dict[str,
     }
 
 
-def _say_run(result: CampaignResult, name: str, output: CommandOutput) -> None:
+def _say_run(result: CampaignResult, output: CommandOutput) -> None:
     """Print the status of each test and part, and the location of the products."""
     answered = _show_answers(output, result.answers)
     others = [one for one in result.tests if one.test not in answered]

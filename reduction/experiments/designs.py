@@ -348,7 +348,7 @@ def model_matrix(coded: ArrayLike, exponents: Integers) -> Floats:
     >>> print(model_matrix([1.0, -1.0], quadratic_exponents(2)))
     [ 1.  1.  1.  1. -1. -1.]
     """
-    points = _points(coded, exponents)
+    points = as_finite("the levels", coded)
     matrix = np.ones((*points.shape[:-1], len(exponents)))
     for term, powers in enumerate(exponents):
         for factor in np.repeat(np.arange(powers.size), powers):
@@ -368,17 +368,12 @@ def gradient_matrix(coded: ArrayLike, exponents: Integers) -> Floats:
     >>> print(gradient_matrix([3.0], quadratic_exponents(1)))
     [[0. 6. 1.]]
     """
-    points = _points(coded, exponents)
+    points = as_finite("the levels", coded)
     slopes = []
     for power, step in zip(exponents.T, np.eye(exponents.shape[1], dtype=np.int64), strict=True):
         lowered = np.maximum(exponents - step, 0)
         slopes.append(power * model_matrix(points, lowered))
     return np.stack(slopes, axis=-2)
-
-
-def _points(coded: ArrayLike, exponents: Integers) -> Floats:
-    points = as_finite("the levels", coded)
-    return points
 
 
 def coded_from_engineering(levels: ArrayLike, *, low: ArrayLike, high: ArrayLike) -> Floats:

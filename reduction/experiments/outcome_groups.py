@@ -293,9 +293,12 @@ def exposure_series(outcomes: Iterable[Outcome]) -> tuple[ExposureSeries, ...]:
     return tuple(found)
 
 
-def load_series(
-    outcomes: Iterable[Outcome], *, distribution: LifeDistribution = "lognormal"
-) -> tuple[LoadSeries, ...]:
+_AT_ONE_LOAD: LifeDistribution = "weibull"
+
+_AT_SEVERAL_LOADS: LifeDistribution = "lognormal"  # least squares on log life, where all failed
+
+
+def load_series(outcomes: Iterable[Outcome]) -> tuple[LoadSeries, ...]:
     """Cycles to failure of each group that was tested at a peak load.
 
     Examples
@@ -319,7 +322,7 @@ def load_series(
         fit, reason = None, ""
         try:
             fit = fit_load_life(
-                peak[here], grouped.value[here], suspended, distribution=distribution
+                peak[here], grouped.value[here], suspended, distribution=_AT_SEVERAL_LOADS
             )
         except FitError as error:
             reason = error.problem
@@ -716,9 +719,7 @@ def odd_outcomes(outcomes: Iterable[Outcome]) -> list[Note]:
     return found
 
 
-def fatigue_rows(
-    outcomes: Iterable[Outcome], *, distribution: LifeDistribution = "weibull"
-) -> list[Row]:
+def fatigue_rows(outcomes: Iterable[Outcome]) -> list[Row]:
     """Rows of the table of cycles to failure and of abrasion, one a group and level of load.
 
     Examples
@@ -735,10 +736,10 @@ def fatigue_rows(
         for place, group in enumerate(grouped.groups):
             for part in _levels_of(grouped, place):
                 row = _empty_row(FATIGUE_COLUMNS) | _labels_of(group)
-                row |= _fatigue_of(grouped, part, distribution)
+                row |= _fatigue_of(grouped, part)
                 row["quantity"] = quantity
                 if quantity == "abrasion_cycles":
-                    row |= _relative_resistance(grouped, place, part, distribution)
+                    row |= _relative_resistance(grouped, place, part)
                 table.append(row)
     return table
 
@@ -746,9 +747,7 @@ def fatigue_rows(
 _REFERENCE_MATERIAL = "polypropylene"
 
 
-def _relative_resistance(
-    grouped: _Grouped, place: int, part: Integers, distribution: LifeDistribution
-) -> Row:
+def _relative_resistance(grouped: _Grouped, place: int, part: Integers) -> Row:
     """Ratio of lives to new polypropylene, as in CG-D-39-80, sec. 6.2; empty for itself."""
 
     def is_reference(group: Group) -> bool:
@@ -767,13 +766,13 @@ def _relative_resistance(
     if place in beside or not all((failed & side).any() for side in (of_reference, ~of_reference)):
         return {}
     ratio, low, high = ratio_of_lives(
-        grouped.value[rows][kept], ~failed[kept], of_reference[kept], distribution=distribution
+        grouped.value[rows][kept], ~failed[kept], of_reference[kept], distribution=_AT_ONE_LOAD
     )
     name = "relative_abrasion_resistance"
     return {name: ratio, f"{name}_low": low, f"{name}_high": high if isfinite(high) else nan}
 
 
-def _fatigue_of(grouped: _Grouped, part: Integers, distribution: LifeDistribution) -> Row:
+def _fatigue_of(grouped: _Grouped, part: Integers) -> Row:
     loads = [grouped.outcomes[row] for row in part]
     statistics = group_statistics(
         grouped.value[part], np.zeros(part.size, dtype=np.intp), grouped.use[part], n_groups=1
@@ -789,13 +788,13 @@ def _fatigue_of(grouped: _Grouped, part: Integers, distribution: LifeDistributio
         "mean_cycles_standard_uncertainty": float(statistics.mean_standard_uncertainty[0]),
         "cycles_standard_deviation": float(statistics.standard_deviation[0]),
         "cycles_relative_variability": float(statistics.relative_variability[0]),
-        "life_distribution": distribution,
+        "life_distribution": _AT_ONE_LOAD,
     }
     used = part[grouped.use[part] != EXCLUDED]
     if not used.size:
         return row | {"life_reason": "no valid test"}
     lives = grouped.value[used]
-    fit = fit_life(lives, grouped.use[used] != VALUE, distribution=distribution)
+    fit = fit_life(lives, grouped.use[used] != VALUE, distribution=_AT_ONE_LOAD)
     return row | {
         "least_cycles": float(lives.min()),
         "most_cycles": float(lives.max()),
@@ -810,9 +809,7 @@ def _fatigue_of(grouped: _Grouped, part: Integers, distribution: LifeDistributio
     }
 
 
-def load_life_rows(
-    outcomes: Iterable[Outcome], *, distribution: LifeDistribution = "lognormal"
-) -> list[Row]:
+def load_life_rows(outcomes: Iterable[Outcome]) -> list[Row]:
     """Rows of the table of life against peak load, one a group tested at two loads or more.
 
     By the names of `LOAD_LIFE_COLUMNS`; where no line can be fitted, a reason.
@@ -826,7 +823,7 @@ def load_life_rows(
     6.0
     """
     table: list[Row] = []
-    for series in load_series(outcomes, distribution=distribution):
+    for series in load_series(outcomes):
         load = series.peak_load_ratio
         if not load_levels(load).any():
             continue  # one load: its row in the table of fatigue is sufficient
@@ -837,7 +834,7 @@ def load_life_rows(
             "unused_count": series.n_unused,
             "peak_load_ratio_low": float(load.min()),
             "peak_load_ratio_high": float(load.max()),
-            "life_distribution": distribution,
+            "life_distribution": _AT_SEVERAL_LOADS,
             "life_reason": series.reason,
         }
         table.append(row)

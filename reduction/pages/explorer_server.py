@@ -81,8 +81,7 @@ def _change_document(
     view = None if made.dataset is None else TestView(key, made.dataset, units)
     survey = made.survey
     settings = [
-        _setting(one, session, text, survey, view, units)
-        for one in settings_of_kind(survey.plan.kind)
+        _setting(one, text, survey, view, units) for one in settings_of_kind(survey.plan.kind)
     ]
     return {
         "test": test,
@@ -130,7 +129,6 @@ def _step_settings(survey: Survey, text: CampaignText) -> list[dict[str, Any]]:
 
 def _setting(
     setting: Setting,
-    session: Session,
     text: CampaignText,
     survey: Survey,
     view: TestView | None,

@@ -123,7 +123,6 @@ def _plausibility_notes(
     cycles: Cycles | None,
     loops: Loops | None,
     curves: ModulusCurves | None,
-    control: Control = "position",
     is_snap: bool = False,
     is_bedding: bool = False,
 ) -> tuple[Note, ...]:
@@ -682,7 +681,7 @@ def _notes_of_test(
         notes.append(_no_hold(standstills, settings))
     notes += _plausibility_notes(
         strain, specimens=specimens, slack_tensions=_slack_in_cycles(located, settings),
-        waveform=settings.cycles.waveform, control=settings.cycles.control, cycles=located.cycles,
+        waveform=settings.cycles.waveform, cycles=located.cycles,
         loops=parts.get("loops"), curves=parts.get("curves"), is_snap=kind == "snap",
         is_bedding=kind == "bedding-in",
     )  # fmt: skip

@@ -151,7 +151,7 @@ def _words_of(view: TestView, one: Budget) -> str:
     return f"{clock[after - 1]} to {clock[after]}" if all(clock) else f"interval {after}"
 
 
-def budget_table(view: TestView, answers: Sequence[AnswerBudget]) -> PageTable | None:
+def budget_table(answers: Sequence[AnswerBudget]) -> PageTable | None:
     """Return the values behind the bars: value, uncertainty, factor, and share of each source."""
     if not answers:
         return None

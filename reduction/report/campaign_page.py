@@ -142,7 +142,7 @@ def _write_pages(
         names = [_NAME.format(number) for number in range(1, len(pages) + 1)]
         beside = [Link(name, _words(page)) for name, page in zip(names, pages, strict=True)]
         for name, page in zip(names, pages, strict=True):
-            write_text_atomically(out / name, *render_page(_part_of(content, page, beside)))
+            write_text_atomically(out / name, *render_page(_part_of(content, page)))
             kept.add(out / name)
         links = [
             link for name, page in zip(names, pages, strict=True) for link in _links(page, name)
@@ -170,7 +170,7 @@ def _words(page: Sequence[RenderedSection]) -> str:
     return f"{page[0].title} to {page[-1].title} ({len(page)} tests)"
 
 
-def _part_of(content: Page, page: Sequence[RenderedSection], beside: Sequence[Link]) -> Page:
+def _part_of(content: Page, page: Sequence[RenderedSection]) -> Page:
     return Page(
         title=f"{content.title}: {_words(page)}",
         campaign=content.campaign,
@@ -212,10 +212,9 @@ def write_report(
     values_page: str = "",
     stray: Collection[str] = (),
     unreadable: Callable[[str, str], None] | None = None,
-    opener: Opener = reading,
 ) -> Path:
     """Write the page of a campaign."""
-    page = CampaignPage(processed, units=units, stray=stray, opener=opener)
+    page = CampaignPage(processed, units=units, stray=stray)
     return page.write(out, values_page=values_page, unreadable=unreadable)[0]
 
 
@@ -420,7 +419,7 @@ def _page_of(
         chapters=whole.chapters,
         synthetic=any_synthetic(tests) or whole.is_synthetic,
         has_tests=bool(tests or statuses),
-        specimens=specimen_table(tests, units),
+        specimens=specimen_table(tests),
         specimen_notes=specimen_notes(tests),
         instruments=instrument_table(tests, units),
         instrument_notes=instrument_sentences(tests),

@@ -192,7 +192,7 @@ def _surface_parts(
                     ],
                     [
                         surface_coefficient_table(view, surfaces, index),
-                        coefficient_budget_table(view, name, budgets),
+                        coefficient_budget_table(name, budgets),
                         anova_table(view, surfaces, index),
                     ],
                 ),

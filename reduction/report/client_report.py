@@ -366,7 +366,7 @@ def render_client_report(content: ClientContent) -> str:
         campaign=content.campaign,
         synthetic=synthetic,
         items=_item_table(details, tests),
-        specimens=specimen_table(tests, units) if tests else None,
+        specimens=specimen_table(tests) if tests else None,
         specimen_notes=specimen_notes(tests),
         tests=_tests(content),
         calibration=_calibration_table(details, tests),
@@ -378,7 +378,7 @@ def render_client_report(content: ClientContent) -> str:
         conformity=conformity_table(details, tests, units),
         doubts=[one for one in content.faults if one.severity in ("failure", "warning")],
         statements=_STATEMENTS,
-        raw_files=_raw_file_table(tests, synthetic=synthetic),
+        raw_files=_raw_file_table(tests),
         version=__version__,
         not_stated=NOT_STATED,
     )
@@ -485,7 +485,7 @@ def _without_status(table: PageTable) -> PageTable:
     return replace(table, columns=table.columns[:-1], rows=rows)
 
 
-def _raw_file_table(tests: Sequence[TestView], *, synthetic: bool) -> PageTable | None:
+def _raw_file_table(tests: Sequence[TestView]) -> PageTable | None:
     rows = [
         [words(view.id), words(name), words(sum_)]
         for view in tests

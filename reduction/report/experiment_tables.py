@@ -666,9 +666,7 @@ def _apart(budget: Budget, share: float) -> Budget:
     return replace(budget, rows=tuple(sorted(rows, key=lambda row: -row.share)))
 
 
-def coefficient_budget_table(
-    view: ExperimentView, name: str, answers: Sequence[AnswerBudget]
-) -> PageTable | None:
+def coefficient_budget_table(name: str, answers: Sequence[AnswerBudget]) -> PageTable | None:
     """Return the values behind the bars: value, uncertainty, factor, and share of each source."""
     if not answers:
         return None

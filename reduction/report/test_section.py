@@ -14,7 +14,6 @@ from reduction.archive.test_variables import COEFFICIENTS
 from reduction.archive.uncertainty_budget import cycles_averaged
 from reduction.quantities.flags import BRANCH_VALUES
 from reduction.quantities.names import BRANCH_NAMES, ON_PAGE, QUANTITIES
-from reduction.quantities.units import UnitSystem
 from reduction.record.measurement import Floats
 from reduction.report.answer_tables import answer_budgets, budget_sentences, budget_table
 from reduction.report.campaign_summary import brief, grouped_notes
@@ -79,7 +78,7 @@ _OF_HOLDS = "noise, regression"
 _OF_PULL = "scatter about the cubic"
 
 
-def specimen_table(tests: Sequence[TestView], units: UnitSystem) -> PageTable:
+def specimen_table(tests: Sequence[TestView]) -> PageTable:
     """Return the specimens of a campaign, each once, as stated in its first test."""
     names = all_specimens(tests)
     sheets = []
@@ -786,7 +785,7 @@ def _budget_part(view: TestView) -> Part:
         return make_part(_BUDGETS)
     return make_part(
         _BUDGETS, draw_budgets(view, answers), (), budget_sentences(view, answers),
-        folded=make_part("The same in numbers", (), [budget_table(view, answers)]),
+        folded=make_part("The same in numbers", (), [budget_table(answers)]),
     )  # fmt: skip
 
 

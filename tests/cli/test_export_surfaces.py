@@ -58,9 +58,29 @@ def exported(command, archive, out, to, *more):
     return read_back(out, to)
 
 
+@pytest.fixture(scope="module")
+def in_si(command, archive, tmp_path_factory):
+    """The columns of the csv, exported once."""
+    return exported(command, archive, tmp_path_factory.mktemp("si") / "s.csv", "csv")
+
+
+@pytest.fixture(scope="module")
+def in_us(command, archive, tmp_path_factory):
+    out = tmp_path_factory.mktemp("us") / "s.csv"
+    return exported(command, archive, out, "csv", "--units", "us")
+
+
+@pytest.fixture(scope="module")
+def line(archive):
+    (found,) = lines_of_archive(archive)
+    return found
+
+
 @pytest.mark.parametrize("to", FORMATS)
-def test_every_format_gives_the_coefficients_of_the_archive_back(command, archive, tmp_path, to):
-    found = exported(command, archive, tmp_path / "s.out", to)
+def test_every_format_gives_the_coefficients_of_the_archive_back(
+    command, archive, tmp_path, in_si, to
+):
+    found = in_si if to == "csv" else exported(command, archive, tmp_path / "s.out", to)
     at = np.flatnonzero(found["response"] == "apparent_spring_constant")
     assert found["term"][at].tolist() == [f"B{one}" for one in range(1, 11)]
     with open_archive(archive) as file:
@@ -73,10 +93,8 @@ def test_every_format_gives_the_coefficients_of_the_archive_back(command, archiv
             np.testing.assert_allclose(found[column][at].astype(float), wanted, rtol=1e-12)
 
 
-def test_the_diagonal_of_the_covariance_is_the_square_of_the_uncertainties(
-    command, archive, tmp_path
-):
-    found = exported(command, archive, tmp_path / "s.csv", "csv")
+def test_the_diagonal_of_the_covariance_is_the_square_of_the_uncertainties(in_si):
+    found = in_si
     for response in np.unique(found["response"]):
         at = np.flatnonzero(found["response"] == response)
         covariance = np.array(
@@ -87,11 +105,10 @@ def test_the_diagonal_of_the_covariance_is_the_square_of_the_uncertainties(
         np.testing.assert_allclose(covariance, covariance.T, rtol=1e-9, atol=1e-12)
 
 
-@pytest.mark.parametrize(("units", "newton"), [("si", 1.0), ("us", NEWTON)])
-def test_the_polynomial_of_levels_is_the_look_up(command, archive, tmp_path, units, newton):
-    found = exported(command, archive, tmp_path / "s.csv", "csv", "--units", units)
+@pytest.mark.parametrize(("unit", "newton"), [("N", 1.0), ("lbf", NEWTON)])
+def test_the_polynomial_of_levels_is_the_look_up(in_si, in_us, line, unit, newton):
+    found = in_si if unit == "N" else in_us
     at = found["response"] == "apparent_spring_constant"
-    (line,) = lines_of_archive(archive)
     surface = line.surfaces["apparent_spring_constant"]
     share = np.random.default_rng(1).uniform(0.3, 0.7, 3)
     levels = dict(
@@ -110,7 +127,7 @@ def test_the_polynomial_of_levels_is_the_look_up(command, archive, tmp_path, uni
         )
     answer = look_up(line, "apparent_spring_constant", **levels)
     assert value * newton == pytest.approx(float(answer.value), rel=1e-9)
-    assert set(found["unit"][at]) == {"N" if units == "si" else "lbf"}
+    assert set(found["unit"][at]) == {unit}
 
 
 @pytest.mark.parametrize("form", [(), ("--form", "printed")])
@@ -123,17 +140,14 @@ def test_coefficients_bring_along_why_runs_have_the_status_check(command, archiv
     assert said in out.read_text(encoding="utf-8")
 
 
-def test_a_logarithm_stays_in_si(command, archive, tmp_path):
-    si = exported(command, archive, tmp_path / "a.csv", "csv")
-    us = exported(command, archive, tmp_path / "b.csv", "csv", "--units", "us")
-    at = si["response"] == "log_hysteresis_energy"
+def test_a_logarithm_stays_in_si(in_si, in_us):
+    at = in_si["response"] == "log_hysteresis_energy"
     assert at.any()
-    assert si["coefficient"][at].tolist() == us["coefficient"][at].tolist()
+    assert in_si["coefficient"][at].tolist() == in_us["coefficient"][at].tolist()
 
 
-def test_the_surfaces_that_are_looked_up_are_named_and_give_the_look_up(command, archive, tmp_path):
-    found = exported(command, archive, tmp_path / "s.csv", "csv")
-    (line,) = lines_of_archive(archive)
+def test_the_surfaces_that_are_looked_up_are_named_and_give_the_look_up(in_si, line):
+    found = in_si
     low, high = np.array([[0.1, 768 * NEWTON, 320 * NEWTON], [0.5, 1920 * NEWTON, 768 * NEWTON]])
     coded = np.array([0.5, -0.3, 0.2])
     levels = dict(zip(line.factor_names, (low + high) / 2 + coded * (high - low) / 2, strict=True))

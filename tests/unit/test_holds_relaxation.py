@@ -64,26 +64,26 @@ def test_a_hold_too_short_for_a_rate_is_refused(ramp_duration, last):
 def test_the_mean_of_an_end_has_the_uncertainty_of_its_noise():
     rng = np.random.default_rng(1)
     series = rng.standard_normal(400)
-    _, uncertainty = end_mean(series, n_samples=100, at_end=False)
+    _, uncertainty = end_mean(series, n_samples=100)
     assert uncertainty == pytest.approx(0.1, rel=0.1)
 
 
 def test_a_series_quieter_than_its_digitizer_keeps_the_digitizer():
     series = np.zeros(400)
     series[200:] = 1.0  # one step of the digitizer
-    mean, uncertainty = end_mean(series, n_samples=100, at_end=True)
+    mean, uncertainty = end_mean(series, n_samples=100)
     assert mean == 1.0
     assert uncertainty == pytest.approx(1 / np.sqrt(12), rel=0.01)
 
 
 def test_missing_samples_are_left_out_of_an_end():
-    mean, _ = end_mean([np.nan, 2.0, 4.0, 9.0], n_samples=2, at_end=False)
+    mean, _ = end_mean([9.0, 2.0, 4.0, np.nan], n_samples=2)
     assert mean == 3.0
 
 
 def test_an_end_of_one_sample_is_refused():
     with pytest.raises(DataError, match="no noise can be read"):
-        end_mean([1.0, np.nan], n_samples=1, at_end=True)
+        end_mean([1.0, np.nan], n_samples=1)
 
 
 def test_values_at_times_are_free_of_noise_where_samples_are_many():

@@ -450,7 +450,7 @@ def test_whether_there_is_one_relaxation_time_does_not_hang_on_its_unit():
             specimen=["rope"] * 2, frequency=frequency,
         )  # fmt: skip
         line = SimpleNamespace(
-            loss_spring_constant=0.1 * frequency, storage_spring_constant=np.ones(2)
+            loss_spring_constant=0.1 * frequency, storage_spring_constant=frequency**0.2
         )
         coded = np.array([[-1.0, 0.0], [1.0, 0.0]])
         return _single_time_of_runs(runs, coded, 0, ("relaxation_time",), line)[0]
@@ -459,3 +459,4 @@ def test_whether_there_is_one_relaxation_time_does_not_hang_on_its_unit():
         found = check(scale, 0.02)
         assert found.exponent == pytest.approx(np.log(3 / 2) / np.log(5))
         assert found.exponent_standard_uncertainty == pytest.approx(0.02 * 2**0.5 / np.log(5))
+        assert found.loss_exponent == pytest.approx(0.8)  # of the loss factor, f over f^0.2

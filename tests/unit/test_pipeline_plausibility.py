@@ -21,7 +21,6 @@ def notes_of(triangle):
 
     def notes(
         tension=1000 * strain, *, stretch=strain, waveform="triangular", share=None, snap=False,
-        control="position",
     ):  # fmt: skip
         one = cycles
         if share is not None:
@@ -37,7 +36,7 @@ def notes_of(triangle):
             loops=close_loops(
                 0.1 * np.arange(strain.size), load, stretch, one, waveform=waveform
             ), curves=curves,
-            control=control, is_snap=snap,
+            is_snap=snap,
         )))  # fmt: skip
 
     notes.strain = strain

@@ -46,7 +46,7 @@ def test_bars_and_table_have_a_row_a_coefficient(view):
     found = coefficient_budgets(view, surfaces, 0)
     (figure,) = draw_coefficient_budgets(view, "budget-0", "shares", found)
     assert "synthetic" in str(figure).lower()
-    table = coefficient_budget_table(view, surfaces.response_names[0], found)
+    table = coefficient_budget_table(surfaces.response_names[0], found)
     assert len(table.rows) == len(surfaces.labels)
     assert any("Run to run: scatter of runs" in one for one in table.remarks)
 
@@ -66,7 +66,7 @@ def test_an_archive_that_keeps_nothing_of_what_runs_share_has_no_bars():
     view = view_of(bare)
     assert coefficient_budgets(view, view.surfaces, 0) == []
     assert draw_coefficient_budgets(view, "budget-0", "shares", []) == []
-    assert coefficient_budget_table(view, KAP, []) is None
+    assert coefficient_budget_table(KAP, []) is None
 
 
 def test_runs_without_a_twin_leave_their_scatter_to_the_regression(view):

@@ -117,7 +117,7 @@ def test_an_archive_that_keeps_no_shared_errors_still_renders_and_says_what_it_h
     assert texts(table)[0][4] == "1.0000 ± 0.0068"  # 2.2622 times 3 kPa
     assert table.remarks[0].endswith(NOTHING_STATED.replace(" and tape readings", ""))
     assert answer_budgets(old) == [] and budget_sentences(old, []) == []
-    assert budget_table(old, []) is None
+    assert budget_table([]) is None
     assert all("uncertainty" not in part.heading for part in make_section(old).parts)
 
 
@@ -181,7 +181,7 @@ def test_where_linear_propagation_bends_the_interval_by_monte_carlo_stands_inste
     assert any("Monte Carlo" in text for text in table.remarks)
     answers = answer_budgets(drawn)
     assert answers[-1].text == "4.8 (3.8 to 6.5) s"
-    budget = budget_table(drawn, answers)
+    budget = budget_table(answers)
     assert texts(budget)[-1][1:4] == ["4.8 (3.8 to 6.5)", "s", NOT_GIVEN]
     assert any("Shares are of first order" in text for text in budget.remarks)
     linear = TestView("test-0", data.assign(test_line_uncertainty_method=(S, [1])))
@@ -215,7 +215,7 @@ def test_hatching_is_explained_where_it_is_and_an_unknown_source_has_a_look_and_
 
 def test_the_numbers_of_the_bars_stand_in_a_table_with_their_meanings():
     view = make_view(units="us")
-    table = budget_table(view, answer_budgets(view))
+    table = budget_table(answer_budgets(view))
     assert table.columns[:5] == ("number", "value", "unit", "k", "random [%]")
     assert texts(table)[3] == ["K_ap, new", "131.5 ± 2.2", "lbf", "1.99", "36.0", "64.0", "0.0",
                                "0.0"]  # fmt: skip

@@ -251,7 +251,7 @@ class Hold:
         (known,) = select_samples(lambda part: np.isfinite(self.strain[part]), self.strain)
         if known.size < 2:
             return float("nan")
-        return end_mean(known, n_samples=known.size, at_end=True)[1]
+        return end_mean(known, n_samples=known.size)[1]
 
     @property
     def ramp_end_time(self) -> float:

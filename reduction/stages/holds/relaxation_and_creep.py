@@ -214,7 +214,7 @@ def _lost_in_a_decade(hold: Hold) -> float:
 def _at_last(hold: Hold, n_samples: int) -> tuple[float, float]:
     """Tension at the last sample, from a line over the logarithm of time through the last ones."""
     series = hold.tension[-n_samples:]
-    mean, spread = end_mean(hold.tension, n_samples=n_samples, at_end=True)
+    mean, spread = end_mean(hold.tension, n_samples=n_samples)
     since = hold.time[-n_samples:] - hold.ramp_end_time
     if since.size < 3 or not since[0] > 0:
         return mean, spread

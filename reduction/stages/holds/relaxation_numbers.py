@@ -132,12 +132,12 @@ def relaxation_drop(initial_tension: ArrayLike, final_tension: ArrayLike) -> Flo
     return drop
 
 
-def end_mean(values: ArrayLike, *, n_samples: int, at_end: bool) -> tuple[float, float]:
-    """Mean of a short stretch at one end of a series, with its standard uncertainty.
+def end_mean(values: ArrayLike, *, n_samples: int) -> tuple[float, float]:
+    """Mean of the last samples of a series, with its standard uncertainty.
 
     Examples
     --------
-    >>> mean, _ = end_mean([5.0, 5.0, 4.0, 3.0, 3.0], n_samples=2, at_end=True)
+    >>> mean, _ = end_mean([5.0, 5.0, 4.0, 3.0, 3.0], n_samples=2)
     >>> mean
     3.0
     """
@@ -145,9 +145,8 @@ def end_mean(values: ArrayLike, *, n_samples: int, at_end: bool) -> tuple[float,
     (series,) = select_samples(lambda part: np.isfinite(whole[part]), whole)
     noise, quantum = sample_noise(series)
     count = max(1, min(n_samples, series.size))
-    stretch = series[-count:] if at_end else series[:count]
     variance = noise**2 / count + (quantum**2 / 12 if noise < quantum / 2 else 0.0)
-    return mean_of(stretch), float(np.sqrt(variance))
+    return mean_of(series[-count:]), float(np.sqrt(variance))
 
 
 def rate_per_decade(blocks: _LogBlocks, *, ramp_duration: float) -> Rate:

@@ -151,7 +151,7 @@ def jump_of_mean(
     if change.size <= 2 * _AROUND_JUMP + 1 or not np.isfinite(rate).all():
         return None
     found = [
-        _one_jump(place, change, lasts, rate)
+        _one_jump(place, lasts, rate)
         for place in np.flatnonzero(
             rate == scipy.ndimage.maximum_filter1d(rate, 2 * _BESIDE_JUMP + 1)
         ).tolist()
@@ -168,7 +168,7 @@ def jump_of_mean(
     return first + 1, size
 
 
-def _one_jump(place: int, change: Floats, lasts: Floats, rate: Floats) -> tuple[int, int, float]:
+def _one_jump(place: int, lasts: Floats, rate: Floats) -> tuple[int, int, float]:
     """First and last change of a jump, and the largest expected change beside it. [1]."""
     sides = rate[[place - 1, place + 1]]
     is_split = sides.max() > rate[place] / _JUMP

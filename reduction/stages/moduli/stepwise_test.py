@@ -382,7 +382,7 @@ def _inconsistency_note(
 
 
 def _odd_readings(
-    readings: StepReadings, gauge: float, is_inconsistent: Bools
+    readings: StepReadings, is_inconsistent: Bools
 ) -> tuple[Integers, Bools, list[Note]]:
     """Branches of the readings, mask of the odd ones, and notes on them."""
     is_odd = _find_odd_weights(readings.tension, readings.length)
@@ -517,7 +517,7 @@ def reduce_stepwise(
     as_positive("area", area)
     gauge, gauge_uncertainty, is_inconsistent = _gauge(readings, stated_gauge_length)
     notes = _gauge_notes(gauge, readings, stated_gauge_length)
-    branch, is_odd, of_odd = _odd_readings(readings, gauge, is_inconsistent)
+    branch, is_odd, of_odd = _odd_readings(readings, is_inconsistent)
     notes += of_odd
     strain = length / gauge - 1
     growth, weight_change = np.diff(length), np.diff(readings.tension)

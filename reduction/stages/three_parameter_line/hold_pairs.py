@@ -320,7 +320,7 @@ class HeldPair:
 
 def _end_of(values: Floats) -> tuple[float, float]:
     """Mean over the end of a hold, with its standard uncertainty."""
-    return end_mean(values, n_samples=max(3, int(_FINAL_SHARE * values.size)), at_end=True)
+    return end_mean(values, n_samples=max(3, int(_FINAL_SHARE * values.size)))
 
 
 def _stiffness(
