@@ -1,3 +1,5 @@
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from measured_hoses import Truth
@@ -5,6 +7,7 @@ from measured_hoses import Truth
 from reduction.prediction.measured_curve import (
     MeasuredCurve,
     _branch_scatter,
+    _end_of_curve,
     _fill_cells,
     _Reading,
     _select_samples,
@@ -371,3 +374,17 @@ def test_cycles_without_samples_are_no_cycles_of_the_mean():
         break_in_cycles=2,
     )  # fmt: skip
     np.testing.assert_allclose(later.midline_tension, whole.midline_tension)
+
+
+def test_the_end_of_a_curve_is_half_a_bin_beyond_its_last_samples_with_the_noise_of_both():
+    """A straight line through two bins: weights 3/2 and -1/2, of 4 and 9 readings."""
+    cells = SimpleNamespace(
+        offset=np.zeros((1, 3)), furthest=np.full((1, 3), 0.5), count=np.array([[9.0, 4.0, 0.0]]),
+        tension=np.array([[100.0, 120.0, np.nan]]),
+        residual=np.array([8.0]), freedom=np.array([4.0]),  # noise of 2 N2
+    )  # fmt: skip
+    strain, tension, spread = _end_of_curve(
+        cells, np.array([[0]]), np.array([True, False, False]), np.array([0.5, 0.0, 0.0])
+    )
+    assert (strain, tension) == (1.5, 130.0)
+    assert spread**2 == pytest.approx(0.5**2 + 2 * (1.5**2 / 4 + 0.5**2 / 9))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from reduction.experiments.designs import box_behnken
-from reduction.experiments.response_surfaces import fit_surfaces
+from reduction.experiments.response_surfaces import _levels, fit_surfaces
 from reduction.experiments.surface_warnings import (
     drift_over_order,
     drifting_responses,
@@ -87,3 +87,12 @@ def test_one_experiment_of_twenty_is_named_though_nothing_drifts():
         named += bool(drifting_responses(surfaces, drift))
     # one in twenty +- 0.011
     assert 0.02 < named / n_experiments < 0.085
+
+
+@pytest.mark.parametrize(("ends", "how"), [
+    ((-1.2, 1.0), "go beyond"), ((-0.8, 1.0), "fall short of"), ((-1.05, 0.95), None),
+])  # fmt: skip
+def test_levels_off_the_range_by_more_than_a_twentieth_of_it_are_told(ends, how):
+    """Coded levels of -1 to 1: a tenth of that scale is a twentieth of the range."""
+    found = _levels(np.array(ends)[:, None], ["load"])
+    assert [one.numbers["how"] for one in found] == ([how] if how else [])
