@@ -99,7 +99,6 @@ def test_a_removed_archive_is_gone_at_the_next_question(command, processed, tmp_
 def test_a_campaign_without_its_catalogue_is_told_with_what_to_do(command, processed, tmp_path):
     folder = tmp_path / "processed"
     shutil.copytree(processed, folder)
-    before = rows_of(command("catalogue", folder, "--json"))
     (folder / "tmt-synthetic" / "catalogue.parquet").unlink()
     done = command("catalogue", folder, "--json")
     assert {row["campaign"] for row in rows_of(done)} == {"buoy-technology-1997"}
@@ -107,8 +106,6 @@ def test_a_campaign_without_its_catalogue_is_told_with_what_to_do(command, proce
         "left out: tmt-synthetic: catalogue.parquet cannot be read; found No such file or "
         "directory. Run the campaign again, or use --rebuild.\n"
     )
-    anew = command("catalogue", folder, "--json", "--rebuild")
-    assert rows_of(anew) == before and anew.stderr == ""
 
 
 def test_catalogues_made_from_the_archives_are_those_of_the_runs(command, processed, tmp_path):
@@ -116,7 +113,9 @@ def test_catalogues_made_from_the_archives_are_those_of_the_runs(command, proces
     shutil.copytree(processed, folder)
     made = {path: path.read_bytes() for path in folder.glob("*/catalogue.parquet")}
     assert len(made) == 2
-    assert command("catalogue", folder, "--rebuild", "--quiet").returncode == 0
+    (folder / "tmt-synthetic" / "catalogue.parquet").unlink()
+    done = command("catalogue", folder, "--rebuild", "--quiet")
+    assert done.returncode == 0 and done.stderr == ""
     assert {path: path.read_bytes() for path in made} == made
 
 

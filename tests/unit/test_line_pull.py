@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy import stats
 
 from reduction.record.errors import DataError, FitError
 from reduction.stages.cycles.cycle_product import Loops
@@ -142,21 +143,23 @@ class TestPull:
         assert constant == pytest.approx(slope_of_cubic(load, CUBIC), rel=1e-4)
         assert (uncertainty < 1e-3 * constant).all()
 
-    def test_the_stated_uncertainty_is_the_scatter_of_pulls_with_noise(self):
+    @pytest.mark.parametrize(
+        "count", [100, pytest.param(300, marks=[pytest.mark.nightly, pytest.mark.slow])]
+    )
+    def test_the_stated_uncertainty_is_the_scatter_of_pulls_with_noise(self, count):
         load = np.array([1000.0, 4000.0, 8000.0])
         found = [
             quasi_static_spring_constant(fit_pull(*rising(seed=seed, noise=20.0)), load)
-            for seed in range(300)
+            for seed in range(count)
         ]
         constants, stated = np.array(found).transpose(1, 0, 2)
         truth = slope_of_cubic(load, CUBIC)
         # now and then noise looks like a curve that asks for more pieces: each has its own scatter
         distance = (constants - truth) / stated
         assert (np.mean(np.abs(distance) < 1.96, axis=0) > 0.92).all()
-        assert np.sqrt(np.mean(stated**2, axis=0)) == pytest.approx(
-            np.sqrt(np.mean((constants - truth) ** 2, axis=0)), rel=1.0
-        )
-        error = constants.std(axis=0) / np.sqrt(300)
+        usual = np.median(np.abs(constants - truth), axis=0) / stats.norm.ppf(0.75)
+        assert np.median(stated, axis=0) == pytest.approx(usual, rel=0.5)
+        error = constants.std(axis=0) / np.sqrt(count)
         # noise of tension stands on the abscissa: 20 N of 8,800 N shifts the slope by little
         assert (np.abs(constants.mean(axis=0) - truth) < 4 * error + 1e-3 * truth).all()
 
