@@ -5,7 +5,7 @@ import pytest
 
 from reduction.record.settings import CycleSettings, PhaseSettings
 from reduction.stages.cycles.cycle_pairing import _without_stands
-from reduction.stages.cycles.cycle_search import find_cycles
+from reduction.stages.cycles.cycle_search import _steady_span, find_cycles
 from reduction.stages.standstills import find_standstills
 
 STROKES = [2.0, 4, 2, 4, 2]
@@ -95,3 +95,13 @@ def test_a_last_cycle_after_which_the_drive_goes_to_slack_ends_at_its_valley(sha
 def test_a_sine_that_is_broken_off_before_the_drive_goes_to_slack_has_no_last_cycle():
     ends, _ = cycles_then_slack("sinusoidal", 9.75, 1.0)
     np.testing.assert_allclose(ends[-1], 9, atol=0.05)
+
+
+@pytest.mark.parametrize(("n_cycles", "first"), [(7, 0), (8, 1)])
+def test_a_start_is_told_from_the_others_where_five_remain_beside_the_three_it_may_take(
+    n_cycles, first
+):
+    wave = np.append(np.tile([0.0, 100.0], n_cycles), 0.0)
+    wave[1] = 90
+    ends = np.arange(2 * n_cycles).reshape(n_cycles, 2)
+    assert _steady_span(wave, ends, ends + 1) == slice(first, n_cycles)
