@@ -63,6 +63,7 @@ class NamedComparison:
     specimen: str
     hose: str
     comparison: Comparison
+    is_synthetic: bool = False
 
     @property
     def notes(self) -> tuple[Note, ...]:

@@ -219,7 +219,10 @@ def compare_archive(
         if plan.loading is None and comparison.measured.loading == "dynamic":
             assumed = note("taken-as-dynamic", kind=kind)
             comparison = replace(comparison, notes=(assumed, *comparison.notes))
-        return NamedComparison(plan.name, archive.attrs["test"], specimen, hose.name, comparison)
+        return NamedComparison(
+            plan.name, archive.attrs["test"], specimen, hose.name, comparison,
+            is_synthetic=archive.attrs.get("synthetic") == "yes",
+        )  # fmt: skip
 
 
 def _pressure(archive: xr.Dataset, index: int) -> dict[str, Any]:

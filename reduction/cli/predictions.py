@@ -583,7 +583,8 @@ def compare_test(measured: Path, spec: Path, *, out: Path | None, output: Comman
             path,
             hoses={hose.name: hose},
             campaign_id=hose.name,
-            attributes={"title": f"Test {named.test} against hose {hose.name}"},
+            attributes={"title": f"Test {named.test} against hose {hose.name}"}
+            | ({"synthetic": "yes"} if named.is_synthetic else {}),
             sources=[
                 hash_source(spec, spec.name),
                 hash_source(measured, measured.name),
@@ -601,6 +602,8 @@ def compare_test(measured: Path, spec: Path, *, out: Path | None, output: Comman
 def _show_comparison(named: NamedComparison, output: CommandOutput) -> None:
     found = named.comparison
     force, factor = output.unit("N")
+    if named.is_synthetic:
+        output.say("SYNTHETIC DATA: no specimen was tested.")
     output.say(
         f"{named.test} of {named.specimen} ({found.measured.loading}) against {named.hose}: "
         f"{verdict_words(found.validation, unit=force, factor=factor)}"
@@ -683,6 +686,7 @@ def _comparison_document(named: NamedComparison) -> dict[str, Any]:
     judged, validation = found.differences[found.judged], found.validation
     return {
         "test": named.test,
+        "synthetic": named.is_synthetic,
         "specimen": named.specimen,
         "hose": named.hose,
         "loading": found.measured.loading,

@@ -170,9 +170,15 @@ def test_the_command_compare_gives_what_the_campaign_gives(run, comparisons, com
         + '[comparison]\nloading = "static"\ncalibrate = ["wrap_angle", "rubber_modulus"]\n',
         encoding="utf-8",
     )
-    ended = command("compare", run.processed / "L-64.nc", spec, "--json")
+    ended = command(
+        "compare", run.processed / "L-64.nc", spec, "--json", "--out", tmp_path / "products"
+    )
     assert ended.returncode == 0, ended.stderr
     answer = json.loads(ended.stdout)
+    # the text, the archive and the page did not say so
+    assert answer["synthetic"] is True
+    with open_archive(tmp_path / "products" / "comparisons.nc") as archive:
+        assert archive.attrs["synthetic"] == "yes"
     assert {
         "bias", "rms", "relative_rms", "worst", "events", "validation_uncertainty", "verdict",
         "calibrated",
