@@ -11,6 +11,7 @@ from typing import Any, Literal, cast
 
 from reduction.archive.open import reading
 from reduction.archive.workbook import sheets_of_tables, write_workbook
+from reduction.campaign.toml_file import at_place
 from reduction.cli.curves import deployed_line, is_of_pieces, piece_source, rule_of
 from reduction.cli.output import CommandOutput
 from reduction.cli.printed_numbers import plain
@@ -81,6 +82,14 @@ def _stated_hydrodynamics(
         words.append(f"{what} {CYLINDER.source if text is None else said}")
     both = drag is not None and added_mass is not None
     return {"hydrodynamics": replace(found, source=said if both else "; ".join(words))}
+
+
+def _of_option(
+    name: str, text: str, dimension: Dimension, *, rated_break_strength: float | None = None
+) -> float:
+    """Value of an option in SI; errors name the option."""
+    with at_place(f"--{name.replace('_', '-')}: "):
+        return parse_quantity(text, dimension, rated_break_strength=rated_break_strength)
 
 
 def _pair(option: str, text: str) -> tuple[float, float]:
@@ -299,7 +308,7 @@ def write_export(request: ExportRequest) -> ExportedFiles:
     if surfaces == Path(sources[0]) and not levels:
         return _written_surfaces(surfaces, request)
     values: dict[str, Any] = {
-        name: parse_quantity(text, dimension)
+        name: _of_option(name, text, dimension)
         for name, dimension in _DIMENSIONS.items()
         if (text := getattr(request, name)) is not None
     }
@@ -351,7 +360,7 @@ def _stiffness_said(request: ExportRequest) -> tuple[str, ...]:
         return ()
     strength = source.rated_break_strength
     levels = {
-        name: parse_quantity(text, dimension, rated_break_strength=strength)
+        name: _of_option(name, text, dimension, rated_break_strength=strength)
         for name, dimension in _LEVELS.items()
         if (text := getattr(request, name)) is not None
     }
@@ -513,7 +522,7 @@ def _line_of(
             )
         strength = _strength_of_shares(sources, stated)
         at = {
-            name: parse_quantity(text, _LEVELS[name], rated_break_strength=strength)
+            name: _of_option(name, text, _LEVELS[name], rated_break_strength=strength)
             for name, text in levels.items()
         }
         _refuse_half_levels(source, levels)
@@ -604,7 +613,8 @@ def _of_levels(
     strength = line.rated_break_strength
     strength = strength if math.isfinite(strength) else stated.get("rated_break_strength", math.nan)
     at = {
-        name: parse_quantity(
+        name: _of_option(
+            name,
             text,
             _LEVELS[name],
             rated_break_strength=strength if math.isfinite(strength) else None,

@@ -280,9 +280,9 @@ def moordyn_files(line: ExportLine, stem: str, *, form: MoorDynForm = "table") -
     if part is None:
         raise SettingsError(
             f"static and dynamic stiffness of {line.name} are not known",
-            needed="K_0, K_1 and tau of a published line, which are taken at "
-            "--frequency, --mean-tension and --tension-amplitude",
-            hint="Export the curve instead: --form table.",
+            needed="a published rope, or a campaign with cycles of a rope and its slow pull, with "
+            "all of --frequency, --mean-tension and --tension-amplitude",
+            hint="State the three levels, or export the curve instead: --form table.",
         )
     apart = segment_length(line)
     fast = fast_damping(part.fast_stiffness, line.needed("linear_density"), apart)
@@ -546,9 +546,9 @@ def _library(line: ExportLine) -> str:
     if part is None:
         raise SettingsError(
             f"static and dynamic stiffness of {line.name} are not known",
-            needed="K_0, K_1 and tau of a published line, which are taken at --frequency, "
-            "--mean-tension and --tension-amplitude: the library of MoorPy is linear",
-            hint="Export the curve instead: --form table.",
+            needed="a published rope, or a campaign with cycles of a rope and its slow pull, with "
+            "all of --frequency, --mean-tension and --tension-amplitude: the library is linear",
+            hint="State the three levels, or export the curve instead: --form table.",
         )
     strength, diameter = line.needed("rated_break_strength"), line.needed("diameter")
     mass, water = line.needed("linear_density"), line.hydrodynamics

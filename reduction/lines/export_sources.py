@@ -167,8 +167,10 @@ def _of_test(archive: xr.Dataset, curve: CurveName, name: str | None) -> dict[st
     if "branch_tension" not in archive:
         raise DataError(
             "the archive has no curve of tension over strain",
-            found=f"a test of the kind {archive.attrs.get('test_kind', 'unknown')}",
-            needed="a test with cycles",
+            found=f"a test of the kind {archive.attrs['test_kind']}"
+            if "test_kind" in archive.attrs
+            else archive.attrs.get("id", "an archive of no test"),
+            needed="the archive of a test with cycles or a rise, or the folder of a campaign",
         )
     place = _place(archive, "specimen", name)
     branches = [str(value) for value in archive.variables["branch_name"].values]

@@ -107,7 +107,10 @@ def test_units_are_for_tables_and_never_for_a_code(command, tmp_path):
              "--frequency", "0.3 Hz", "--tension-amplitude", "8 %RBS"],
             4, "outside the tested range",
         ),
-        (["polyester-double-braid-0.5in-new", "--to", "csv", "--mean-tension", "3 ft"], 2, "force"),
+        (["polyester-double-braid-0.5in-new", "--to", "csv", "--mean-tension", "3 ft"], 2,
+         "--mean-tension: unit 'ft' is not a unit of force"),
+        (["polyester-double-braid-0.5in-new", "--to", "moordyn", "--linear-density", "0.11"], 2,
+         "--linear-density: a value has no unit"),
         (["nylon-8-strand-plaited-0.5in-5-years", "--to", "csv", "--mean-tension", "20 %RBS"], 2,
          "needed --frequency and --tension-amplitude too"),
     ],
@@ -278,7 +281,7 @@ def test_dynamics_without_levels_name_the_options_that_are_missing(command, tmp_
     done = command("export", "polyester-double-braid-0.5in-new", *options, "--linear-density",
                    "0.11 kg/m", "--out", tmp_path / "x")  # fmt: skip
     assert done.returncode == 2
-    for name in ("--frequency", "--mean-tension", "--tension-amplitude"):
+    for name in ("State the three levels", "--frequency", "--mean-tension", "--tension-amplitude"):
         assert name in done.stderr
 
 
