@@ -233,30 +233,38 @@ def _slack_in_cycles(located: Located, settings: ReductionSettings) -> list[floa
     if located.cycles is None or not located.cycles.n_cycles:
         return levels
     return [
-        one / 2 if _share_of_stroke_below(one, load, located.position, located.cycles) < _AT_A_TURN
-        else one
+        one / 2 if _turns_at_once_below(one, load, located.position, located.cycles) else one
         for one, load in zip(levels, located.tension, strict=True)
     ]  # fmt: skip
 
 
 _AT_A_TURN = 0.01  # of the stroke: the last hundredth at which a load of 2 % of the peak turns
 
+_OF_MEAN_STIFFNESS = 0.25  # that a taut line has at least, at the foot of its curve
 
-def _share_of_stroke_below(level: float, load: Floats, position: Floats, cycles: Cycles) -> float:
-    """Greatest share of the stroke of a cycle that the crosshead moves at a load below a level."""
-    greatest = 0.0
+
+def _turns_at_once_below(level: float, load: Floats, position: Floats, cycles: Cycles) -> bool:
+    """Whether a specimen pulls at loads below a level, in all cycles.
+
+    It does if the crosshead hardly moves there, or the load falls further as that of a taut line.
+    """
     for block in cycles.blocks():
         low, high = int(cycles.first[block.start]), int(cycles.last[block.stop - 1]) + 1
-        place = position[low:high]
-        at_low_load = np.where(load[low:high] <= level, place, np.nan)
+        place, pull = position[low:high], load[low:high]
+        at_low_load = np.where(pull <= level, place, np.nan)
         first, stop = cycles.first[block] - low, cycles.last[block] + 1 - low
+        least, most = (over_intervals(way, pull, first, stop) for way in (np.fmin, np.fmax))
         moved, stroke = (
             over_intervals(np.fmax, one, first, stop) - over_intervals(np.fmin, one, first, stop)
             for one in (at_low_load, place)
         )
         with np.errstate(divide="ignore", invalid="ignore"):
-            greatest = max(greatest, float(np.nan_to_num(moved / stroke).max()))
-    return greatest
+            fallen = (level - least) / (most - least)
+            taut = np.where(least > level / 2, fallen / _OF_MEAN_STIFFNESS, 0.0)
+            allowed = np.fmax(_AT_A_TURN, taut)
+            if (moved / stroke >= allowed).any():
+                return False
+    return True
 
 
 def _slack(name: str, valley_tension: Floats, slack_tension: float) -> list[Note]:

@@ -811,7 +811,8 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "slack-in-cycles": (
         "warning",
         "the specimen goes slack in {n_slack} of {n_cycles} cycles (tension at or below"
-        " {slack_tension:.4g} N); their amplitudes and energies include the slack part",
+        " {slack_tension:.4g} N); their amplitudes and energies include the slack part. If it is"
+        " taut at this load, state a lower phases.slack_tension",
     ),
     "pushed-in-cycles": (
         "warning",
