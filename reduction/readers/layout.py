@@ -164,6 +164,8 @@ class Layout(BaseModel):
     """Between the specimen and a load cell at its moving end, with its unit."""
     machine_compliance: str | None = None
     """Of frame, load cell and grips, with its unit: ``"2e-7 m/N"``."""
+    vertical: bool = False
+    """Whether the specimen hangs, so that it does not sag between its ends."""
     channels: dict[str, Channel]
 
     @field_validator("channels", mode="before")
@@ -270,6 +272,7 @@ class Layout(BaseModel):
             machine_compliance=(
                 None if compliance is None else parse_quantity(compliance, "compliance")
             ),
+            vertical=self.vertical,
         )
 
     @staticmethod

@@ -295,6 +295,8 @@ class LoadTrain:
         Mass between the specimen and a load cell at its moving end. [kg]
     machine_compliance : float or None
         Compliance of frame, load cell and grips, not seen by the crosshead's scale. [m N-1]
+    vertical : bool
+        Whether the specimen hangs, and does not sag.
     end_mass : tuple of float, length n_specimens
         Mass whose inertia has been removed from the tension; empty if none has been. [kg]
     end_mass_by_density : tuple of float, length n_specimens
@@ -306,6 +308,7 @@ class LoadTrain:
     load_cell_at: Literal["fixed", "moving"] | None = None
     attached_mass: float | None = None
     machine_compliance: float | None = None
+    vertical: bool = False
     end_mass: tuple[float, ...] = ()
     end_mass_by_density: tuple[float, ...] = ()
     force_left_at_turns: tuple[float, ...] = ()

@@ -879,6 +879,16 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             " slowly, or with a sine"
         ),
     ),
+    "specimen-sags": (
+        "warning",
+        lambda effect, density, is_stated, length: (
+            f"if the specimen of {length:.3g} m lay horizontally, its sag moved EA by"
+            f" {100 * effect:+.1f} % ({density:.3g} kg/m,"
+            f" {'as stated' if is_stated else 'usual for its break strength'}), and strain is that"
+            " of its ends, which is not corrected. Support it, test at a higher tension or measure"
+            " strain on the rope; if it hung, state vertical = true in the layout"
+        ),
+    ),
     "own-mass-unknown": (
         "note",
         "the inertia of the specimen itself is not corrected (this needs load_cell_at and"

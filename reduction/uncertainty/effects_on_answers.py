@@ -90,6 +90,8 @@ def load_train_notes(test: ReducedTest, instruments: Sequence[InstrumentErrors])
                 usual=_USUAL_COMPLIANCE,
                 effect=_USUAL_COMPLIANCE * effect,
             )
+        if is_crosshead and not train.vertical:
+            yield from _sag(test, summary, index, length, spread / abs(constant))
         of_energy = _standard_uncertainty(test, summary, "hysteresis_energy", index)
         stroke = float(summary.tension_amplitude[index] * summary.strain_amplitude[index])
         is_told = index < len(instruments) and instruments[index].tension_reversibility > 0
@@ -107,6 +109,42 @@ def load_train_notes(test: ReducedTest, instruments: Sequence[InstrumentErrors])
                 if index < len(instruments) and instruments[index].lag > 0
                 else of_energy / (2 * np.pi**2 * float(summary.frequency[index]) * stroke),
             )
+
+
+def _sag(
+    test: ReducedTest, summary: AmplitudeSummary, index: int, length: float, spread: float
+) -> Iterator[Note]:
+    r"""Note where the sag of a horizontal specimen would move K_ap beyond its interval.
+
+    The chord of a shallow catenary of weight w a length is shorter than the line by
+    :math:`w^2 \ell^3 / 24 T^2`, of which a cycle takes out the difference of its turns.
+    """
+    specimen = test.specimens[index]
+    mean, amplitude = (
+        float(one[index]) for one in (summary.mean_tension, summary.tension_amplitude)
+    )
+    density = specimen.linear_density
+    if density is None and specimen.is_rope and specimen.rated_break_strength is not None:
+        density = _USUAL_DENSITY * specimen.rated_break_strength
+    if density is None or not mean > amplitude:
+        return
+    weight = _GRAVITY * density * length
+    low, high = mean - amplitude, mean + amplitude
+    taken_out = weight**2 / 24 * (1 / low**2 - 1 / high**2)
+    effect = taken_out / (2 * float(summary.strain_amplitude[index]))
+    if effect > _EXPANDED * spread:
+        found = note(
+            "specimen-sags", specimen.name, effect=-effect, density=density,
+            is_stated=specimen.linear_density is not None, length=length,
+        )  # fmt: skip
+        yield found if effect > _SMALL_SAG else replace(found, severity="note")
+
+
+_SMALL_SAG = 0.005  # of K_ap
+
+_GRAVITY = 9.80665  # m/s2
+
+_USUAL_DENSITY = 2.2e-6  # kg/m a newton of break strength: polyester rope; nylon and wire have more
 
 
 def _inertia_left(

@@ -17,7 +17,7 @@ from reduction.record.settings import CycleSettings, ReductionSettings
 from reduction.stages.cycles.cycle_product import Cycles
 from reduction.stages.load_train import acceleration, end_mass, turn_acceleration
 from reduction.stages.strain.strain_model import StrainModel
-from reduction.uncertainty.effects_on_answers import _wave_left
+from reduction.uncertainty.effects_on_answers import _sag, _wave_left
 from reduction.uncertainty.error_field import error_field
 from reduction.uncertainty.errors_of_cycles import inertia_of
 
@@ -246,3 +246,29 @@ def test_of_an_extensometer_the_crosshead_tells_how_far_the_mass_moves():
     field = error_field(errors, model, strain=at, tension=np.full(3, 1e4), inertia=inertia)
     force = spread * length * amplitude * (2 * np.pi * frequency) ** 2
     np.testing.assert_allclose(field.tension[0], [-force, 0, force], rtol=1e-9, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("density", "strength", "spread", "severity"),
+    [(8.0, 1e6, 1e-3, "warning"), (None, 8 / 2.2e-6, 1e-3, "warning"), (8.0, 1e6, 0.5, None),
+     (0.5, None, 1e-4, "note"), (None, None, 1e-3, None)],
+)  # fmt: skip
+def test_the_sag_of_a_horizontal_rope_is_that_of_a_catenary(density, strength, spread, severity):
+    # an inextensible chain between ends at one height: chord 2 a asinh(S / 2 a), a = H / w
+    length, low, high, own = 50.0, 2e4, 8e4, 2e-3  # strain amplitude of the rope itself
+    a = np.array([low, high]) / (9.80665 * (density or 8.0))
+    chord = 2 * a * np.arcsinh(length / (2 * a))
+    taken_out = float(np.diff(chord)[0]) / length
+    seen = own + taken_out / 2
+    test = SimpleNamespace(
+        specimens=[Specimen("line", kind="rope", linear_density=density,
+                            rated_break_strength=strength)]
+    )  # fmt: skip
+    summary = SimpleNamespace(
+        mean_tension=np.array([(low + high) / 2]), tension_amplitude=np.array([(high - low) / 2]),
+        strain_amplitude=np.array([seen]),
+    )  # fmt: skip
+    found = list(_sag(test, summary, 0, length, spread))
+    assert [one.severity for one in found] == ([] if severity is None else [severity])
+    for one in found:
+        assert one.numbers["effect"] == pytest.approx(own / seen - 1, rel=0.01)
