@@ -1150,6 +1150,19 @@ def test_a_sine_stored_one_by_one_has_its_period_and_its_whole_range():
     assert loops.tension_amplitude == pytest.approx(140.0, rel=1e-3)
 
 
+def test_sines_stored_in_pairs_have_the_period_of_the_machine():
+    # the last reading of a pair is that before its end: a cycle of 23 steps instead of 24
+    number = np.repeat(np.add.outer(20 * np.arange(10), [1, 2]).ravel(), 24)
+    time = (number - 1) * 2.0 + np.tile(np.arange(24) / 12, 20)
+    driven = -np.cos(np.pi * time)
+    stand = find_standstills(time, driven, driven[None], settings=PhaseSettings())
+    cycles = find_cycles(
+        time, driven, driven[None], stand, cycle_counter=number, settings=CycleSettings()
+    )
+    loops = close_loops(time, driven[None], driven[None], cycles, waveform="sinusoidal")
+    assert loops.frequency.mean() == pytest.approx(0.5, rel=2e-5)
+
+
 def test_the_drift_of_two_cycles_that_are_stored_in_a_row_is_no_loss():
     # pairs of a hundred apart; each reaches 0.01 further, without which it has the loss of the sine
     time, tension, strain = ellipse(60, 12)

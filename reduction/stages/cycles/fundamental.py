@@ -468,6 +468,10 @@ _BEYOND_PERIOD = 0.15  # of a period: a cycle of seven readings
 _OF_SETTLING_PHASE = 3.0  # greatest step of the phase over the next one
 
 
+_FITS = 2
+
+_FAR_PERIOD = 2e-3  # relative; its square is a part of a million of the period
+
 _PASSES = 12  # each divides the error by the number of cycles of a run, which may be two
 
 
@@ -484,6 +488,10 @@ def sine_period(
     """
     phased, amplitude = np.empty((2, cycles.n_cycles))
     blocks = cycles.blocks()
+    # the last cycle of a run is taken to end at the period of the others
+    follows = cycles.last[:-1] == cycles.first[1:]
+    ends_run = np.append(~follows, True)
+    middle = (take_samples(time, cycles.first) + take_samples(time, cycles.last)) / 2
 
     def find(block: slice) -> None:
         low, high = int(cycles.first[block.start]), int(cycles.last[block.stop - 1]) + 1
@@ -494,24 +502,26 @@ def sine_period(
         amplitude[block] = np.hypot(cosine, sine)
         phased[block] = _phase_turns(cosine, sine, basis, time[low:high])
 
-    run_blocks(find, blocks, samples=(time, driven), longest=cycles.longest)
-    # a wave that grows by g within a cycle seems to turn g / (4 pi) early
-    follows = cycles.last[:-1] == cycles.first[1:]
-    grows = turn_over_cycle(np.log(amplitude), np.append(False, follows))
-    grows = np.nan_to_num(grows)
-    phased += grows / (4 * np.pi) * period / (2 * np.pi)
-    # a wrong period rotates the phase about the middle of the cycle, where it has no effect
-    middle = (take_samples(time, cycles.first) + take_samples(time, cycles.last)) / 2
-    # the last cycle of a run is taken to end at the period of the others
-    ends_run = np.append(cycles.last[:-1] != cycles.first[1:], True)
-    found, turns = period, phased
-    for _ in range(_PASSES):
-        turns = middle - (middle - phased) * found / period
-        last_turn = np.append(turns[1:], np.nan)
-        last_turn[ends_run] = (turns + found)[ends_run]
-        found = mean_period(
-            turns, cycles.first, cycles.last, last_turn=last_turn, steady=steady_cycles(amplitude)
-        )
+    for _ in range(_FITS):
+        run_blocks(find, blocks, samples=(time, driven), longest=cycles.longest)
+        # a wave that grows by g within a cycle seems to turn g / (4 pi) early
+        grows = np.nan_to_num(turn_over_cycle(np.log(amplitude), np.append(False, follows)))
+        phased += grows / (4 * np.pi) * period / (2 * np.pi)
+        # a wrong period rotates the phase about the middle of the cycle, where it has no effect
+        found, turns = period, phased
+        for _ in range(_PASSES):
+            turns = middle - (middle - phased) * found / period
+            last_turn = np.append(turns[1:], np.nan)
+            last_turn[ends_run] = (turns + found)[ends_run]
+            found = mean_period(
+                turns, cycles.first, cycles.last, last_turn=last_turn,
+                steady=steady_cycles(amplitude),
+            )  # fmt: skip
+        # so it does to first order: a run that ends a reading early is fitted again
+        off = np.abs(found[ends_run] / period[ends_run] - 1)
+        if ends_run.sum() == 1 or not (off > _FAR_PERIOD).any():
+            break
+        period = found
     # the phase of a fundamental is uncertain by the noise of all readings of its cycle
     rise = take_samples(driven, cycles.branch_last[:, 0])
     half = float(np.nanmedian(rise - take_samples(driven, cycles.branch_first[:, 0]))) / 2
