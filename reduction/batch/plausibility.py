@@ -28,7 +28,7 @@ from reduction.record.errors import ReductionError, SettingsError
 from reduction.record.measurement import Floats, Specimen, SpliceMarks
 from reduction.record.notes import Note, note
 from reduction.stages.plausible_bands import Bands, bands_of, readings_that_fit, words_of_ratio
-from reduction.stages.strain.strain_model import StrainModel
+from reduction.stages.strain.strain_model import StrainModel, strain_by_model
 from reduction.stages.strain.stress import constant_volume_diameter
 
 Models = Mapping[tuple[str, str], StrainModel]
@@ -295,6 +295,8 @@ def _of_statements(campaign: Campaign, survey: Survey, models: Models) -> Iterat
                 ratio=strain / target, like=words_of_ratio(strain / target),
                 method=model.method if model is not None else "",
             )  # fmt: skip
+        else:
+            yield from _of_lower_target(plan, survey, index, model)
         yield from _of_length(campaign, survey, index, model)
         share = float(levels.final_share[index])
         is_unsaid = name not in survey.broken and plan.kind in ("tensile", "quasi-static")
@@ -340,6 +342,27 @@ def _of_mean(name: str, means: Floats) -> Iterator[Note]:
     steady = last > first or last - middle < _STEADY * (middle - first)
     if steady and abs(last - first) > _DRIFT * abs(first):
         yield note("zero-or-relaxation", name, earlier=first, later=last)
+
+
+def _of_lower_target(
+    plan: TestPlan, survey: Survey, index: int, model: StrainModel | None
+) -> Iterator[Note]:
+    """Compare the lower of two target strains with the strain at the valleys of the cycles."""
+    levels, name = survey.levels, plan.specimens[index]
+    if levels is None or model is None or len(plan.target_strain) < 2:
+        return
+    if model.method == "extensometer":
+        strain = float(levels.valley_strain[index])
+    else:
+        position, load = (
+            np.array([one]) for one in (levels.valley_position, levels.valley_tension[index])
+        )
+        strain = float(strain_by_model(model, position=position, tension=load)[0])
+    low, high = min(plan.target_strain), max(plan.target_strain)
+    # a slack valley has no strain, whatever its position
+    away = max(strain, 0.0) - low
+    if abs(away) > (_TARGET - 1) * max(high - low, low):
+        yield note("lower-target-missed", name, reached=strain, target=low)
 
 
 _STATED: tuple[tuple[str, Dimension], ...] = (

@@ -1835,6 +1835,14 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             )
         ),
     ),
+    "lower-target-missed": (
+        "warning",
+        lambda reached, target: (
+            f"the cycles go down to a strain of {100 * reached:.3g} %; the lower target_strain is"
+            f" {100 * target:.3g} %. Check the target_strain, the zero of position and, with marks,"
+            " that the row slack was read at slack"
+        ),
+    ),
     "level-not-as-stated": (
         "warning",
         lambda level, stated, found, unit, ratio, like: (

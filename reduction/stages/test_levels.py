@@ -72,6 +72,10 @@ class TestLevels:
         means follow the line and the machine allows it: it drives the load, or the
         middle of its stroke moves in the same way. Also the growth of half the range of tension
         over the same cycles. NaN elsewhere. [N]
+    valley_position : float
+        Median over the cycles, if most have the same; NaN for a log of several levels. [m]
+    valley_tension, valley_strain : ndarray, shape (n_specimens,)
+        Tension and measured strain there. [N] and [1]
     """
 
     __test__ = False  # a test of a tether, not of this software
@@ -92,6 +96,9 @@ class TestLevels:
     load_step: Floats
     like_means: Floats
     mean_ramps: Floats
+    valley_position: float
+    valley_tension: Floats
+    valley_strain: Floats
 
 
 def levels_of_test(
@@ -150,6 +157,7 @@ def levels_of_test(
     frequency = speed = np.nan
     waveform = ""
     like_means, mean_ramps = np.full((2, n_specimens, 3), np.nan)
+    valley_position, valley_tension, valley_strain = np.nan, nothing, nothing
     if cycles is not None and cycles.n_cycles:
         some = np.unique(
             np.linspace(0, cycles.n_cycles - 1, min(cycles.n_cycles, _MOST_CYCLES)).astype(int)
@@ -168,7 +176,14 @@ def levels_of_test(
             known = np.array([row for row in rows if np.isfinite(row).all()])
             if known.size:
                 mean[index], amplitude[index], lead[index] = np.median(known, axis=0)
-        middles = (take_samples(position, valley) + take_samples(position, peak)) / 2
+        lowest = take_samples(position, valley)
+        alike = np.abs(lowest - np.median(lowest)) <= _LIKE_VALLEY * np.median(np.abs(rise))
+        if alike.mean() > _MOST_ALIKE:
+            valley_position = float(np.median(lowest))
+            valley_tension = np.median(take_samples(tension, valley), axis=-1)
+            if measured_strain is not None:
+                valley_strain = np.median(take_samples(measured_strain, valley), axis=-1)
+        middles = (lowest + take_samples(position, peak)) / 2
         if control == "position" and not _rests_after(standstills, int(cycles.last[-1])):
             like = _alike(middles, rise)
             like_means = np.array([_three_means(load, cycles, some[like]) for load in tension])
@@ -204,6 +219,9 @@ def levels_of_test(
         load_step=np.array([_load_step(load) for load in tension]),
         like_means=like_means,
         mean_ramps=mean_ramps,
+        valley_position=valley_position,
+        valley_tension=valley_tension,
+        valley_strain=valley_strain,
     )  # fmt: skip
 
 
@@ -216,6 +234,8 @@ def _is_copy(one: Floats, other: Floats) -> bool:
 
 
 _LIKE_POSITION = 0.02  # of the stroke
+
+_LIKE_VALLEY, _MOST_ALIKE = 0.1, 0.75  # of the stroke; of the cycles
 
 _FEWEST_LIKE = 8  # cycles, not counting the first
 

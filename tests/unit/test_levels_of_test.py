@@ -1,9 +1,11 @@
 """Levels of a test as its log shows them, against waves that are known."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
-from reduction.batch.plausibility import _of_mean
+from reduction.batch.plausibility import _of_lower_target, _of_mean
 from reduction.record.notes import note
 from reduction.record.settings import CycleSettings, PhaseSettings
 from reduction.stages.cycles.cycle_search import find_cycles
@@ -34,6 +36,26 @@ def test_a_sine_whose_tension_leads_by_a_known_time():
     assert found.lead == pytest.approx([0.1, 0.1], abs=0.01)
     assert found.is_copy.tolist() == [False, True]
     assert found.n_strokes == 24
+
+
+@pytest.mark.parametrize(
+    ("stated", "is_missed"),
+    [((0.5, 1.5), False), ((0.45, 1.5), False), ((0.75, 1.5), True), ((0.2, 1.5), True),
+     ((1.5,), False)],
+)  # fmt: skip
+def test_the_lower_target_strain_is_compared_with_the_valleys(stated, is_missed):
+    strain = 1.0 - 0.5 * np.cos(0.2 * np.pi * 0.05 * np.arange(1200))
+    position = 2 + 4 * strain  # 4 m of free length, slack at 2 m
+    found = levels(position, 300 * strain)
+    assert found.valley_position == pytest.approx(4.0, abs=0.01)
+    assert found.valley_tension == pytest.approx([150.0], abs=1)
+    model = SimpleNamespace(method="extensometer")
+    survey = SimpleNamespace(
+        levels=SimpleNamespace(valley_strain=(found.valley_position - 2) / 4 * np.ones(1))
+    )
+    plan = SimpleNamespace(target_strain=stated, specimens=("new",))
+    missed = [one.code for one in _of_lower_target(plan, survey, 0, model)]
+    assert missed == ["lower-target-missed"] * is_missed
 
 
 @pytest.mark.parametrize("late", [0.0, 0.15])
