@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from reduction.record.errors import DataError
+from reduction.stages.strain import splice_laws
 from reduction.stages.strain.splice_laws import LAWS, SpliceReadings, _other_load, fit_splice_laws
 
 FREE = np.array([0.0, 0.5, 0.8, 1.0, 1.3, 1.6, 1.9, 2.2, 2.5])
@@ -369,3 +370,42 @@ def test_a_load_in_another_unit_than_that_of_the_other_tests_is_told_by_the_mark
         assert test[row] == 1
         assert ratio == pytest.approx(factor, rel=0.08)
     assert (found is not None) is is_told
+
+
+def table_of_tests(wrong, n_tests=8):
+    """Six marks of every test on splices of a mixed law; some read wrong by 4 points of strain."""
+    rng = np.random.default_rng(4)
+    free = np.concatenate([[0.0, *np.sort(rng.uniform(0.5, 2.3, 6))] for _ in range(n_tests)])
+    tension = 460 * (free / 2.1 + 0.3 * (free / 2.1) ** 3)
+    splice = 0.16 * free + 0.06 * (tension / 300) ** 0.7
+    loaded = free > 0
+    splice[loaded] += rng.normal(0, 1.7e-3, loaded.sum())
+    splice[rng.choice(np.flatnonzero(loaded), wrong, replace=False)] += 0.04
+    return SpliceReadings(
+        free, splice, tension, np.repeat(np.arange(n_tests), 7), ~loaded, 0.47, 1e-3,
+        1e-6 * np.eye(2),
+    )  # fmt: skip
+
+
+def test_a_long_table_is_refused_without_a_fit_of_all_laws_for_every_mark(monkeypatch):
+    count = []
+    fit = splice_laws._fit
+    monkeypatch.setattr(splice_laws, "_fit", lambda *some: count.append(1) or fit(*some))
+    with pytest.raises(DataError, match="no law of the splices"):
+        fit_splice_laws(table_of_tests(16))
+    assert len(count) < 1500  # 48 marks, 14 laws and some 20 shapes: 13,000
+
+
+def test_a_law_that_agrees_without_a_mark_is_not_passed_over():
+    whole = table_of_tests(1, n_tests=3)
+    judged = splice_laws._judged(whole)
+    may = splice_laws._may_agree(whole, judged)
+    rows = np.flatnonzero(~whole.is_slack)
+    rows = rows[np.argsort([-sum(one[row] for one in may.values()) for row in rows])][:2]
+    agrees = []
+    for row in rows:
+        for law in splice_laws._fitted(whole.without(int(row)), judged.slip):
+            agrees.append(law.chance >= splice_laws.REJECTED)
+            assert may[law.name][row] or not agrees[-1]
+    assert any(agrees)
+    assert sum(int(one.sum()) for one in may.values()) < 0.5 * 14 * 18

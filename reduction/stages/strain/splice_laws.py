@@ -28,6 +28,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 
 import numpy as np
 import scipy
@@ -321,7 +322,7 @@ def fit_splice_laws(
         readings.free.size - left.size < n_loaded // _ENOUGH
         and found.laws
         and found.laws[0].chance < _DOUBT
-        and (row := _outlier(kept, found.slip)) is not None
+        and (row := _outlier(kept, found)) is not None
     ):
         kept, left = kept.without(row), np.delete(left, row)
         found = _judged(kept)
@@ -742,16 +743,76 @@ def _offsets(readings: SpliceReadings, law: FittedLaw, slip: float) -> tuple[Flo
     return offset, variance
 
 
-def _outlier(readings: SpliceReadings, slip: float) -> int | None:
+def _may_agree(readings: SpliceReadings, judged: _Judged) -> dict[str, Bools]:
+    """Masks of the loaded rows without which a law may agree with the other rows.
+
+    Free coefficients of its terms, with both of two neighbouring shapes, fit the rows at least
+    as well as the law.  What such a fit gains without one row is known in closed form.
+    """
+    loaded = ~readings.is_slack
+    load = np.maximum(np.nan_to_num(readings.tension), 0.0) / readings.reference
+    slopes = [_per_strain(readings.free) @ law.values[1:4] for law in judged.laws]
+    slope = np.where(loaded, _ROOMY * np.max(np.maximum(slopes, 0.0), axis=0), 0.0)
+    per_tension = [np.abs(law.by_tension(load)[1]) for law in judged.laws]
+    rows = np.flatnonzero(loaded | (judged.slip > 0))
+    lengths = _common(readings, slope)
+    covariance = _of_rows(readings, slope, judged.slip, _ROOMY * np.max(per_tension, axis=0))
+    covariance = (covariance + lengths @ readings.relaxed @ lengths.T)[np.ix_(rows, rows)]
+    root = np.linalg.cholesky(covariance)
+    whitening = np.linalg.inv(root)
+    splice = whitening @ readings.splice[rows]
+
+    def least(columns: list[Floats]) -> Floats:
+        """Misfit without each of the rows."""
+        design = np.stack(columns, axis=1)[rows]
+        basis, size, _ = np.linalg.svd(
+            whitening @ (design / (np.abs(design).max(axis=0) + _EXACT)), full_matrices=False
+        )
+        basis = basis[:, size > _ALIKE_TERMS * size[0]]
+        residual = splice - basis @ (basis.T @ splice)
+        back = whitening - basis @ (basis.T @ whitening)
+        each = np.einsum("ij,ij->j", back, back)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            gain = np.where(each > 0, (residual @ back) ** 2 / each, np.inf)
+        return np.maximum(float(residual @ residual) - gain, 0.0)
+
+    powers = [_terms(readings, one, 0.0) for one in _EXPONENTS]
+    limits = [_terms(readings, 1.0, one) for one in _SATURATIONS]
+    may = {}
+    for name, terms in LAWS.items():
+        shapes, of_shape = (limits, "saturating") if name in SATURATING else (powers, "tension")
+        fixed = [shapes[0][term] if term not in OF_TENSION else limits[0]["tension"]
+                 for term in terms if term != of_shape]  # fmt: skip
+        # a shape between two of the grid is a sum of both
+        left = least(fixed) if of_shape not in terms else np.min([
+            least([*fixed, below[of_shape], above[of_shape]]) for below, above in pairwise(shapes)
+        ], axis=0)  # fmt: skip
+        may[name] = np.zeros(loaded.size, dtype=bool)
+        may[name][rows] = scipy.special.chdtrc(rows.size, left) >= REJECTED
+        may[name] &= loaded
+    return may
+
+
+# times the slopes of the laws fitted to all rows: an error of a row that is too large is safe
+_ROOMY = 2.0
+
+_ALIKE_TERMS = 1e-9  # of the greatest of the orthogonal terms: smaller ones are rounding
+
+
+def _outlier(readings: SpliceReadings, judged: _Judged) -> int | None:
     """Return the stretched row that is far from every law fitted without it."""
-    far = np.zeros(readings.free.size)
-    for row in np.flatnonzero(~readings.is_slack):
+    far, slip = np.zeros(readings.free.size), judged.slip
+    ranked = [law.name for law in judged.laws]
+    ranked += [name for name in LAWS if name not in ranked]
+    may = _may_agree(readings, judged)
+    for row in np.flatnonzero(np.any(list(may.values()), axis=0)):
         # a law is used for this row if the other marks agree with it
-        others = [
-            law for law in _fitted(readings.without(int(row)), slip) if law.chance >= REJECTED
-        ]
-        errors = []
-        for law in others:
+        kept = readings.without(int(row))
+        errors: list[float] = []
+        for name in ranked:
+            law = _law(kept, name, slip) if may[name][row] else None
+            if law is None or law.chance < REJECTED:
+                continue
             columns = _terms(readings, float(law.values[_EXPONENT]), float(law.values[_SATURATION]))
             design, at = np.array([columns[term][row] for term in TERMS]), list(TERMS.values())
             slope = float(_per_strain(readings.free[row]) @ law.values[1:4])
@@ -762,6 +823,8 @@ def _outlier(readings: SpliceReadings, slip: float) -> int | None:
             of_law = float(design @ law.covariance[np.ix_(at, at)] @ design)
             away = readings.splice[row] - design @ law.values[at]
             errors.append(abs(away) / np.sqrt(own + of_law))
+            if errors[-1] <= _FAR:
+                break
         far[row] = min(errors, default=0.0)
     worst = int(np.argmax(far))
     if far[worst] <= _FAR:
@@ -789,20 +852,23 @@ _MOST_NAMED = 3
 _MOST_TRIED = 12
 
 
-def _misread(readings: SpliceReadings, slip: float) -> list[int]:
+def _misread(readings: SpliceReadings, judged: _Judged) -> list[int]:
     """Loaded rows without which a law with a mark to spare agrees with the others; likeliest first.
 
     The row with the greatest residual need not be wrong: a law bends towards the first and the last
     mark, and away from those beside them.
     """
-    loaded = [int(row) for row in np.flatnonzero(~readings.is_slack)]
-    if len(loaded) > _MOST_TRIED:
+    if np.count_nonzero(~readings.is_slack) > _MOST_TRIED:
+        return []
+    may = np.any(list(_may_agree(readings, judged).values()), axis=0)
+    loaded = np.flatnonzero(may).tolist()
+    if not loaded:
         return []
     misfit = np.array([
         min(
             (
                 law.chi_square + 2 * law.n_terms
-                for law in _fitted(readings.without(row), slip)
+                for law in _fitted(readings.without(row), judged.slip)
                 if law.freedom > 0 and law.chance >= REJECTED
             ),
             default=np.inf,
@@ -864,7 +930,7 @@ def _refusal(
         return names[row] if names else f"row {row + 1} of its marks"
 
     odd = _other_load(readings)
-    suspects = [] if odd is not None else _misread(readings, judged.slip)
+    suspects = [] if odd is not None else _misread(readings, judged)
     if odd is not None:
         like = words_of_ratio(odd[1])
         look = (
