@@ -39,7 +39,7 @@ _ELONGATION = (  # a position if stated in a unit of length, else a strain
 
 _FORCE = (
     r"load|force|tension|kraft|zuglast|^last$|weight|gewicht|effort|\bcharge\b|fuerza|\bcarga\b|"
-    r"forza|carico|kracht|siła|力|荷重|载荷|載荷|负荷|負荷|하중|усилие|нагрузка|сила"
+    r"forza|carico|kracht|siła|\bforc\b|^f$|力|荷重|载荷|載荷|负荷|負荷|하중|усилие|нагрузка|сила"
 )
 
 _LENGTH = (
@@ -54,7 +54,7 @@ _NAMES: dict[str, tuple[Dimension, tuple[str, ...], str]] = {
         "time",
         (r"^(elapsed|test|total|run|running)? ?time$", r"^(lauf|prüf|pruef|mess|versuchs)?zeit$",
          r"^time\b", r"\b(time|zeit)$", r"\b(zeit|temps|tiempo|tempo|tijd|czas|время)\b|時間|时间|"
-         r"시간|uhrzeit|time ?stamp", r"^t$", r"^wf increment$|^x value$"),
+         r"시간|uhrzeit|time ?stamp", r"^t(out)?$", r"^wf increment$|^x value$"),
         r"cycle|date|datum|start",
     ),
     "crosshead_position": (
@@ -64,7 +64,7 @@ _NAMES: dict[str, tuple[Dimension, tuple[str, ...], str]] = {
          r"stroke|ストローク|行程|행정|tool separation|einspannlänge",
          r"grip.to.grip|\b(grip|jaw|clamp) separation", r"\btravel\b",
          r"\bposition\b|\bpos\b",
-         r"^machine$|^maschine$", _ELONGATION),
+         r"^machine$|^maschine$", _ELONGATION, r"\bdist(ance)?\b", r"^[xl]$"),
         _NOT_MEASURED,
     ),
     "tension": (
@@ -359,6 +359,14 @@ def _side_by_side(columns: Sequence[SeenColumn]) -> int:
     return n_tests if width > 1 and names == names[:width] * n_tests else 1
 
 
+def _rises(column: SeenColumn) -> bool:
+    """Whether each value is above the one before."""
+    return column.values.size > 1 and bool(np.all(np.diff(column.values) > 0))
+
+
+_FEW_COLUMNS = 2  # of load and extension, the extension rises all the time in a pull
+
+
 def propose_channels_table(columns: Sequence[SeenColumn]) -> _Proposal:
     """Lines of a layout's ``channels`` table for the columns of a log."""
     seen, n_tests = columns, _side_by_side(columns)
@@ -407,14 +415,20 @@ def _choose_columns(
     chosen: dict[str, tuple[SeenColumn, str]] = {}
     remarks: list[str] = []
     used: set[int] = set()
-    first = columns[0] if columns and not any(column.name for column in columns) else None
-    if first is not None and first.values.size > 1 and np.all(np.diff(first.values) > 0):
-        unit = _unit(first, "time") or UNKNOWN
-        chosen["time"] = first, unit
-        used.add(1)
-        remarks.append("guess: time is column 1, because it rises all the time")
+    rising = [] if any(one.name for one in columns) else [*filter(_rises, columns)]
+    if rising and (rising[0].number == 1 or (len(rising) == 1 and len(columns) > _FEW_COLUMNS)):
+        unit = _unit(rising[0], "time") or UNKNOWN
+        chosen["time"] = rising[0], unit
+        used.add(rising[0].number)
+        remarks.append(f"guess: time is column {rising[0].number}, because it rises all the time")
         if unit == UNKNOWN:
-            remarks.append("unknown: the unit of column 1")
+            remarks.append(f"unknown: the unit of column {rising[0].number}")
+    elif len(rising) > 1:
+        numbers = ", ".join(str(column.number) for column in rising)
+        remarks.append(
+            f"unknown: columns {numbers} rise all the time: one of them is time, or each is the"
+            " time of a channel (time_column)"
+        )
     for key in _NAMES:
         if key in chosen:
             continue

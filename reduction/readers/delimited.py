@@ -57,6 +57,8 @@ class _Head:
     """Editor's row of the first data row; 0 until found."""
     n_fields: int = 0
     """Number of fields in the first data row."""
+    has_comments: bool = False
+    """Whether rows may end with a text in LabVIEW's column Comment."""
     is_over: bool = False
     wanted: list[tuple[DeclaredColumn, int]] = field(default_factory=list)
     """Each declared column with its index."""
@@ -119,10 +121,12 @@ def _data_rows(
             begin = _read_head(head, text, row, layout)
             if begin is None:
                 continue
-            text, row = text[begin:], head.first_row
+            text, row = _without_texts(text[begin:], head.first_row, head, layout), head.first_row
             head.n_fields = _count_fields(path, head, layout)
             watch.check_columns(head.n_fields, row=head.first_row)
             head.wanted = _find_columns(path, head, layout)
+        else:
+            text = _without_texts(text, row, head, layout)
         end = _end_of_table(text, layout)
         if end is not None:
             head.is_over = True
@@ -181,7 +185,9 @@ def _read_head(head: _Head, text: memoryview, first_row: int, layout: Layout) ->
         elif not line.strip():
             continue
         elif layout.has_name_row and not head.names:
-            head.names, head.name_row = without_comment_name(split_line(line, layout)), row
+            names = split_line(line, layout)
+            head.names, head.name_row = without_comment_name(names), row
+            head.has_comments = len(head.names) < len(names)
         elif layout.has_unit_row and not head.units:
             head.units, head.unit_row = split_line(line, layout), row
         else:
@@ -193,6 +199,25 @@ def _read_head(head: _Head, text: memoryview, first_row: int, layout: Layout) ->
 def without_comment_name(names: Sequence[str]) -> list[str]:
     """Column names without LabVIEW's last one, Comment, which most rows lack."""
     return list(names[:-1] if names and names[-1].strip() == "Comment" else names)
+
+
+def _without_texts(text: memoryview, first_row: int, head: _Head, layout: Layout) -> memoryview:
+    """Rows without the texts in LabVIEW's column Comment, which are kept as metadata."""
+    if not head.has_comments:
+        return text
+    mark = re.escape(layout.delimiter.encode())
+    row = rb"(?m)^((?:[^%b\r\n]*%b){%d}[^%b\r\n]*)%b([^%b\r\n]+)"
+    pattern = re.compile(row % (mark, mark, len(head.names) - 1, mark, mark, mark))
+    texts = list(pattern.finditer(text))
+    if not texts:
+        return text
+    starts = line_starts(text)
+    for match in texts:
+        line = first_row + int(np.searchsorted(starts, match.start()))
+        head.keep(match[2].decode("utf-8"), line, layout)
+    shorter = memoryview(pattern.sub(rb"\1", bytes(text)))
+    head.first_line = bytes(shorter[:_LINE]).partition(b"\n")[0].decode("utf-8", "ignore")
+    return shorter
 
 
 def _lines(text: memoryview) -> Iterator[tuple[int, str]]:

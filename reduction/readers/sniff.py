@@ -101,6 +101,7 @@ def _is_time(text: str) -> bool:
 
 def _look_at_table(rows: Sequence[Sequence[str]], decimal: str) -> _TableShape | None:
     """Header and data in rows of fields; None if they contain no table of numbers."""
+    rows = _without_texts(rows)
     counts = [sum(_is_number(text, decimal) or _is_time(text) for text in row) for row in rows]
     data = [
         len(row) > 1 and 2 * count >= sum(map(bool, row)) > 0
@@ -144,6 +145,16 @@ def _look_at_table(rows: Sequence[Sequence[str]], decimal: str) -> _TableShape |
             if is_data
         ),
     )
+
+
+def _without_texts(rows: Sequence[Sequence[str]]) -> Sequence[Sequence[str]]:
+    """Rows without the texts that LabVIEW writes into a last column, Comment, of some of them."""
+    head = next((i for i, row in enumerate(rows) if without_comment_name(row) != list(row)), None)
+    if head is None:
+        return rows
+    n_names = len(rows[head])
+    below = [row[:-1] if len(row) == n_names and row[-1] else row for row in rows[head + 1 :]]
+    return [*rows[: head + 1], *below]
 
 
 def _labelled_units(above: Sequence[Sequence[str]]) -> Sequence[str]:
@@ -816,7 +827,7 @@ def sheets_with_tables(path: Path) -> list[str]:
 
 _RATES = re.compile(
     r"sampl|scan|\bHz\b|messrate|abtast|échantillon|muestreo|campion|bemonster|дискретизац|"
-    r"采样|サンプリング|샘플",
+    r"采样|サンプリング|샘플|delta_x",
     re.IGNORECASE,
 )
 """Preamble words that state the time between rows."""

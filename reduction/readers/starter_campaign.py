@@ -64,8 +64,8 @@ _NO_MARKS = """\
 # Without splices: from the gauge_length of each specimen."""
 
 _SIZES = re.compile(
-    r"width|thickness|diameter|area|cross.?section|length|breite|dicke|durchmesser|länge|"
-    r"querschnitt|largeur|épaisseur|diamètre|longueur|ancho|espesor|diámetro|longitud|"
+    r"width|thickness|height|diameter|area|section|length|\bL0\b|breite|dicke|durchmesser|länge|"
+    r"höhe|querschnitt|largeur|hauteur|épaisseur|diamètre|longueur|ancho|espesor|diámetro|longitud|"
     r"宽度|厚度|直径|标距|幅|厚さ|長さ|断面積",
     re.IGNORECASE,
 )
@@ -193,7 +193,9 @@ def _one_layout(alike: list[_Log]) -> tuple[str, list[str]]:
     toml, remarks = alike[0].sniffed.toml, list(alike[0].sniffed.remarks)
     if (said := _units_said(alike[0])) and f'unit = "{UNKNOWN}"' in toml:
         remarks.append(f"from the log: units {', '.join(said)}")
-    if unscaled := [line for line in alike[0].sniffed.preamble if UNSCALED.search(line)]:
+    above = alike[0].sniffed.preamble
+    if any(UNSCALED.search(line) for line in above):
+        unscaled = [line for line in above if UNSCALED.search(line) or _CHANNELS.match(line)]
         remarks.append("unknown: the factor of each channel, because the log says of its readings:")
         remarks += [f"from the log: {line}" for line in unscaled]
     texts = [log.sniffed.toml.split("\n") for log in alike]
@@ -220,11 +222,16 @@ def _one_layout(alike: list[_Log]) -> tuple[str, list[str]]:
 
 _MOST_NAMED = 5
 
+_CHANNELS = re.compile(r"(channels?|units?|kan[aä]le?|einheit(en)?)\b", re.IGNORECASE)
+"""Preamble lines that list the channels, and their units once they are scaled."""
+
 
 def _units_said(log: _Log) -> tuple[str, ...]:
     """Units in brackets above the table."""
     said = re.findall(r"[\[(]\s*([^\s\[\]()\d]+)\s*[\])]", " ".join(log.sniffed.preamble))
-    return tuple(dict.fromkeys(unit for unit in said if is_unit(unit)))
+    return tuple(
+        dict.fromkeys(unit for unit in said if is_unit(unit) and not is_unit(unit, "frequency"))
+    )
 
 
 def _form(log: _Log) -> tuple[str, tuple[str, ...]]:

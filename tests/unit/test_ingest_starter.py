@@ -114,6 +114,7 @@ def test_units_above_a_table_in_volts_are_not_those_of_its_readings(tmp_path):
     assert '"AI1", 0 to 0.4333' in text and '"AI1" in mN' not in text
     assert "# from the log: Scale (units/V) 1.0 500.0" in text
     assert "# from the log: Test Data in Volts:" in text
+    assert "# from the log: Units mm mN" in text and "# from the log: units Hz" not in text
 
 
 def test_a_folder_without_logs_is_refused(tmp_path):

@@ -5,6 +5,7 @@ can be held against it.
 """
 
 import json
+import re
 import tomllib
 
 import numpy as np
@@ -92,6 +93,15 @@ TEXTS = {
         "utf-8-sig",
     ),
     "LabVIEW LVM": (LVM + table([TIME, TRAVEL, LOAD], "\t"), "utf-8"),
+    "LabVIEW LVM, comments": (
+        LVM
+        + re.sub(
+            r"(?m)^(0|5)(\.0*)?(\t.*)$",
+            r"\1\3\tstart of part \1: 50.0 N/V",
+            table([TIME, TRAVEL, LOAD], "\t"),
+        ),
+        "utf-8",
+    ),
     "DewesoftX": (
         "Data info\nFile name:\tTest_0001.dxd\nStart time:\t5/3/2024 10:00:00.000\n"
         "Sample rate:\t20\tHz\nNumber of channels:\t2\n\nTime (s)\tAI 1/Force (N)\t"
@@ -324,6 +334,40 @@ def test_a_file_without_a_table_has_a_draft_of_questions(tmp_path, content):
     text, layout = draft(tmp_path, "log.txt", content)
     assert layout["format"] == "?"
     assert "#   log.txt: no table of numbers" in text
+
+
+def test_comments_of_labview_are_kept_and_are_no_fields(tmp_path):
+    text, encoding = TEXTS["LabVIEW LVM, comments"]
+    assert text.count("start of part") == 2
+    _, layout = draft(tmp_path, "log.lvm", text.encode(encoding))
+    log = read_log(tmp_path / "log.lvm", answered(layout), name="log.lvm")
+    said = {key: text for key, text in log.metadata.items() if key.startswith("start of")}
+    assert said == {"start of part 0": "50.0 N/V", "start of part 5": "50.0 N/V"}
+
+
+def test_columns_without_names_that_rise_may_be_times_of_channels(tmp_path):
+    t = np.cumsum(np.full(40, 0.1))
+    wave, load = np.sin(t), np.cos(t)
+    text, _ = draft(tmp_path, "log.csv", table([wave, t, load, t + 0.05]).encode())
+    assert "# unknown: columns 2, 4 rise all the time" in text
+    text, layout = draft(tmp_path, "log.csv", table([wave, t, load]).encode())
+    assert layout["channels"]["time"]["column"] == 2
+
+
+@pytest.mark.parametrize("names", ["t,x,F", "Time,L,F", "tout,dist,forc", "Time,Distance,Force"])
+def test_short_names_without_units_are_read(tmp_path, names):
+    log = f"{names}\n{table([TIME, TRAVEL, LOAD])}"
+    _, layout = draft(tmp_path, "log.csv", log.encode())
+    channels = layout["channels"]
+    found = [channels["time"], channels["crosshead_position"], channels["tension"]["1"]]
+    assert [channel["column"] for channel in found] == names.split(",")
+
+
+def test_lines_of_a_preamble_that_state_section_gauge_and_height_are_quoted(tmp_path):
+    said = ['"Section",5.9,"mm2"', '"L0",25,"mm"', '"Anvil height",6.0,"mm"']
+    head = "\n".join([*said, '"Operator","AB"', "", ""])
+    text, _ = draft(tmp_path, "log.csv", head.encode() + text_log(LOAD))
+    assert text.count("# from the log: ") == 3
 
 
 def test_a_specimen_of_a_single_log_is_named_and_its_sizes_are_quoted(tmp_path):
