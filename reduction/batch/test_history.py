@@ -331,9 +331,12 @@ def fit_strain_models(
                     average=averages.get(name),
                 )
                 read_by = tuple(cells[name].get(test, "") for test in model.mark_test)
-                of_strain = judge_strain(survey.extremes, model, test_id=survey.plan.id)
-                if campaign.specimens[name].can_push:  # strain below zero is compression
-                    of_strain = ()
+                of_strain = judge_strain(
+                    survey.extremes,
+                    model,
+                    test_id=survey.plan.id,
+                    can_push=campaign.specimens[name].can_push,
+                )
                 is_pooled = model.method in ("mixed", "tension-driven") and not model.splice_slip
                 of_slip = across.get(name, ()) if is_pooled else ()
                 models[survey.plan.id, name] = replace(

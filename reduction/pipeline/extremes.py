@@ -234,7 +234,9 @@ def _all_over(located: Located) -> dict[str, _Samples]:
     }
 
 
-def judge_strain(extremes: Extremes, model: StrainModel, *, test_id: str) -> tuple[Note, ...]:
+def judge_strain(
+    extremes: Extremes, model: StrainModel, *, test_id: str, can_push: bool = False
+) -> tuple[Note, ...]:
     """Refuse a strain model that gives impossible strain, and note improbable strain.
 
     Examples
@@ -255,7 +257,11 @@ def judge_strain(extremes: Extremes, model: StrainModel, *, test_id: str) -> tup
     refuse_impossible_strain(strain, specimen=model.specimen, test_id=test_id)
     reference = max(model.reference_tension, np.nan_to_num(extremes.slack_tension))
     return note_on_strain_below_zero(
-        strain, samples.tension, specimen=model.specimen, reference_tension=reference
+        strain,
+        samples.tension,
+        specimen=model.specimen,
+        reference_tension=reference,
+        can_push=can_push,
     )
 
 

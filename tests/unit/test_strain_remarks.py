@@ -162,6 +162,26 @@ def test_a_specimen_that_was_pushed_pulls_before_it_has_its_length_again(push, s
     assert bool(found) is said
 
 
+@pytest.mark.parametrize(
+    ("strain", "tension", "said"),
+    [
+        # a pull that begins at -25 mm of a gauge of 50 mm and ends at -5 mm
+        (np.linspace(-0.5, -0.1, 200), np.linspace(0, 4, 200), True),
+        # a spring with a static load, moved about the middle of its stroke
+        (np.linspace(-0.1, 0.1, 200), np.linspace(3, 5, 200), False),
+        # a pad in compression, its load counted as positive
+        (np.linspace(0, -0.4, 200), np.linspace(0, 4, 200), False),
+        # a damper
+        (np.linspace(-0.5, -0.1, 200), 4 * np.sin(np.arange(200)), False),
+    ],
+)
+def test_what_may_be_pushed_is_not_below_zero_throughout_while_it_pulls(strain, tension, said):
+    found = note_on_strain_below_zero(
+        strain, tension, specimen="m", reference_tension=0.08, can_push=True
+    )
+    assert bool(found) is said
+
+
 @pytest.mark.parametrize(("begins", "zero"), [(0.5, 0.5), (0.45, 0.45)])
 def test_a_specimen_that_hangs_bent_at_rest_is_told_from_a_gauge_length_that_is_wrong(begins, zero):
     # soft at first: 0.2 N/mm of 1.6 kN/m at the end

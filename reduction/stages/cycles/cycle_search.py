@@ -182,8 +182,15 @@ def label_phases(
 
 _HINT = (
     "Check cycles.control, cycles.band and the layout, or give the test the kind it is "
-    "(relaxation, creep, quasi-static)."
+    "(relaxation, creep, quasi-static, tensile)."
 )
+
+_ONE_WAY_HINT = (
+    'The crosshead moves one way: give a pull kind = "tensile", a hold kind = "relaxation". If the'
+    " machine cycled, check the column of crosshead_position in the layout."
+)
+
+_ONE_WAY = 0.95  # of the range: least distance from the first reading to the last
 
 _CUT_OFF = 0.03  # of the samples, at the top of the range: a sine has 2 % of them there
 
@@ -343,9 +350,15 @@ def _paired_cycles(
             found=f"a range of {_range(values):.4g} {unit}, "
             f"{max(found.reversals.size - 1, 0)} movements of {found.band:.4g} {unit} or more",
             needed="two half cycles or more",
-            hint=_hint(time, values),
+            hint=_ONE_WAY_HINT
+            if found.reversals.size == 2 and not load and _goes_one_way(values)
+            else _hint(time, values),
         )
     return found, []
+
+
+def _goes_one_way(values: Floats) -> bool:
+    return abs(float(values[-1] - values[0])) > _ONE_WAY * _range(values)
 
 
 def _range(values: Floats) -> float:

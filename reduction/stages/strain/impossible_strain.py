@@ -47,13 +47,20 @@ def refuse_impossible_strain(strain: Floats, *, specimen: str, test_id: str) -> 
 
 
 def note_on_strain_below_zero(
-    strain: Floats, tension: Floats, *, specimen: str, reference_tension: float
+    strain: Floats,
+    tension: Floats,
+    *,
+    specimen: str,
+    reference_tension: float,
+    can_push: bool = False,
 ) -> tuple[Note, ...]:
     """Report that a specimen is shorter than at its reference tension while it pulls more.
 
     ``reference_tension`` [N] is the tension of zero strain: that of the gauge length, or that up
     to which the specimen counts as slack.  A position that falls while tension rises has a wrong
     sign, otherwise the zero is wrong.  A pushed specimen pulls on its way back while still short.
+    One that ``can_push`` may be shorter than that, unless it is so in the whole record and only
+    pulls, the more the longer it is.
 
     Examples
     --------
@@ -71,8 +78,10 @@ def note_on_strain_below_zero(
     n_below = int(np.count_nonzero(below))
     if n_below < max(_FEWEST, _SHARE * np.count_nonzero(pulls)):
         return ()
+    rises = rises_with_stretch(strain, tension)
+    if can_push and (high > 0 or push > _ABOVE * reference_tension or not rises):
+        return ()
     return (
         note("strain-below-zero", specimen, least=float(strain[below].min()),
-             tension=float(tension[below].max()), reference=reference_tension,
-             rises=rises_with_stretch(strain, tension)),
+             tension=float(tension[below].max()), reference=reference_tension, rises=rises),
     )  # fmt: skip
