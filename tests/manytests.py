@@ -97,7 +97,7 @@ WITHOUT_PAGE = """
 from reduction.cli.main import app
 from reduction.report.campaign_page import CampaignAnswers, CampaignPage
 CampaignPage.add = lambda *given: None
-CampaignPage.write = lambda *given, **shown: (None, CampaignAnswers((), False, (), frozenset()))
+CampaignPage.write = lambda *given, **shown: (None, CampaignAnswers((), False, (), frozenset(), {}))
 app()
 """
 

@@ -2,7 +2,7 @@
 
 from reduction.report.campaign_page import CampaignAnswers, CampaignPage
 
-NO_ANSWERS = CampaignAnswers((), False, (), frozenset())
+NO_ANSWERS = CampaignAnswers((), False, (), frozenset(), {})
 
 
 def leave_out_page(patch):

@@ -131,12 +131,16 @@ class ShownTable:
 
 @dataclass(frozen=True)
 class ShownAnswers:
-    """First output of a run: tables of answers, doubts with their tests, tests with a row."""
+    """First output of a run: tables of answers, doubts with their tests, tests with a row.
+
+    ``withheld`` has the reasons of tests without a row, by test.
+    """
 
     tables: Sequence[ShownTable]
     doubts: Sequence[tuple[str, str]]
     answered: Sequence[str]
     is_synthetic: bool = False
+    withheld: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

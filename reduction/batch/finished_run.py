@@ -87,6 +87,7 @@ def finished_run(
                 [(tests, text) for tests, text in answers["doubts"]],
                 answers["answered"],
                 answers["is_synthetic"],
+                answers["withheld"],
             ),
         )
     return None

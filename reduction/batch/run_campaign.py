@@ -469,6 +469,7 @@ def _shown(found: CampaignAnswers) -> ShownAnswers:
         [(", ".join(one.tests), one.text) for one in found.doubts],
         sorted(found.answered),
         found.is_synthetic,
+        found.withheld,
     )
 
 

@@ -503,7 +503,11 @@ def _choices(processed: Path, reports: Path, output: CommandOutput) -> dict[str,
 def _say_run(result: CampaignResult, output: CommandOutput) -> None:
     """Print the status of each test and part, and the location of the products."""
     answered = _show_answers(output, result.answers)
-    others = [one for one in result.tests if one.test not in answered]
+    others = [
+        replace(one, message=one.message or result.answers.withheld.get(one.test, ""))
+        for one in result.tests
+        if one.test not in answered
+    ]
     has_other_answers = bool((result.results or {}).get("outcomes") or result.parts.get("hoses"))
     if others or not (answered or has_other_answers):
         output.show(_status_table(others))

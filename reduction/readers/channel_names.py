@@ -508,6 +508,7 @@ class _Start:
     words: str
     position: Floats
     loads: dict[str, Floats]
+    strains: dict[str, Floats]
 
     @classmethod
     def of(cls, chosen: dict[str, tuple[SeenColumn, str]]) -> _Start | None:
@@ -520,6 +521,11 @@ class _Start:
             for key, (one, _) in chosen.items()
             if key.startswith("tension.")
         }
+        strains = {
+            key: _without_blanks(one.values)
+            for key, (one, _) in chosen.items()
+            if key.startswith("strain.")
+        }
         channels = np.array([position, *loads.values()])
         if not np.isfinite(channels).all() or not _has_moved(position):
             return None
@@ -531,7 +537,7 @@ class _Start:
         time, unit = chosen.get("time", (None, UNKNOWN))
         if time is not None and unit not in (UNKNOWN, CLOCK) and n_samples:
             words += f", {time.values[n_samples - 1] - time.values[0]:.3g} {unit}"
-        return cls(n_samples, words, position, loads)
+        return cls(n_samples, words, position, loads, strains)
 
     def settings(self, key: str, unit: str) -> tuple[str, list[str]]:
         """Settings of a channel from the start of the log, as TOML, with the reasons."""
@@ -539,6 +545,8 @@ class _Start:
             sign, said = self._sign(key)
             datum, more = self._datum(unit, -1 if sign else 1)
             return sign + datum, said + more
+        if key in self.strains:
+            return self._sign_of_strain(key)
         if key not in self.loads:
             return "", []
         sign, said = self._sign(key)
@@ -558,6 +566,16 @@ class _Start:
         end = "above" if key == "crosshead_position" else "below"
         return ", sign = -1", [
             f"guess: sign of {key}: the load falls as the position rises, and lies {end} 0"
+        ]
+
+    def _sign_of_strain(self, key: str) -> tuple[str, list[str]]:
+        """Sign reversal of a strain that falls as the position rises, once this has its sign."""
+        position = -self.position if self._sign("crosshead_position")[0] else self.position
+        strain = self.strains[key]
+        if not np.ptp(strain) > 0 or not np.corrcoef(position, strain)[0, 1] < _OPPOSED:
+            return "", []
+        return ", sign = -1", [
+            f"guess: sign of {key}: it falls as the position, with its own sign, rises"
         ]
 
     def _datum(self, unit: str, sign: int) -> tuple[str, list[str]]:

@@ -330,13 +330,15 @@ class CampaignPage:
 class CampaignAnswers:
     """The answers of a campaign, and the points that a person has to check, most serious first.
 
-    ``answered`` are the tests that have a row in the tables.
+    ``answered`` are the tests that have a row in the tables, ``withheld`` the reasons of the
+    others.
     """
 
     tables: tuple[PageTable, ...]
     is_synthetic: bool
     doubts: tuple[SummaryFinding, ...]
     answered: frozenset[str]
+    withheld: Mapping[str, str]
 
 
 def _answers(
@@ -356,12 +358,23 @@ def _answers(
         if one.severity == "warning"
     ]
     own = _answers_of(tests)
+    answered = frozenset(row[1].text for table in own for row in table.rows)
     return CampaignAnswers(
         tables=(*whole.answers, *own),
         is_synthetic=any_synthetic(tests) or whole.is_synthetic,
         doubts=tuple(doubts),
-        answered=frozenset(row[1].text for table in own for row in table.rows),
+        answered=answered,
+        withheld={view.id: _withheld(view) for view in tests if view.id not in answered},
     )
+
+
+def _withheld(view: TestView) -> str:
+    """Why a test has no answer: the first refusals in its notes."""
+    refusals = [str(one) for one in view.notes if one.severity == "refusal"]
+    return "; ".join(refusals[:_MOST_REFUSALS])
+
+
+_MOST_REFUSALS = 2
 
 
 def _answers_of(tests: Sequence[TestView]) -> list[PageTable]:

@@ -34,7 +34,12 @@ def result_of(folder: Path, *, exit_status: int = 0) -> CampaignResult:
         report=folder / "r" / "one" / "index.html",
         tables=(folder / "p" / "one" / "tables" / "cycles.csv",),
         read=read,
-        answers=ShownAnswers([ShownTable("of", ["a"], [True], [["1"]])], [("T-1", "odd")], ["T-1"]),
+        answers=ShownAnswers(
+            [ShownTable("of", ["a"], [True], [["1"]])],
+            [("T-1", "odd")],
+            ["T-1"],
+            withheld={"T-2": "no hold found"},
+        ),
     )
 
 

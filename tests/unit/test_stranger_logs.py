@@ -303,6 +303,15 @@ def test_the_channel_that_runs_backward_gets_a_sign(tmp_path, load, travel, turn
     assert {key for key, one in channels.items() if one.get("sign") == -1} == {turned} - {None}
 
 
+def test_a_strain_that_is_counted_in_compression_follows_the_sign_of_the_gap(tmp_path):
+    # a rheometer in compression: the gap falls, strain goes below zero, the load is positive
+    names = "Step time,Axial force,Gap,Strain\ns,N,mm,%\n"
+    log = names + table([TIME, LOAD, 80 - TRAVEL, -TRAVEL / 25])
+    _, layout = draft(tmp_path, "log.csv", log.encode())
+    assert layout["channels"]["crosshead_position"]["sign"] == -1
+    assert layout["channels"]["strain"]["1"]["sign"] == -1
+
+
 def test_a_position_far_above_its_travel_is_a_length(tmp_path):
     _, layout = draft(tmp_path, "log.csv", text_log(LOAD, 2500 + TRAVEL))
     assert layout["channels"]["crosshead_position"]["datum"] == "pin-to-pin"
