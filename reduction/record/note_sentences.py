@@ -677,8 +677,10 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "no-plateau": (
         "note",
-        "a {waveform} waveform has no part at constant rate: branches are trimmed by 5 % of the"
-        " stroke at each end",
+        lambda waveform: (
+            f"a {'sinusoidal' if waveform == 'sinusoidal' else 'non-triangular'} waveform has no"
+            " part at constant rate: branches are trimmed by 5 % of the stroke at each end"
+        ),
     ),
     "branches-without-constant-rate": (
         "note",

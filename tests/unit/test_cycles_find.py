@@ -379,6 +379,8 @@ def test_a_growing_amplitude_counts_from_the_first_valley():
         note.startswith("a sinusoidal waveform has no part at constant rate")
         for note in map(str, cycles.notes)
     )
+    notes = map(str, find(time, wave, waveform="other").notes)
+    assert any(note.startswith("a non-triangular waveform has no part") for note in notes)
 
 
 @pytest.mark.parametrize("shape", ["triangle", "sine", "quantised"])

@@ -828,6 +828,11 @@ def _without_marks(
             else "a rest at slack (no shorter than phases.minimum_duration), a displacement from "
             "slack (its reference_length read without tension), or a reference_tension through "
             "which the log rises",
+            hint=None
+            if gauge is None
+            else "If gauge_length was read where the log begins, under load, state"
+            f" reference_tension in [specimens.{specimen.name}], a little above the first reading of"
+            " the load",
         )
     spread = specimen.gauge_length_standard_uncertainty
     notes = [note("gauge-length-exact")] if spread is None else []
