@@ -831,8 +831,8 @@ def _without_marks(
             hint=None
             if gauge is None
             else "If gauge_length was read where the log begins, under load, state"
-            f" reference_tension in [specimens.{specimen.name}], a little above the first reading of"
-            " the load",
+            f" reference_tension in [specimens.{specimen.name}], a little above the first reading"
+            " of the load",
         )
     spread = specimen.gauge_length_standard_uncertainty
     notes = [note("gauge-length-exact")] if spread is None else []
