@@ -29,7 +29,6 @@ from reduction.campaign.load import load_campaign
 from reduction.cli.experiments import fit_series, notes_of_fit
 from reduction.cli.export import ExportedFiles, ExportRequest, write_export
 from reduction.cli.lookup import (
-    LEVEL_DIMENSIONS,
     LookupRequest,
     line_of_request,
     lines_to_rank,
@@ -40,7 +39,7 @@ from reduction.cli.lookup import (
 from reduction.lines import line_lookup
 from reduction.lines.line_lookup import Branch
 from reduction.lines.line_rank import rank_lines
-from reduction.lines.lookup_product import DesignValues, LineSource
+from reduction.lines.lookup_product import LEVEL_DIMENSIONS, DesignValues, LineSource
 from reduction.lines.population import PopulationValues, population_values, specimens_of_kind
 from reduction.prediction.hose_prediction import predict_from_plan
 from reduction.quantities.units import UnitSystem, parse_quantity

@@ -29,7 +29,7 @@ from reduction.archive.variables import (
 )
 from reduction.experiments.outcomes import Outcome, OutcomeQuantity, Place
 from reduction.prediction.comparison_error import Comparison, PressureComparison
-from reduction.prediction.hose_prediction import PredictedHose
+from reduction.prediction.hose_prediction import HOSE_SERIES, PredictedHose
 from reduction.prediction.hose_product import HOSE_PARAMETERS, HoseEvents
 from reduction.prediction.hose_tension import predict_hose
 from reduction.prediction.hose_uncertainty import PICK_UP, EventUncertainty
@@ -41,6 +41,7 @@ from reduction.quantities.names import (
     PREDICTION_SCHEMA,
     quantity,
 )
+from reduction.quantities.row import RANDOM_PART
 from reduction.record.contributions import combined_standard_uncertainty
 from reduction.record.errors import ArchiveError
 from reduction.record.measurement import Floats, Origin
@@ -50,8 +51,6 @@ _PREFIX = re.compile("^(tension|calibrated|event|comparison|parameter)_")
 """Prefix of a name in the archive that the corresponding part of a comparison lacks."""
 
 _NOT_ASKED = 2
-
-_RANDOM = "_random_standard_uncertainty"
 
 
 @dataclass(frozen=True)
@@ -142,7 +141,7 @@ def _number_of(part: object, name: str, otherwise: Any = np.nan) -> Any:
 
 def _compared_curves(found: Sequence[Comparison]) -> Values:
     length = max(one.measured.strain.size for one in found)
-    names = ("measured_tension", f"measured_tension{_RANDOM}", "tension_difference")
+    names = ("measured_tension", f"measured_tension{RANDOM_PART}", "tension_difference")
     values: Values = {name: np.full((len(found), len(CURVES), length), np.nan) for name in names}
     for row, one in enumerate(found):
         own = slice(one.measured.strain.size)
@@ -218,7 +217,7 @@ def _shared_values(found: Sequence[Comparison], values: Values) -> Values:
         # without a tension there are no contributions
         "measured_tension_uncertainty_contribution": np.where(np.isnan(measured), np.nan, rows),
         "measured_tension_standard_uncertainty": combined_standard_uncertainty(
-            rows, values[f"measured_tension{_RANDOM}"]
+            rows, values[f"measured_tension{RANDOM_PART}"]
         ),
     }
 
@@ -264,12 +263,6 @@ _STATES = {
     "jammed": "is_jammed",
     "bore_too_small": "is_bore_too_small",
 }
-
-_ALONG = (
-    "strain", "free_strain", "tension", "fill_pressure", "cord_tension", "cord_strain",
-    "cord_share", "rubber_share", "end_cap_load", "current_wrap_angle", "cord_spacing",
-    "current_inner_diameter",
-)  # fmt: skip
 
 _AT_EVENT = ("strain", "tension", "fill_pressure", "cord_tension", "cord_strain")
 
@@ -327,7 +320,7 @@ def _design_values(hoses: Sequence[PredictedHose]) -> Values:
 
 def _predicted_curves(hoses: Sequence[PredictedHose]) -> Values:
     values: Values = {
-        name: pad([getattr(hose.prediction, name) for hose in hoses]) for name in _ALONG
+        name: pad([getattr(hose.prediction, name) for hose in hoses]) for name in HOSE_SERIES
     }
     state = np.zeros(values["strain"].shape, dtype=np.uint16)
     for row, hose in zip(state, hoses, strict=True):

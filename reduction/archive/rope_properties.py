@@ -22,7 +22,7 @@ from reduction.archive.variables import (
     texts,
 )
 from reduction.quantities.names import PROPERTY_SCHEMA
-from reduction.quantities.row import COMPONENT
+from reduction.quantities.row import COMPONENT, RANDOM_PART
 from reduction.record.contributions import (
     Component,
     InstrumentErrors,
@@ -126,8 +126,6 @@ _HELD = ("quasi-static stiffness", "creep")
 CHANGES_LENGTH = ("bedding-in", "dynamic stiffness", *_HELD)
 """Steps that can give a change-in-length property."""
 
-_RANDOM = "_random_standard_uncertainty"
-
 
 @dataclass(frozen=True)
 class _ArchivedStep:
@@ -200,7 +198,7 @@ class _Reader:
     def number(self, name: str, *place: int, degrees_of_freedom: float = MANY) -> StepNumber:
         """A number of the archive with both parts of its uncertainty."""
         at = place or (self.row,)
-        kept = f"{name}{_RANDOM}"
+        kept = f"{name}{RANDOM_PART}"
         spread = self.dataset[kept if kept in self.dataset else f"{name}{_U}"].values[at]
         rows = np.zeros(len(self.component))
         for one, amount in shared_contributions(self.dataset, name, *at).items():
@@ -250,7 +248,7 @@ def _first_rise(read: _Reader) -> FirstRise | None:
     known = np.isfinite(tension) & (grid <= _first_peak(dataset, row))
     if np.count_nonzero(known) < 2:
         return None
-    kept = f"{name}{_RANDOM}"
+    kept = f"{name}{RANDOM_PART}"
     spread = dataset[kept if kept in dataset else f"{name}{_U}"].values[row, 0]
     return FirstRise(
         grid[known],

@@ -37,7 +37,11 @@ from reduction.stages.moduli.modulus_product import (
 from reduction.stages.moduli.stepwise_test import StepwiseResult
 from reduction.stages.standstills import Standstills
 from reduction.stages.three_parameter_line.hold_pairs import CreepOfHold, HeldPair
-from reduction.stages.three_parameter_line.line_product import LineParameters, SlowPull
+from reduction.stages.three_parameter_line.line_product import (
+    LINE_PARAMETERS,
+    LineParameters,
+    SlowPull,
+)
 from reduction.stages.three_parameter_line.rope_programme import (
     BeddingIn,
     CyclesToFailure,
@@ -337,9 +341,6 @@ def lag_values(estimate: LagEstimate) -> Values:
     }
 
 
-_LINE = ("dissipation_spring_constant", "relaxation_time", "dashpot_coefficient")
-
-
 def line_values(
     cycles: LineParameters, test: LineParameters, constant_spread: Floats | None
 ) -> Values:
@@ -352,7 +353,7 @@ def line_values(
     }
     if constant_spread is not None:
         values["test_quasi_static_spring_constant_standard_uncertainty"] = constant_spread
-    for name in _LINE:
+    for name in LINE_PARAMETERS:
         values[name] = getattr(cycles, name)
         values[f"{name}_standard_uncertainty"] = cycles.uncertainty[name]
         values[f"test_{name}"] = getattr(test, name)
@@ -362,8 +363,8 @@ def line_values(
 
 def random_of_line(cycles: LineParameters, test: LineParameters) -> Values:
     """Return the random part of the lines of cycles and test; the fit of a slow pull is shared."""
-    names = {name: cycles.random_uncertainty[name] for name in _LINE}
-    names |= {f"test_{name}": test.random_uncertainty[name] for name in _LINE}
+    names = {name: cycles.random_uncertainty[name] for name in LINE_PARAMETERS}
+    names |= {f"test_{name}": test.random_uncertainty[name] for name in LINE_PARAMETERS}
     constant = test.quasi_static_spring_constant
     return names | {"test_quasi_static_spring_constant": np.where(np.isnan(constant), np.nan, 0.0)}
 
@@ -375,7 +376,7 @@ def spread_of_line_values(spread: LineSpread, values: Values) -> Values:
         "test_line_without_solution_share": spread.without_solution_share,
     }
     drawn = spread.method == LINE_METHODS["monte_carlo"]
-    for name in _LINE:
+    for name in LINE_PARAMETERS:
         key = f"test_{name}_standard_uncertainty"
         found[key] = np.where(drawn, spread.standard_uncertainty[name], values[key])
         found[f"test_{name}_low"] = spread.low[name]

@@ -20,17 +20,13 @@ import xarray as xr
 
 from reduction.archive.shared_errors import FREEDOM, SHARED_OF_CHANNELS, components_of
 from reduction.archive.variables import stored
-from reduction.quantities.row import COMPONENT
+from reduction.quantities.row import COMPONENT, CONTRIBUTION, RANDOM_PART
 from reduction.quantities.units import parse_quantity
 from reduction.record.contributions import Component, effective_degrees_of_freedom
 from reduction.record.errors import ArchiveError, SettingsError
 from reduction.record.measurement import Floats
 from reduction.stages.moduli.local_regression import curve_at
 from reduction.uncertainty.budget import Budget, budget_of
-
-_RANDOM = "_random_standard_uncertainty"
-
-_CONTRIBUTION = "_uncertainty_contribution"
 
 # one of these dimensions means a regression on hundreds of samples
 _OF_SAMPLES = frozenset({
@@ -175,13 +171,13 @@ def effective_freedom(archive: xr.Dataset, name: str) -> Floats:
     [2.]
     """
     variable = archive.variables[name]
-    spread = stored(archive, f"{name}{_RANDOM}")
+    spread = stored(archive, f"{name}{RANDOM_PART}")
     if spread is None:
         spread = stored(archive, f"{name}_standard_uncertainty")
     own = np.broadcast_to(random_freedom(archive, name), variable.shape)
     if spread is None or spread.dims != variable.dims:
         return np.array(own)
-    rows, known = stored(archive, f"{name}{_CONTRIBUTION}"), stored(archive, FREEDOM)
+    rows, known = stored(archive, f"{name}{CONTRIBUTION}"), stored(archive, FREEDOM)
     if rows is None:
         return effective_degrees_of_freedom(spread.values, own)
     of_rows = np.asarray(np.inf)
@@ -391,10 +387,10 @@ _REASONS = {"property": "property_remark", "hold": "hold_refusal", "held_pair": 
 def quantities_with_budget(archive: xr.Dataset) -> tuple[str, ...]:
     """Names of the quantities with shared errors in an archive, except channels."""
     return tuple(
-        str(name).removesuffix(_CONTRIBUTION)
+        str(name).removesuffix(CONTRIBUTION)
         for name in archive.variables
-        if str(name).endswith(_CONTRIBUTION)
-        and str(name).removesuffix(_CONTRIBUTION) not in SHARED_OF_CHANNELS
+        if str(name).endswith(CONTRIBUTION)
+        and str(name).removesuffix(CONTRIBUTION) not in SHARED_OF_CHANNELS
     )
 
 
@@ -457,7 +453,7 @@ def _budget_at(
 ) -> Budget:
     """Budget of one number; a strain is interpolated between bins, as in a look-up."""
     variable = archive.variables[name]
-    contribution = archive.variables[f"{name}{_CONTRIBUTION}"]
+    contribution = archive.variables[f"{name}{CONTRIBUTION}"]
     freedom = np.broadcast_to(random_freedom(archive, name), variable.shape)
 
     def read(values: xr.Variable) -> Floats:
@@ -476,7 +472,7 @@ def _budget_at(
         str(variable.attrs.get("units", "")),
         float(read(variable)),
         found,
-        random=float(read(archive.variables[f"{name}{_RANDOM}"])),
+        random=float(read(archive.variables[f"{name}{RANDOM_PART}"])),
         degrees_of_freedom=float(np.divide(1, few, out=np.array(np.inf), where=few > 0)),
         place=_labels(archive, place, strain),
         words={dim: words_of(archive, dim, index, place, strain) for dim, index in place.items()},

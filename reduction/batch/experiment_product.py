@@ -32,7 +32,7 @@ from reduction.record.contributions import Contributions
 from reduction.record.errors import FitError
 from reduction.record.measurement import Bools, Floats, Origin, Source, Step
 from reduction.record.notes import Note, by_severity, note
-from reduction.stages.three_parameter_line.line_product import REASONS
+from reduction.stages.three_parameter_line.line_product import LINE_PARAMETERS, REASONS
 from reduction.uncertainty.surface_errors import with_shared_surfaces
 
 
@@ -124,8 +124,6 @@ LINE = ("storage_spring_constant", "loss_spring_constant", "quasi_static_spring_
 
 MEASURED = ("frequency", "mean_tension", "tension_amplitude", "mean_strain", "strain_amplitude")
 
-_NEEDS_LINE = {"dissipation_spring_constant", "relaxation_time", "dashpot_coefficient"}
-
 # key of REASONS: no quasi-static spring constant at the mean tension
 _NO_REST = 1
 
@@ -174,7 +172,8 @@ def _row_of_archive(plan: ExperimentPlan, archive: xr.Dataset, place: int, speci
         stated = stored(archive, f"test_{name}")
         return float("nan") if stated is None else float(stated.values[place])
 
-    remarks = _refusal(plan, archive, place, specimen) if _NEEDS_LINE & set(plan.responses) else []
+    needs_pull = not set(LINE_PARAMETERS).isdisjoint(plan.responses)
+    remarks = _refusal(plan, archive, place, specimen) if needs_pull else []
     row: Row = {name: of_test(name) for name in (*MEASURED, *LINE, *plan.responses)}
     for name in plan.responses:
         # shared errors are not scatter of the run: they are propagated separately, with their sign

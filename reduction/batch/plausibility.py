@@ -15,6 +15,7 @@ from itertools import combinations
 import numpy as np
 
 from reduction.batch.survey import Survey
+from reduction.batch.test_history import Models
 from reduction.campaign.plan import Campaign, ExperimentPlan, TestPlan
 from reduction.experiments.designs import engineering_levels
 from reduction.experiments.run_sheet import NOT_OF_PLAN
@@ -30,8 +31,6 @@ from reduction.record.notes import Note, note
 from reduction.stages.plausible_bands import Bands, bands_of, readings_that_fit, words_of_ratio
 from reduction.stages.strain.strain_model import StrainModel, strain_by_model
 from reduction.stages.strain.stress import constant_volume_diameter
-
-Models = Mapping[tuple[str, str], StrainModel]
 
 _STRENGTH_REACHED = 1.02  # of the rated break strength, reached by a test that did not fail
 

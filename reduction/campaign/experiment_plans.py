@@ -39,11 +39,11 @@ from reduction.quantities.units import (
 from reduction.record.errors import DataError, LogError, SettingsError
 from reduction.record.measurement import Floats, Specimen, read_only_arrays
 from reduction.record.plain_text import cut
+from reduction.stages.three_parameter_line.line_product import LINE_PARAMETERS
 
 _CODED = "coded"
 """Marks, in place of a unit, a column of coded levels."""
 
-NEED_PULL = ("dissipation_spring_constant", "relaxation_time", "dashpot_coefficient")
 """Responses that need the quasi-static spring constant."""
 
 _DIMENSIONS: dict[str, Dimension] = {
@@ -188,7 +188,7 @@ def agree_on_pulls(
     """Refuse a run shared by experiments that name different slow pulls for one specimen."""
     first: dict[tuple[str, str], tuple[str, str]] = {}
     for name, plan in experiments.items():
-        asks = not set(NEED_PULL).isdisjoint(plan.responses)
+        asks = not set(LINE_PARAMETERS).isdisjoint(plan.responses)
         for run in plan.runs:
             for specimen in tests[run.partition(".")[0]].specimens:
                 pull = plan.quasi_static.get(specimen, "")

@@ -21,8 +21,8 @@ from reduction.cli.output import CommandOutput
 from reduction.cli.printed_numbers import plain, short, table_of
 from reduction.quantities.flags import LINE_METHODS
 from reduction.record.errors import SettingsError
+from reduction.stages.three_parameter_line.line_product import LINE_PARAMETERS
 from reduction.uncertainty.budget import Budget
-from reduction.uncertainty.monte_carlo import PARAMETERS
 
 # name of a slow-pull curve in a look-up
 _OVER_TENSION = {"strain": "quasi_static_strain"}
@@ -100,7 +100,7 @@ def _in_brackets(label: str, words: str) -> str:
 def _drawn_uncertainty(archive: xr.Dataset, budget: Budget) -> float | None:
     """Standard uncertainty stored in an archive where linear propagation is inaccurate."""
     method = stored(archive, "test_line_uncertainty_method")
-    if method is None or budget.quantity.removeprefix("test_") not in PARAMETERS:
+    if method is None or budget.quantity.removeprefix("test_") not in LINE_PARAMETERS:
         return None
     place = archive["specimen"].values.tolist().index(budget.place["specimen"])
     if int(method.values[place]) != LINE_METHODS["monte_carlo"]:

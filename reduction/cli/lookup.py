@@ -35,12 +35,19 @@ from reduction.lines.line_search import (
     find_lines,
     in_conditions,
 )
-from reduction.lines.lookup_product import OF_MEAN, TENSIONS, DesignValues, LineLevels, LineSource
+from reduction.lines.lookup_product import (
+    LEVEL_DIMENSIONS,
+    OF_MEAN,
+    TENSIONS,
+    DesignValues,
+    LineLevels,
+    LineSource,
+)
 from reduction.lines.published_source import published_sources
 from reduction.lines.tether_comparison import compared_tethers
 from reduction.quantities.names import SINGLE_QUANTITIES
 from reduction.quantities.names import quantity as quantity_of
-from reduction.quantities.units import Dimension, UnitSystem, display_unit, parse_quantity
+from reduction.quantities.units import UnitSystem, display_unit, parse_quantity
 from reduction.record.errors import ArchiveError, DataError, SettingsError
 from reduction.record.measurement import Bools, Floats
 from reduction.stages.three_parameter_line.line_product import REASONS
@@ -175,16 +182,6 @@ def one_line_of(lines: Sequence[LineSource], quantity: str, name: str | None) ->
         )
     return having[0] if having else named[0]
 
-
-LEVEL_DIMENSIONS: dict[str, Dimension] = {
-    "frequency": "frequency",
-    "mean_tension": "force",
-    "tension_amplitude": "force",
-    "tension": "force",
-    "strain": "strain",
-    "mean_strain": "strain",
-    "strain_amplitude": "strain",
-}
 
 _ROUNDING = 1e-12
 

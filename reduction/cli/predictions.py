@@ -24,7 +24,12 @@ from reduction.cli.printed_numbers import plain, short, table_of
 from reduction.prediction.armour import PredictedArmour, predict_armour_case
 from reduction.prediction.comparison_error import HoseCalibration, PressureComparison, verdict_words
 from reduction.prediction.hose_design import DesignedHose, design_hoses
-from reduction.prediction.hose_prediction import HoseTarget, PredictedHose, predict_from_plan
+from reduction.prediction.hose_prediction import (
+    HOSE_SERIES,
+    HoseTarget,
+    PredictedHose,
+    predict_from_plan,
+)
 from reduction.prediction.hose_product import HoseEvent
 from reduction.prediction.wave_load import PredictedWaveLoad, predict_wave_load
 from reduction.quantities.names import quantity
@@ -97,12 +102,6 @@ def _designed(one: DesignedHose) -> dict[str, Any]:
 
 
 _SHOWN = 24
-
-_ALONG = (
-    "strain", "free_strain", "tension", "fill_pressure", "cord_tension", "cord_strain",
-    "cord_share", "rubber_share", "end_cap_load", "current_wrap_angle", "cord_spacing",
-    "current_inner_diameter",
-)  # fmt: skip
 
 _IN_TABLE = (
     "strain", "tension", "fill_pressure", "cord_tension", "cord_strain", "cord_share",
@@ -228,7 +227,7 @@ def _hose_document(hose: PredictedHose) -> dict[str, Any]:
     known = bool(uncertainty.source)
     return {
         "hose": hose.plan.name,
-        **{name: plain(getattr(prediction, name)) for name in _ALONG},
+        **{name: plain(getattr(prediction, name)) for name in HOSE_SERIES},
         "tension_standard_uncertainty": plain(uncertainty.tension_standard_uncertainty)
         if known
         else None,
@@ -245,7 +244,7 @@ def _hose_document(hose: PredictedHose) -> dict[str, Any]:
             name: plain(getattr(prediction, name))
             for name in ("is_slack", "is_broken", "is_jammed", "is_bore_too_small")
         },
-        "units": {name: quantity(name).unit for name in _ALONG},
+        "units": {name: quantity(name).unit for name in HOSE_SERIES},
         "events": {
             name: {
                 **{

@@ -48,6 +48,7 @@ from reduction.stages.three_parameter_line.line_model import (
     check_single_time,
     identify_by_fundamental,
 )
+from reduction.stages.three_parameter_line.line_product import LINE_PARAMETERS
 
 _OFF_SCREENING = 0.1
 
@@ -306,8 +307,6 @@ _PREFIX: dict[str, Transform] = {
     "log_": "log", "box_cox_": "box-cox", "log_frequency_times_": "log-times-frequency"
 }  # fmt: skip
 
-_FROM_SLOW_PULL = {"dissipation_spring_constant", "relaxation_time", "dashpot_coefficient"}
-
 
 def fit_experiment(
     runs: RunTable,
@@ -356,7 +355,7 @@ def fit_experiment(
         notes += outlying_runs(surfaces)
         drift = drift_over_order(surfaces, _places_in_order(runs, run_order))
         notes += drifting_responses(surfaces, drift)
-        if _FROM_SLOW_PULL & set(response_names):
+        if not set(LINE_PARAMETERS).isdisjoint(response_names):
             notes.append(note("slow-pull-error-shared"))
         forms, quality, remarks = _stiffness_of_runs(runs, surfaces, response_names)
         notes += remarks

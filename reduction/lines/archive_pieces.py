@@ -24,13 +24,12 @@ from reduction.lines.composite import (
     pieces_of_branches,
 )
 from reduction.quantities.flags import STEP_MASKS
+from reduction.quantities.row import CONTRIBUTION
 from reduction.record.contributions import Contributions
 from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import Floats
 from reduction.stages.moduli.stepwise_test import StepwiseResult
 from reduction.stages.strain.strain_model import StrainModel
-
-_ROWS = "_uncertainty_contribution"
 
 
 def alignment_words(dataset: xr.Dataset, place: int) -> tuple[str, ...]:
@@ -64,7 +63,7 @@ def parts_of(
     dataset: xr.Dataset, name: str, specimen: int | None = None, *, of: str
 ) -> tuple[Floats, Contributions | None]:
     """Both parts of the uncertainty of one curve in an archive."""
-    rows = stored(dataset, f"{name}{_ROWS}")
+    rows = stored(dataset, f"{name}{CONTRIBUTION}")
     whole = f"{name}_standard_uncertainty"
     own = np.asarray(
         dataset[whole if rows is None else f"{name}_random_standard_uncertainty"].values

@@ -52,15 +52,15 @@ from reduction.lines.export_line import (
 )
 from reduction.lines.export_tables import TableColumn, ValueTable, spread_columns
 from reduction.lines.line_curve import evaluate_curve
+from reduction.lines.line_lookup import Branch
 from reduction.lines.lookup_product import LineCurve, LineSource
 from reduction.quantities.digits import plain_number
+from reduction.quantities.names import BRANCH_NAMES
 from reduction.record.contributions import combined_standard_uncertainty
 from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import Bools, Floats
 
 CurveName = Literal["mean", "ascending", "descending"]
-
-_BRANCHES = ("ascending", "descending")
 
 _NOT_APART = (
     "errors shared with other tests, such as the load cell, are not stored separately: the whole"
@@ -175,7 +175,7 @@ def _of_test(archive: xr.Dataset, curve: CurveName, name: str | None) -> dict[st
     place = _place(archive, "specimen", name)
     branches = [str(value) for value in archive.variables["branch_name"].values]
     by_branch = archive.variables["branch_tension"].values[place]
-    rows = [branches.index(one) for one in (_BRANCHES if curve == "mean" else (curve,))]
+    rows = [branches.index(one) for one in (BRANCH_NAMES if curve == "mean" else (curve,))]
     # where one branch is unknown there is no mean: half a loop is no curve
     tension = by_branch[rows].mean(axis=0)
     strain = archive.variables["strain_bin"].values
@@ -199,7 +199,7 @@ def _of_test(archive: xr.Dataset, curve: CurveName, name: str | None) -> dict[st
     ]
     notes += alignment_words(archive, place)
     if curve == "mean":
-        gap = np.nanmax(np.abs(np.diff(by_branch[[branches.index(b) for b in _BRANCHES]], axis=0)))
+        gap = np.nanmax(np.abs(np.diff(by_branch[rows], axis=0)))
         notes.append(
             f"the branches are up to {plain_number(gap, 4)} N apart; this curve has no hysteresis"
         )
@@ -737,8 +737,6 @@ _MOST_CUT, _LEAST_CUT = 0.9, 0.05  # shares of the greatest tension that a cut m
 _STRAIN = ("strain", "quasi_static_strain")
 
 _TENSION = ("tension", "branch_tension")
-
-Branch = Literal["ascending", "descending"]
 
 
 def line_from_lookup(

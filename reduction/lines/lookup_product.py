@@ -17,12 +17,24 @@ from typing import Literal
 
 import numpy as np
 
+from reduction.quantities.units import Dimension
 from reduction.record.contributions import Component
 from reduction.record.errors import DataError
 from reduction.record.measurement import Bools, Floats, Integers, read_only_arrays
 
 TENSIONS = ("mean_tension", "tension_amplitude", "tension")
 """Levels that can also be shares of a break strength."""
+
+LEVEL_DIMENSIONS: dict[str, Dimension] = {
+    "frequency": "frequency",
+    "mean_tension": "force",
+    "tension_amplitude": "force",
+    "tension": "force",
+    "strain": "strain",
+    "mean_strain": "strain",
+    "strain_amplitude": "strain",
+}
+"""Levels at which a line is looked up."""
 
 OF_MEAN = "tension_amplitude_over_mean"
 """Factor of an experiment whose amplitudes are shares of the mean tension of each run."""

@@ -26,7 +26,13 @@ from reduction.lines.archive_source import archives_of_lines, lines_of_open_arch
 from reduction.lines.deck_formats import FORMS
 from reduction.lines.line_consistency import SOLVED, column_warnings, refitted_surfaces
 from reduction.lines.line_search import joined_conditions
-from reduction.lines.lookup_product import LineCurve, LineLevels, LineSource, LineSurface
+from reduction.lines.lookup_product import (
+    LEVEL_DIMENSIONS,
+    LineCurve,
+    LineLevels,
+    LineSource,
+    LineSurface,
+)
 from reduction.lines.published_source import published_sources
 from reduction.published.printed_cells import REPORTS, ReportId, cells_of, errata_of
 from reduction.published.published_lines import published_lines
@@ -406,11 +412,6 @@ _OF_LINES = (
 
 _SYMBOLS = ("K_ap", "H", "K_0", "K_1", "tau", "N")
 
-_LEVELS: dict[str, Dimension] = {
-    "frequency": "frequency", "mean_tension": "force", "tension_amplitude": "force",
-    "tension": "force", "strain": "strain", "mean_strain": "strain", "strain_amplitude": "strain",
-}  # fmt: skip
-
 _GIVEN: dict[Dimension, tuple[str, ...]] = {
     "frequency": ("Hz",),
     "force": ("N", "kN", "lbf"),
@@ -488,7 +489,7 @@ def _constants() -> dict[str, Any]:
     """Data that do not depend on any campaign."""
     lines = tuple(published_sources().values())
     published = [_line_data(line) | {"printed": _printed_at(line)} for line in lines]
-    known = {name: quantity(name) for name in (*_OF_LINES, *_LEVELS)}
+    known = {name: quantity(name) for name in (*_OF_LINES, *LEVEL_DIMENSIONS)}
     units = {one.unit for one in known.values()}
     return {
         "version": __version__,
@@ -503,7 +504,7 @@ def _constants() -> dict[str, Any]:
             }
             for unit in sorted(units)
         },
-        "levels": _LEVELS,
+        "levels": LEVEL_DIMENSIONS,
         "given": {
             dimension: [[unit, scale_to_si(unit, dimension)[0]] for unit in given]
             for dimension, given in _GIVEN.items()

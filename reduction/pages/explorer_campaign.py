@@ -41,6 +41,7 @@ from reduction.batch.survey import FirstPass, Survey, as_reduction_error, survey
 from reduction.campaign.load import load_campaign, read_test_table
 from reduction.campaign.model import dimension_of
 from reduction.campaign.plan import Campaign
+from reduction.pipeline.located_test import CYCLIC
 from reduction.record.errors import ArchiveError, SettingsError
 from reduction.record.settings import StrainMethod
 
@@ -55,8 +56,6 @@ Group = Literal[
     "Flags",
 ]
 """Headings, in the order of the page."""
-
-_CYCLIC = ("cyclic", "fatigue", "snap", "bedding-in")
 
 
 @dataclass(frozen=True)
@@ -99,18 +98,18 @@ SETTINGS: tuple[Setting, ...] = (
     Setting(
         "cycles.trim_threshold", "Trim and cycles",
         "share of the plateau rate above which a sample is kept: higher trims more of both ends",
-        slider=_SHARE, kinds=_CYCLIC,
+        slider=_SHARE, kinds=CYCLIC,
     ),
     Setting(
         "cycles.break_in_cycles", "Trim and cycles", "first cycles not used in any mean",
-        slider=_Slider(0, 20, 1), kinds=_CYCLIC,
+        slider=_Slider(0, 20, 1), kinds=CYCLIC,
     ),
     Setting(
-        "cycles.band", "Trim and cycles", "smallest range that counts as a reversal", kinds=_CYCLIC
+        "cycles.band", "Trim and cycles", "smallest range that counts as a reversal", kinds=CYCLIC
     ),
     Setting(
         "waveform", "Trim and cycles", "how ends are trimmed and the loop area is computed",
-        choices=("triangular", "sinusoidal", "other"), kinds=_CYCLIC,
+        choices=("triangular", "sinusoidal", "other"), kinds=CYCLIC,
     ),
     Setting(
         "control", "Trim and cycles", "channel on which reversals are found",
@@ -129,16 +128,16 @@ SETTINGS: tuple[Setting, ...] = (
     ),
     Setting(
         "modulus.maximum_segments", "Modulus windows", "most straight segments tried",
-        slider=_Slider(1, 8, 1), kinds=_CYCLIC,
+        slider=_Slider(1, 8, 1), kinds=CYCLIC,
     ),
     Setting(
         "modulus.segment_tolerance", "Modulus windows",
         "distance of the segments from the branch, as a share of its tension range",
-        kinds=_CYCLIC,
+        kinds=CYCLIC,
     ),
     Setting(
         "modulus.selected_cycles", "Modulus windows",
-        "longest test of which every cycle's curve is kept", kinds=_CYCLIC,
+        "longest test of which every cycle's curve is kept", kinds=CYCLIC,
     ),
     Setting(
         "modulus.stress_at_strain", "Modulus windows", "elongations at which stress is given"
@@ -160,9 +159,9 @@ SETTINGS: tuple[Setting, ...] = (
     Setting("rope.reference_time", "Rope", "time after loading of the static stiffness"),
     Setting("rope.failure_share", "Rope", "share of the median peak below which it has failed"),
     Setting("slip.minimum_cycles", "Slips", "shortest test that is searched for slips",
-            kinds=_CYCLIC),
+            kinds=CYCLIC),
     Setting("slip.false_alarm", "Slips", "chance that a sound specimen shows a slip",
-            kinds=_CYCLIC),
+            kinds=CYCLIC),
     Setting("quality.stuck_samples", "Flags", "number of equal values that count as stuck"),
     Setting("quality.spike_factor", "Flags", "deviation from both neighbours that is a spike"),
     Setting("quality.gap_factor", "Flags", "number of median time steps that count as a gap"),

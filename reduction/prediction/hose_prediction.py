@@ -29,6 +29,13 @@ from reduction.record.errors import SettingsError
 from reduction.record.measurement import Bools, Floats
 from reduction.record.notes import Note, note
 
+HOSE_SERIES = (
+    "strain", "free_strain", "tension", "fill_pressure", "cord_tension", "cord_strain",
+    "cord_share", "rubber_share", "end_cap_load", "current_wrap_angle", "cord_spacing",
+    "current_inner_diameter",
+)  # fmt: skip
+"""Numbers of a predicted hose at each strain."""
+
 
 @dataclass(frozen=True)
 class HelicalLayer:

@@ -43,13 +43,17 @@ OF_UNCERTAINTY = "degrees of freedom"
 
 PART = "part of an uncertainty"
 
+RANDOM_PART = "_random_standard_uncertainty"
+
+CONTRIBUTION = "_uncertainty_contribution"
+
 SUFFIXES = {
-    "_random_standard_uncertainty": (
+    RANDOM_PART: (
         "random part (k=1) of the standard uncertainty of {}",
         "f8",
         "is an uncertainty",
     ),
-    "_uncertainty_contribution": (
+    CONTRIBUTION: (
         "signed contribution of each shared error (one standard uncertainty) to {}",
         "f8",
         "part of an uncertainty",

@@ -30,6 +30,7 @@ from reduction.experiments.surface_points import (
 )
 from reduction.quantities.digits import fixed_number, places_of
 from reduction.quantities.names import QUANTITIES, RESPONSES, SCALES
+from reduction.quantities.row import CONTRIBUTION
 from reduction.record.contributions import CONFIDENCE, coverage_factor, effective_degrees_of_freedom
 from reduction.record.measurement import Floats, Integers
 from reduction.record.notes import urgency
@@ -85,9 +86,6 @@ def negative_inside(surfaces: ResponseSurfaces) -> dict[str, tuple[float, Floats
         for index, name in enumerate(surfaces.response_names)
         if name in RESPONSES and least[index] < 0
     }
-
-
-_CONTRIBUTION = "_uncertainty_contribution"
 
 
 @dataclass(frozen=True)
@@ -146,7 +144,7 @@ def _interval_of_surfaces(
 
 def _rows(view: ExperimentView, name: str, n_terms: int) -> Floats:
     """Contributions to the coefficients, shape (n_components, n_terms): zero where none."""
-    found = view.array(f"{name}{_CONTRIBUTION}")
+    found = view.array(f"{name}{CONTRIBUTION}")
     n_components = _freedom(view).size
     if found.ndim != 2:
         return np.zeros((n_components, n_terms))

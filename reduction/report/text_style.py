@@ -27,6 +27,9 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#6
 
 DASHES = {"ascending": "solid", "descending": "dash"}
 
+LINE_DASHES = ("solid", "dash", "dot", "dashdot")
+"""One after the other, where lines differ by more than colour."""
+
 SYMBOLS = ("circle", "square", "diamond", "triangle-up", "cross", "x", "star", "triangle-down")
 
 FILLINGS = ("", "-open", "-dot", "-open-dot")

@@ -41,6 +41,7 @@ from reduction.stages.moduli.secant_modulus import (
 from reduction.stages.reduced_test import ReducedTest
 from reduction.stages.strain.strain_model import StrainModel, position_by_model
 from reduction.stages.three_parameter_line.hold_pairs import CreepOfHold, HeldPair
+from reduction.stages.three_parameter_line.line_of_loops import Reading
 from reduction.stages.three_parameter_line.line_product import LineParameters, SlowPull
 from reduction.stages.three_parameter_line.rope_programme import (
     BeddingIn,
@@ -125,9 +126,6 @@ def _part(product: Product, block: slice) -> Product:
         elif isinstance(value, dict):
             changes[item.name] = {name: array[:, block] for name, array in value.items()}
     return replace(product, **changes)  # type: ignore[type-var]
-
-
-Reading = Literal["amplitude", "fundamental"]
 
 
 _OF_FUNDAMENTAL = ("storage_spring_constant", "loss_spring_constant")

@@ -53,9 +53,8 @@ from reduction.stages.three_parameter_line.line_of_loops import (
     relative_deviations,
     relative_shared,
 )
-from reduction.stages.three_parameter_line.line_product import LineParameters
+from reduction.stages.three_parameter_line.line_product import LINE_PARAMETERS, LineParameters
 
-PARAMETERS = ("dissipation_spring_constant", "relaxation_time", "dashpot_coefficient")
 """K_1, tau and N = K_1 tau, in the order of the arrays of `_LineDraws`."""
 
 N_DRAWS = 20_000
@@ -73,7 +72,7 @@ _ONE_SIGMA = (0.158655, 0.841345)
 @dataclass(frozen=True)
 @read_only_arrays
 class _LineDraws:
-    """Results of the draws for the line of each specimen; rows are `PARAMETERS`."""
+    """Results of the draws for the line of each specimen; rows are `LINE_PARAMETERS`."""
 
     linear_standard_uncertainty: Floats
     standard_uncertainty: Floats
@@ -139,7 +138,7 @@ def _draw_line(
     common = generator.standard_normal((N_DRAWS, shared.shape[0]))
     uniform = generator.random(N_DRAWS)
     result = {
-        name: np.full((len(PARAMETERS), n_specimens), np.nan)
+        name: np.full((len(LINE_PARAMETERS), n_specimens), np.nan)
         for name in ("linear_standard_uncertainty", "standard_uncertainty", "low", "high")
     }
     without = np.full(n_specimens, np.nan)
@@ -182,9 +181,9 @@ def _linear(
         line["loss_spring_constant"],
         line["quasi_static_spring_constant"],
     )
-    slopes = table[[OUTPUTS.index(name) for name in PARAMETERS]]
+    slopes = table[[OUTPUTS.index(name) for name in LINE_PARAMETERS]]
     variance = np.einsum("oi,ij,oj->o", slopes, random + shared.T @ shared, slopes)
-    size = np.array([line[name] for name in PARAMETERS])
+    size = np.array([line[name] for name in LINE_PARAMETERS])
     return np.asarray(size * np.sqrt(np.maximum(variance, 0)))
 
 
@@ -205,7 +204,7 @@ def _parameters(inputs: Floats, reading: Literal["amplitude", "fundamental"]) ->
 def _identified(inputs: Floats, reading: Literal["amplitude", "fundamental"]) -> Floats:
     """Parameters of each draw, shape (3, n_draws)."""
     line = _parameters(inputs, reading)
-    return np.stack([line[name] for name in PARAMETERS])
+    return np.stack([line[name] for name in LINE_PARAMETERS])
 
 
 def with_line_spread(test: ReducedTest, cycles: CycleSettings) -> ReducedTest:
@@ -220,7 +219,7 @@ def with_line_spread(test: ReducedTest, cycles: CycleSettings) -> ReducedTest:
     spreads: dict[str, Floats] = {}
     low: dict[str, Floats] = {}
     high: dict[str, Floats] = {}
-    for row, name in enumerate(PARAMETERS):
+    for row, name in enumerate(LINE_PARAMETERS):
         random = line.random_uncertainty[name]
         shared = _shared(test, line, name)
         linear = combined_standard_uncertainty(shared, random)

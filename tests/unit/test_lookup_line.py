@@ -3,12 +3,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from reduction.cli.lookup import LEVEL_DIMENSIONS, _shown_levels
+from reduction.cli.lookup import _shown_levels
 from reduction.experiments.designs import box_behnken, model_matrix, quadratic_exponents
 from reduction.lines.line_consistency import consistency_warnings
 from reduction.lines.line_lookup import cycle_loads, look_up, sigma_from_r2
 from reduction.lines.line_surface import evaluate_surface
-from reduction.lines.lookup_product import LineCurve, LineSource, LineSurface
+from reduction.lines.lookup_product import LEVEL_DIMENSIONS, LineCurve, LineSource, LineSurface
 from reduction.record.errors import DataError, SettingsError
 
 LOW, HIGH = np.array([0.1, 100.0, 50.0]), np.array([0.5, 300.0, 150.0])

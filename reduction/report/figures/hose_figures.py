@@ -37,6 +37,7 @@ from reduction.report.text_style import (
     COLOURS,
     DASHES,
     DEGREES,
+    LINE_DASHES,
     SYMBOLS,
     Shown,
     colour,
@@ -242,8 +243,6 @@ _MOST_SOURCES = 6
 
 _FACTOR = factor_words([NORMAL])
 
-_DASHES = ("solid", "dash", "dot", "dashdot")
-
 _STATIC = (
     " From the static curve of one cord and a long, straight, closed, water-filled hose. Not"
     " included: cycling, rate, temperature, compression, and end effects beyond the stated dead"
@@ -372,7 +371,7 @@ def draw_all_hoses(views: Sequence[HoseView]) -> list[Figure]:
             data.append(_interval(strain, tension, spread, force.factor, colour(index)))
         data.append(
             line(strain, force.factor * tension, name=name, colour=colour(index), width=2.2,
-                 dash=_DASHES[index // len(COLOURS) % len(_DASHES)])
+                 dash=LINE_DASHES[index // len(COLOURS) % len(LINE_DASHES)])
         )  # fmt: skip
     for name in ("pick_up", "working", "cord_break"):
         shown_events = [

@@ -22,7 +22,15 @@ from reduction.report.test_view import (
     plus_minus_of_tests,
     shared_sources,
 )
-from reduction.report.text_style import COLOURS, DASHES, Shown, colour, plot_text, shown
+from reduction.report.text_style import (
+    COLOURS,
+    DASHES,
+    LINE_DASHES,
+    Shown,
+    colour,
+    plot_text,
+    shown,
+)
 from reduction.stages.moduli.elastomer_laws import (
     LAWS,
     PARAMETERS,
@@ -206,8 +214,6 @@ _NAMES = {
     "ogden-2": "Ogden, two terms",
 }  # fmt: skip
 
-_DASHES = ("solid", "dash", "dot", "dashdot")
-
 
 def draw_mooney(view: TestView) -> list[Figure]:
     """Draw the first loading of each specimen and the laws fitted to it, in their range."""
@@ -262,7 +268,7 @@ def _laws(view: TestView, specimen: str, factor: float) -> Iterator[Trace]:
         order = LAWS.index(law)
         yield line(
             inverse, reduced * factor, name=_NAMES.get(law, law), colour=colour(order),
-            dash=_DASHES[order], width=1.6,
+            dash=LINE_DASHES[order], width=1.6,
         )  # fmt: skip
 
 

@@ -18,6 +18,9 @@ from reduction.record.errors import DataError
 from reduction.record.measurement import Floats, read_only_arrays
 from reduction.record.notes import Note
 
+LINE_PARAMETERS = ("dissipation_spring_constant", "relaxation_time", "dashpot_coefficient")
+"""Numbers of the line that need K_0 of a slow pull."""
+
 REASONS: dict[int, str] = {
     0: "",
     1: "the quasi-static spring constant at this mean tension is not known",
