@@ -11,7 +11,7 @@ from reduction.stages.cycles import cycle_search
 from reduction.stages.cycles.levels import find_levels
 from reduction.stages.cycles.loop_sense import unlike_neighbours
 from reduction.stages.cycles.loops import close_loops
-from reduction.stages.cycles.machine_counter import counted_cycles
+from reduction.stages.cycles.machine_counter import counted_cycles, counter_notes
 from reduction.stages.moduli.loop_balance import check_identity
 from reduction.stages.standstills import find_standstills
 
@@ -201,3 +201,14 @@ def test_single_cycles_stored_from_peak_to_peak_are_left_out_with_a_reason():
     )  # fmt: skip
     assert cycles.number.max() <= 30
     assert "stored-from-peak" in [one.code for one in cycles.notes]
+
+
+@pytest.mark.parametrize(("number", "n_reversals", "differs"), [
+    (range(1, 11), 8, False), (range(1, 11), 7, True),  # one count is cut off at each end
+    ([*range(1, 6), *range(11, 16)], 6, False), ([*range(1, 6), *range(11, 16)], 5, True),
+])  # fmt: skip
+def test_each_part_of_a_log_may_lack_a_cycle_at_both_of_its_ends(number, n_reversals, differs):
+    wave = np.append(np.tile([0.0, 1.0], 10), 0.0)
+    ends = np.arange(20).reshape(10, 2)
+    found = counter_notes(wave, ends, ends + 1, np.array(number), n_reversals, 0.1)
+    assert ("counter-differs" in [one.code for one in found]) is differs

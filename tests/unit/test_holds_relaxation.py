@@ -103,3 +103,12 @@ def test_values_beyond_the_series_and_in_gaps_are_nan():
 def test_values_at_times_need_finite_values():
     with pytest.raises(DataError, match="values are not finite"):
         value_at_times([0.0, 1.0], [1.0, np.nan], [0.5])
+
+
+def test_a_value_between_two_readings_of_a_slow_log_has_the_noise_of_one():
+    """At least that of a reading, 0.05; the bend that its neighbours show is noise of that size."""
+    time = np.arange(0, 1000, 10.0)
+    series = 100 + 0.05 * np.random.default_rng(5).standard_normal(time.size)
+    _, spread = value_at_times(time, series, np.arange(15, 100, 10.0))
+    assert 0.05 == pytest.approx(spread.min(), rel=0.2)
+    assert np.median(spread) < 0.1
