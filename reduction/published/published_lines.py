@@ -727,23 +727,6 @@ class PublishedTether:
     segments: tuple[TetherSegment, ...]
     errata: tuple[str, ...]
 
-    def segments_of(
-        self, test: str, *, data: SegmentData, condition: str = "ten cycles"
-    ) -> tuple[TetherSegment, ...]:
-        """Segments of one test, in rising strain."""
-        found = tuple(
-            one
-            for one in self.segments
-            if (one.name.test, one.name.data, one.name.condition) == (test, data, condition)
-        )
-        if not found:
-            tests = dict.fromkeys(f"{one.name.test} {one.name.condition}" for one in self.segments)
-            raise DataError(
-                f"no {data} segments of tether {self.name} are printed for {test} {condition}",
-                needed="one of " + ", ".join(tests),
-            )
-        return found
-
 
 def _name_of_segment(row: str) -> _SegmentName:
     """Content of the heading of a row in Tables 5 and 6.
@@ -788,7 +771,8 @@ def published_tethers() -> tuple[PublishedTether, PublishedTether]:
     >>> new, used = published_tethers()
     >>> print([round(one.specimen.area / 0.0254**2, 3) for one in (new, used)])
     [0.849, 0.694]
-    >>> (segment,) = new.segments_of("T-5", data="consolidated")
+    >>> (segment,) = [one for one in new.segments
+    ...     if (one.name.test, one.name.data) == ("T-5", "consolidated")]
     >>> slope = (segment.tension_high - segment.tension_low) / (
     ...     segment.strain_high - segment.strain_low)
     >>> print(round(segment.modulus * new.specimen.area / slope, 3))
