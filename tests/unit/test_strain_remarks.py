@@ -13,7 +13,7 @@ from reduction.stages.strain.impossible_strain import (
 )
 from reduction.stages.strain.strain_fit import _on_reading_time, _remarks_on, _without_marks
 from reduction.stages.strain.strain_model import StrainModel
-from reduction.stages.strain.zero_strain import ZeroStrain, zero_of_bent
+from reduction.stages.strain.zero_strain import ZeroStrain, half_band_of, zero_of_bent
 
 L0 = 2.55
 READING = 0.00124  # sqrt(3) of it over 2.55 m is 0.084 points
@@ -205,3 +205,10 @@ def test_pins_at_the_gauge_length_hang_no_specimen_bent_by_their_noise(seed):
     position, load = place + 1e-5 * noise[0], 1e5 * np.clip(place - 5.0, 0, None) + 10 * noise[1]
     rest = ZeroStrain(float(position[:100].mean()), is_logged=True)
     assert zero_of_bent(rest, position, load, gauge_length=5.0) is rest
+
+
+@pytest.mark.parametrize(("reference", "half"), [(1000.0, 200.0), (10.0, 30.0)])
+def test_a_reading_is_at_the_reference_tension_within_a_fifth_or_its_noise(reference, half):
+    """Twelve standard deviations of the noise span its range: six to either side, of 5 N."""
+    tension = np.random.default_rng(2).normal(0, 5.0, 5000)
+    assert half_band_of(reference, tension) == pytest.approx(half, rel=0.03)

@@ -5,7 +5,12 @@ import pytest
 from scipy import stats
 
 from reduction.experiments.designs import Design, plackett_burman
-from reduction.experiments.screening import alias_matrix, screening_effects, screening_remarks
+from reduction.experiments.screening import (
+    _pseudo_standard_error,
+    alias_matrix,
+    screening_effects,
+    screening_remarks,
+)
 from reduction.record.errors import DataError, SettingsError
 
 FIVE = plackett_burman(5)
@@ -122,3 +127,9 @@ def test_the_error_of_effects_is_named_where_it_is_no_dummies_of_one_specimen():
     assert "Lenth" in lenth and "blocks" in blocks
     with pytest.raises(SettingsError, match="a number of columns; found -1"):
         screening_remarks(-1, has_blocks=False)
+
+
+def test_lenths_estimate_leaves_out_effects_beyond_two_and_a_half_times_the_first():
+    """Median 4, first estimate 6: of 16, 17 and 18 all are beyond 15; 1.5 medians of the rest."""
+    effects = np.array([1.0, -2.0, 3.0, -4.0, 16.0, -17.0, 18.0])
+    assert _pseudo_standard_error(effects) == pytest.approx(1.5 * 2.5)
