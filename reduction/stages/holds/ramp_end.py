@@ -112,7 +112,8 @@ def time_to_stop(time: Floats, place: Floats, *, held_at: float) -> float:
 
     Examples
     --------
-    Uniform deceleration to a stand at 4 s, with the last sample at 3 s:
+    Uniform deceleration to a stand at 4 s, with the last sample at 3 s: short of 1 s, since the
+    last speed is the mean of five steps.
 
     >>> t = np.arange(0.0, 3.1, 0.1)
     >>> x = np.where(t < 2, t, 4 - (4 - t) ** 2 / 4 - 1)
