@@ -161,6 +161,8 @@ def test_specimens_pulled_together_with_one_error_tell_no_more_than_one_specimen
     assert (both.term_degrees_of_freedom[0, 1:] == 5).all()
     assert both.overall_p_value[0] == pytest.approx(alone.overall_p_value[0], rel=1e-6)
     assert both.lack_of_fit.p_value[0] == pytest.approx(alone.lack_of_fit.p_value[0], rel=1e-6)
+    told = [one.numbers["freedom"] for one in both.notes if one.code == f"blocks-{treatment}"]
+    assert told == [1]  # of two specimens
     for name in ("sum_of_squares", "pure_error_sum_of_squares"):  # each pull has two specimens
         wanted = 2 * getattr(alone.lack_of_fit, name)
         assert getattr(both.lack_of_fit, name) == pytest.approx(wanted, rel=1e-6)
