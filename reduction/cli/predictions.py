@@ -161,6 +161,8 @@ def _show_hose(hose: PredictedHose, output: CommandOutput) -> None:
     force, per_newton = output.unit("N")
     pressure, per_pascal = output.unit("Pa")
     small = shown("small length", output.system)
+    warnings = [one for one in hose.notes if one.severity == "warning"]
+    output.say_each("warning", warnings)
     output.say(
         f"hose {hose.plan.name}: {np.degrees(float(hose.plan.design.wrap_angle)):.4g} degrees from"
         f" the axis, {hose.number_of_cords:.1f} cords, ribbon"
@@ -208,7 +210,7 @@ def _show_hose(hose: PredictedHose, output: CommandOutput) -> None:
             f"{100 * layer.least_strain:.1f} to {100 * layer.greatest_strain:.1f} % up to the "
             f"working load{needed}"
         )
-    output.say_each("note", hose.notes)
+    output.say_each("note", (one for one in hose.notes if one not in warnings))
 
 
 def _spread(hose: PredictedHose, event: str) -> dict[str, float]:

@@ -55,18 +55,18 @@ class CordCurve:
                 found=f"{self.strain.size} strains, {self.load.size} loads",
                 needed="as many loads as strains, two or more",
             )
-        for name, values in (("strain", self.strain), ("load", self.load)):
+        for name, unit, values in (("strain", "", self.strain), ("load", " N", self.load)):
             if not np.all(np.isfinite(values)):
                 raise SettingsError(f"cord.{name} is not finite", needed="numbers")
             if values[0] != 0:
                 raise SettingsError(
-                    f"cord.{name} does not begin at zero", found=f"{values[0]:g} in SI", needed="0"
+                    f"cord.{name} does not begin at zero", found=f"{values[0]:g}{unit}", needed="0"
                 )
             if not np.all(np.diff(values) > 0):
                 place = int(np.flatnonzero(np.diff(values) <= 0)[0])
                 raise SettingsError(
                     f"cord.{name} does not rise at point {place + 2}",
-                    found=f"{values[place + 1]:g} after {values[place]:g} in SI",
+                    found=f"{values[place + 1]:g} after {values[place]:g}{unit}",
                     needed="a strictly rising curve up to the break",
                 )
 

@@ -159,7 +159,7 @@ def predict_from_plan(plan: HosePlan) -> PredictedHose:
         working_torque=float(
             predict_two_layers(design, float(design.wrap_angle), [working]).torque[0]
         )
-        if np.ptp(np.asarray(design.layer_diameter))
+        if np.any(np.not_equal(*design.layer_diameter))
         else 0.0,
         balanced_wrap_angle=torque_balanced_angle(design, working),
         layers=layers,

@@ -110,7 +110,7 @@ class HoseDesign:
         _need("layer_diameter", outer, outer >= inner, "the inner layer before the outer one")
         laid = float(np.max(outer))
         _need("outer_diameter", skin, skin > outer,
-              f"above the diameter of the cord layers, {laid:g} in SI (wrap_diameter)")  # fmt: skip
+              f"above the diameter of the cord layers, {laid:g} m (wrap_diameter)")  # fmt: skip
         share = np.asarray(self.dead_length_share, dtype=np.float64)
         _need("dead_length_share", share, (share >= 0) & (share < 1), "from 0 to below 1")
         working = np.asarray(self.working_share)
@@ -136,13 +136,18 @@ class HoseDesign:
         return np.broadcast_shapes(*shapes)
 
 
+_UNITS = {"wrap_angle": "deg", "cords_per_length": "1/m", "rubber_modulus": "Pa"}
+"""Units of the numbers that are neither diameters nor ratios."""
+
+
 def _need(name: str, value: Floats, is_good: Bools, needed: str) -> None:
     if np.all(is_good):
         return
     bad = np.atleast_1d(~is_good)
     found = np.broadcast_to(np.atleast_1d(value), bad.shape)[bad].flat[0]
     where = "" if bad.size == 1 else f" of {int(bad.sum())} of {bad.size} designs"
-    shown = f"{np.degrees(found):g} deg" if name == "wrap_angle" else f"{found:g} in SI"
+    unit = "m" if name.endswith("diameter") else _UNITS.get(name, "")
+    shown = f"{np.degrees(found) if unit == 'deg' else found:g} {unit}".rstrip()
     raise SettingsError(f"{name}{where} is not that of a hose", found=shown, needed=needed)
 
 
