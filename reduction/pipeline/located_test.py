@@ -175,11 +175,13 @@ def _parted_at(position: Floats, load: Floats) -> int:
     # a line that is let slack goes back first, and more so if it has yielded; one that breaks
     # on the way back goes slack within a reading
     travel = high - low
+    top = high - _TOP_SHARE * travel
     reading = abs(float(position[taut] - position[taut - 1])) if taut > 0 else 0.0
     allowed = max(_GIVEN_BACK * travel, min(1.5 * reading, _MOST_BACK * travel))
-    if not position[taut] - position[last + 1] < allowed:
+    # it may break where the log has a gap, and the machine runs on to the top without it
+    if after[-_FEWEST_SLACK] < top and not position[taut] - position[last + 1] < allowed:
         return -1
-    least = min(after[-_FEWEST_SLACK], high - _TOP_SHARE * (high - low))
+    least = min(after[-_FEWEST_SLACK], top)
     is_slack_there = first_sample(
         lambda part: (position[part] >= least) & (load[part] < _TAUT * peak), 0, last + 1,
         position, load,
@@ -233,6 +235,11 @@ def slips_of(located: Located, settings: ReductionSettings) -> Slips | None:
     peaks = [
         over_intervals(np.fmax, load, cycles.first, cycles.last + 1) for load in located.tension
     ]
+    # the cycle in which a specimen parts is low, and none after it is its own
+    for row, sample in enumerate(located.parted):
+        if sample > 0:
+            gone = cycles.last >= sample
+            level[row, gone] = peaks[row][gone] = np.nan
     begin, end = take_samples(located.record.time, np.stack([cycles.first, cycles.last]))
     # the time of rows does not show the cycles that a machine counted and did not store
     lasts = np.fmax(np.diff(begin), np.diff(cycles.number) * np.median(end - begin))

@@ -180,6 +180,8 @@ def _half_range(strain: Floats, cycles: Cycles) -> Floats:
 def _drift(name: str, loops: Loops, index: int, half_strain: Floats, cycles: Cycles) -> list[Note]:
     """Cycles whose loop is the small remainder of a drift: half of it was subtracted."""
     half_tension = (loops.peak_tension[index] - loops.valley_tension[index]) / 2
+    # a cycle after a break has no load that could drift
+    half_strain = np.where(np.isfinite(half_tension), half_strain, np.nan)
     kept = [
         amplitude[index][half > 0] / half[half > 0]
         for amplitude, half in (

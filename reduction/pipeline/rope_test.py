@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -254,6 +254,8 @@ def rope_step(
                 note("life-across-gaps", n_hidden=int(cycles.number[-1]) - cycles.n_cycles,
                      n_cycles=cycles.n_cycles)
             )  # fmt: skip
+        if cycles is not None:
+            notes += _failed_in_gaps(lasted, cycles, names)
         step = replace(step, lasted=lasted)
     if is_rope and kind == "quasi-static":
         pairs = held_pairs(
@@ -367,6 +369,21 @@ def _lasted(
     )
 
 
+def _failed_in_gaps(
+    lasted: CyclesToFailure, cycles: Cycles, names: Sequence[str]
+) -> Iterator[Note]:
+    """Failures between two logged cycles that are not neighbours: the life is a lower bound."""
+    for name, last, failed in zip(names, lasted.cycles.tolist(), lasted.failed, strict=True):
+        later = cycles.number[cycles.number > last]
+        if failed and later.size and later[0] > last + 1:
+            found = note("failed-in-gap", name, last=last, following=int(later[0]))
+            few = later[0] - last <= _SURE_LIFE * last
+            yield replace(found, severity="note") if few else found
+
+
+_SURE_LIFE = 0.02  # of it: cycles in which it may have failed
+
+
 def _parted_in(
     located: Located, tension: Floats, cycles: Cycles, loops: Loops, failure_share: float
 ) -> Integers:
@@ -392,7 +409,8 @@ def _parted_in(
         )  # fmt: skip
         taut = _last_taut(located.record.tension[row], sample, slack)
         if taut is not None:
-            found[row] = max(int(np.searchsorted(cycles.last, taut)), 1)
+            # one that is taut to the end of a cycle parted in the next one
+            found[row] = max(int(np.searchsorted(cycles.last, taut, side="right")), 1)
     return found
 
 

@@ -624,6 +624,11 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         " per decade of cycles count them, and their uncertainty allows for the slopes without"
         " them. A cycle_counter in the layout settles this",
     ),
+    "failed-in-gap": (
+        "warning",
+        "it failed between cycles {last} and {following}, which the log does not have: cycles to"
+        " failure are those up to the last cycle before, a lower bound",
+    ),
     "life-across-gaps": (
         "warning",
         "{n_hidden} of the cycles counted to failure are not in the log: its gaps could hold them,"

@@ -1150,6 +1150,29 @@ def test_a_sine_stored_one_by_one_has_its_period_and_its_whole_range():
     assert loops.tension_amplitude == pytest.approx(140.0, rel=1e-3)
 
 
+@pytest.mark.parametrize("noise", [0.0, 0.05])
+def test_a_break_or_a_gap_leaves_the_amplitude_of_ramps(noise):
+    # blocks of five of 120 readings; the load is not known in the last one, as after a break
+    place = np.arange(3 * 600 + 3.0)
+    block = place // 601
+    time = place + 1e6 * block
+    wave = 1 - np.abs((place - 601 * block) / 60 % 2 - 1)
+    random = np.random.default_rng(3).normal(0, noise, (2, wave.size))
+    strain, tension = wave + random[0], 500 * (wave + random[1])
+    tension[block == 2] = np.nan
+    first = np.add.outer(601 * np.arange(3), 120 * np.arange(5)).ravel()
+    ends = np.column_stack([first, first + 60])
+    none = np.zeros(wave.size)
+    cycles = Cycles(
+        first, first + 120, ends, ends + 60, np.ones((15, 2)), none.astype(np.int32),
+        none.astype(np.int8), none > 0, 0.1,
+    )  # fmt: skip
+    loops = close_loops(time, tension[None], strain[None], cycles)
+    own = loops.uncertainty["strain_amplitude"][0, :10]
+    assert loops.strain_amplitude[0, :10] == pytest.approx(0.5, abs=0.01 + 2 * noise)
+    assert own.max() < 0.01 + 2 * noise
+
+
 def test_sines_stored_in_pairs_have_the_period_of_the_machine():
     # the last reading of a pair is that before its end: a cycle of 23 steps instead of 24
     number = np.repeat(np.add.outer(20 * np.arange(10), [1, 2]).ravel(), 24)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from reduction.pipeline.located_test import locate
+from reduction.pipeline.located_test import locate, slips_of
 from reduction.pipeline.rope_test import rope_step
 from reduction.record.measurement import LoadTrain, Record, Specimen
 from reduction.record.settings import CycleSettings, ReductionSettings, RopeSettings
@@ -244,6 +244,29 @@ def test_a_break_under_a_stated_compliance_leaves_the_position_to_the_other():
     located = locate(one, kind="cyclic", settings=ReductionSettings(), specimens=(ROPE, TETHER))
     assert located.parted == (100, -1)
     assert located.position == pytest.approx(10 + whole / 200, abs=2e-4)
+
+
+def test_a_rope_that_parts_while_the_logger_is_off_has_a_lower_bound_of_its_life():
+    # blocks of 60 cycles each, the second 1000 cycles later; its peaks have fallen to 60 % before,
+    # so that the valley of the last sound cycle is below a quarter of the greatest load
+    whole = cycles(120, low=60.0, start=60.0)
+    sound = whole * np.where(np.arange(whole.size) < 20 + 10 * 20, 1.0, 0.6)
+    load = sound.copy()
+    broke = 20 + 60 * 20 + 1
+    load[broke:] = 0.0
+    number = np.clip((np.arange(whole.size) - 20) // 20 + 1, 1, 120)
+    one = record(load, position=10 + whole / 200, counter=number + 1000 * (number > 60))
+    one = replace(one, time=one.time + 10_000.0 * (number > 60))
+    located = locate(one, kind="fatigue", settings=ReductionSettings())
+    assert located.parted == (broke,)
+    slips = slips_of(located, ReductionSettings())
+    assert slips is not None
+    assert slips.slip_cycle.size == 0 or slips.slip_cycle.max() < 20
+    step = step_of(one, "fatigue", control="position")
+    assert step.lasted.failed
+    (said,) = [one for one in step.notes if one.code == "failed-in-gap"]
+    assert said.numbers["last"] == step.lasted.cycles[0] in (59, 60)
+    assert said.numbers["following"] > 1060
 
 
 @pytest.mark.parametrize("low", [0.0, 100.0])

@@ -227,6 +227,8 @@ def _at_hidden_turns(
     top, first, last = levels
     wait = np.diff(time, append=time[-1])
     at_peak, at_end = (np.fmax(wait[at - 1], wait[at]) for at in (peak, end))
+    # what follows a cycle that is stored without the next one is a gap
+    at_end = np.where(np.append(end[:-1] == begin[1:], False), at_end, wait[end - 1])
     beside = (at_peak + at_end) / 2
     missed = (top - (first + last) / 2) * beside / (time[end] - time[begin])
     # readings miss half of that if corners lie anywhere, nothing at a rounded turn or a rest

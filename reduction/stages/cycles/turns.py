@@ -222,17 +222,26 @@ def kind_of_turns(
     hidden
     >>> print(kind_of_turns(triangle, peaks, noise=0.3, in_doubt="sharp"))
     sharp
+
+    Turns that lack a reading are left out:
+
+    >>> triangle[100:] = np.nan
+    >>> print(kind_of_turns(triangle, peaks, noise=0))
+    sharp
     """
     inside = peak[(peak >= _BESIDE) & (peak < driven.size - _BESIDE)]
     if inside.size == 0:
         return "rounded"
     some = inside[np.linspace(0, inside.size - 1, min(inside.size, _MOST_TURNS)).astype(int)]
     level = take_samples(driven, some[:, None] + np.arange(-2, 3))
+    level = level[np.isfinite(level).all(axis=1)]
+    if not level.size:
+        return "rounded"
     rise, fall = level[:, 1] - level[:, 0], level[:, 3] - level[:, 4]
     step = np.median(np.minimum(rise, fall))
     rounded = np.median(np.minimum(level[:, 1] + rise, level[:, 3] + fall) - level[:, 2])
     # of a median over turns: two readings before less one before and one at the turn
-    unknown = 1.25 * 6**0.5 * noise / some.size**0.5
+    unknown = 1.25 * 6**0.5 * noise / len(level) ** 0.5
     if not step > _CLEAR * noise:
         return "hidden"
     if abs(rounded - _ROUNDED * step) < unknown:
