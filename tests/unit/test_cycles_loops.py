@@ -1173,6 +1173,16 @@ def test_a_break_or_a_gap_leaves_the_amplitude_of_ramps(noise):
     assert own.max() < 0.01 + 2 * noise
 
 
+def test_a_ramp_before_the_first_of_ramps_stored_alone_is_in_the_uncertainty_of_its_energy():
+    # an elastic line that loses 40 N in the first cycle, behind a ramp, and nothing in later ones
+    time, driven, cycles = stored_cycles(ramps_of)
+    lost = np.where(time < 2.0, 40 * (1 - time / 2), 0.0)
+    loops = close_loops(time, (500 * driven + lost)[None], driven[None], cycles)
+    assert loops.hysteresis_energy[0, 0] == pytest.approx(20.0, rel=0.1)  # 40 N over half a stroke
+    assert loops.hysteresis_energy[0, 0] < 2 * loops.uncertainty["hysteresis_energy"][0, 0]
+    assert loops.uncertainty["hysteresis_energy"][0, 1:].max() < 1.0
+
+
 def test_sines_stored_in_pairs_have_the_period_of_the_machine():
     # the last reading of a pair is that before its end: a cycle of 23 steps instead of 24
     number = np.repeat(np.add.outer(20 * np.arange(10), [1, 2]).ravel(), 24)

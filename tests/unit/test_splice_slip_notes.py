@@ -107,7 +107,7 @@ def test_a_compliance_whose_uncertainty_is_stated_is_not_asked_for(stated):
     test = reduced(spread=0.004)
     test.amplitude.apparent_spring_constant = np.array([4e5])
     test.amplitude.frequency = np.array([0.1])
-    test.specimens[0].linear_density = None
+    test.specimens[0].linear_density, test.specimens[0].is_rope = None, False
     test.cycles = None
     test.amplitude.uncertainty["apparent_spring_constant"] = np.array([4.0])
     test.amplitude.uncertainty["hysteresis_energy"] = np.array([4.0])

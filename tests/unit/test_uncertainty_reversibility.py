@@ -97,7 +97,7 @@ def test_the_hysteresis_that_moves_the_energy_by_its_uncertainty_is_told_where_n
     )  # fmt: skip
     test = SimpleNamespace(
         amplitude=summary, cycles=None, contributions=None, strain_models=[rope],
-        specimens=[SimpleNamespace(name="rope", linear_density=None)],
+        specimens=[SimpleNamespace(name="rope", linear_density=None, is_rope=False)],
         record=SimpleNamespace(load_train=LoadTrain("fixed", 0.0)),
     )  # fmt: skip
     errors = [InstrumentErrors("rope", tension_reversibility=stated)]

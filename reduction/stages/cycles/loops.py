@@ -610,6 +610,11 @@ def _drifts_of_cycles(
     is_own = np.zeros(cycles.n_cycles, bool)
     if own_drift is not None and not is_parted:
         own, is_own, may_miss = own_drift(of_neighbours, tension if is_load else strain)
+    elif is_parted and cycles.n_cycles > 1 and not on_rise[0]:
+        # the ramp before the first cycle is not before those that are stored later
+        name = "strain" if is_load else "force"
+        change = abs(row[f"{name}_end_turn"][0] - row[f"{name}_begin"][0])
+        may_miss[0] = np.nan_to_num(max(change - abs(own[0]), 0.0))
     # of the drift after a ramp, the fall has at most its part of the drift of this cycle, and at
     # least that part of the drift of the next one
     falls = 1 - rise_shares[int(is_load)]
