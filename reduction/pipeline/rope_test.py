@@ -250,10 +250,10 @@ def rope_step(
         ]
         cycles = located.cycles
         if cycles is not None and not cycles.is_count_sure:
-            notes.append(
-                note("life-across-gaps", n_hidden=int(cycles.number[-1]) - cycles.n_cycles,
-                     n_cycles=cycles.n_cycles)
-            )  # fmt: skip
+            n_hidden = int(cycles.number[-1]) - cycles.n_cycles
+            found = note("life-across-gaps", n_hidden=n_hidden, n_cycles=cycles.n_cycles)
+            few = n_hidden <= _SURE_LIFE * cycles.n_cycles
+            notes.append(replace(found, severity="note") if few else found)
         if cycles is not None:
             notes += _failed_in_gaps(lasted, cycles, names)
         step = replace(step, lasted=lasted)
@@ -381,7 +381,7 @@ def _failed_in_gaps(
             yield replace(found, severity="note") if few else found
 
 
-_SURE_LIFE = 0.02  # of it: cycles in which it may have failed
+_SURE_LIFE = 0.02  # of it: cycles that are not logged, or in which it may have failed
 
 
 def _parted_in(

@@ -119,15 +119,20 @@ def test_cycles_are_those_of_the_machine_where_it_counts():
 
 def test_a_life_counts_the_cycles_that_the_gaps_of_its_log_hold_and_says_so():
     # twelve cycles of ten seconds; the logger was off for fifty after the sixth
-    one = record(cycles(12))
-    late = np.arange(one.time.size) > 20 + 6 * 20
-    one = replace(one, time=one.time + 500.0 * late)
-    step = step_of(one, "fatigue")
+    step = step_of(with_gap(12, 50), "fatigue")
     assert step.lasted.cycles == 12 + 50
     (said,) = [one for one in step.notes if one.code == "life-across-gaps"]
     assert said.severity == "warning"
     # the cycle next to the gap ends in it
     assert said.numbers == {"n_hidden": 51, "n_cycles": 11}
+    (said,) = [one for one in step_of(with_gap(200, 2), "fatigue").notes if one.code == said.code]
+    assert said.severity == "note"
+
+
+def with_gap(n_cycles, n_hidden):
+    one = record(cycles(n_cycles))
+    late = np.arange(one.time.size) > 20 + 6 * 20
+    return replace(one, time=one.time + 10.0 * n_hidden * late)
 
 
 @pytest.mark.parametrize(
