@@ -751,10 +751,11 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "warning",
         lambda number, size, explained: (
             f"the mean tension is {abs(size):.3g} N {'higher' if size > 0 else 'lower'} after the"
-            f" stop behind cycle {number} than before it, and stays so; relaxation may explain"
-            f" {explained:.2g} N: the zero of the load cell has moved, or something slipped. Means"
-            " of tension are uncertain by it; amplitudes and EA are not affected. Correct the log"
-            " for the step, or enter the cycles before and after the stop as steps"
+            f" stop or gap behind cycle {number} than before it, and stays so; relaxation may"
+            f" explain {explained:.2g} N: the zero of the load cell has moved, or something"
+            " slipped. Means of tension are uncertain by it; amplitudes and EA are not affected."
+            " Correct the log"
+            " for the step, or enter the cycles before and after it as steps"
         ),
     ),
     "tension-hums": (
@@ -2099,7 +2100,8 @@ CAUSES = (
     "cords-do-not-fit", "hose-rubber-outside-band", "wrap-angle-outside-band",
     "dead-length-large", "two-designs-of-one", "hose-length-not-tested", "static-at-frequency",
     "hose-not-of-design", "hose-unlike-design",
-    "target-strain-missed", "density-outside-band", "strain-above-band",
+    "target-strain-missed", "lower-target-missed", "density-outside-band",
+    "strain-above-band",
     "extensometer-off-at-slack", "reference-tension-elsewhere", "length-jumps",
     "slipped-in-earlier-step", "strain-below-zero",
     "zero-moves-at-stop", "wave-not-periodic", "wave-changes", "tension-hums", "tension-late",

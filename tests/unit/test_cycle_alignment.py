@@ -210,7 +210,15 @@ def test_relaxation_and_recovery_in_a_stop_are_no_clear_step_and_a_moved_zero_is
         assert number == n[0] and abs(size - jump) < explained + 15
 
 
-def test_cycles_that_may_have_run_in_a_gap_of_the_log_tell_nothing_about_the_zero():
-    begin, end, mean, shown = of_two_blocks(LAWS[2], level=1.0, jump=80.0)
-    assert jump_at_stop(begin, end, mean, shown)[1] == pytest.approx(80, abs=5)
-    assert jump_at_stop(begin, end, mean, ~shown) is None
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("wait", [5.0, 300.0])
+def test_cycles_that_may_have_run_in_a_gap_of_the_log_go_on_as_those_beside_it(law, wait):
+    """Relaxation goes on in the gap; a zero that moves by 80 N does not."""
+    begin = np.append(np.arange(20.0), 20 + wait + np.arange(20.0))
+    mean, nowhere = 2000 + 40 * law(begin + 3), np.zeros(39, dtype=bool)
+    found = jump_at_stop(begin, begin + 1, mean, nowhere)
+    assert found is None or abs(found[1]) < CLEAR_JUMP * found[2]
+    for size in (80.0, -80.0):
+        moved = mean + size * (begin > 20)
+        number, step, explained = jump_at_stop(begin, begin + 1, moved, nowhere)
+        assert number == 20 and abs(step - size) < explained + 1

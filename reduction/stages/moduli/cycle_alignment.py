@@ -191,7 +191,8 @@ def jump_at_stop(
     begin, end, mean : ndarray, shape (n_cycles,)
         Times of the ends of each cycle, and its mean tension. [s], [s], [N]
     is_stop : ndarray of bool, shape (n_cycles - 1,)
-        Whether the log shows that no cycle ran between a cycle and the next one. [-]
+        Whether the log shows that no cycle ran between a cycle and the next one; otherwise it has
+        no readings there. [-]
 
     Returns
     -------
@@ -204,6 +205,8 @@ def jump_at_stop(
     What relaxes or recovers in a stop passes again in the first cycles behind it.  After as many
     cycles as before it, and as long as the stop, the mean is back where it was, but for what
     it still changes over half of these cycles.  A zero of the load cell that has moved stays.
+    In a gap of the log the machine may have run on: what the mean changes in the cycles beside it,
+    it may have changed at the same rate in the gap.
 
     Examples
     --------
@@ -214,16 +217,19 @@ def jump_at_stop(
     None (12, -10.0)
     """
     waits, period = begin[1:] - end[:-1], end - begin
-    ends = [0, *(np.flatnonzero((waits > period[:-1] / 2) & is_stop) + 1).tolist(), begin.size]
+    ends = [0, *(np.flatnonzero(waits > period[:-1] / 2) + 1).tolist(), begin.size]
     jumps = []
     for first, stop, last in zip(ends, ends[1:], ends[2:], strict=False):
         n = min(stop - first, last - stop)
-        if n < _AT_STOP or not waits[stop - 1] < n * period[stop]:
+        is_gap = not is_stop[stop - 1]
+        missing = waits[stop - 1] / (n * period[stop]) if n else np.inf
+        if n < _AT_STOP or not (is_gap or missing < 1):
             continue
         sides = mean[stop - n : stop], mean[stop : stop + n]
         before, after = (float(np.mean(one[-2:])) for one in sides)
         later = [one[-(n // 2 + 1) :] for one in sides]
         changes = sum(abs(float(np.mean(one[:2]) - np.mean(one[-2:]))) for one in later)
+        changes *= 1 + is_gap * missing
         noise = np.sqrt(np.mean([np.mean(np.diff(one, n=2) ** 2) / 6 for one in later]))
         jumps.append((stop, after - before, changes + _BEYOND_NOISE * float(noise)))
     found = max(jumps, key=lambda one: abs(one[1]) - one[2], default=None)
