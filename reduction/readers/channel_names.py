@@ -580,7 +580,7 @@ class _Start:
 
     def _datum(self, unit: str, sign: int) -> tuple[str, list[str]]:
         position = sign * self.position
-        begin, travel = float(position[0]), float(np.ptp(position))
+        begin, travel = float(position[0]) + 0.0, float(np.ptp(position))  # no "-0"
         seen = f"the position begins at {begin:g} {unit} and travels {travel:g} {unit} at the start"
         # a pin-to-pin length is positive, and in most tests above a quarter of the travel; a
         # specimen that is already taut begins at a few millimetres of displacement
@@ -656,6 +656,6 @@ def _round(value: float, scatter: float) -> str:
 def _described(column: SeenColumn) -> str:
     name = f", {_label(column)}" if column.name else ""
     unit = f" in {toml_comment(column.unit)}" if column.unit.strip() else ""
-    values = column.values[np.isfinite(column.values)]
+    values = column.values[np.isfinite(column.values)] + 0.0  # no "-0"
     seen = f", {values.min():g} to {values.max():g} at the start" if values.size else ""
     return f"{name}{unit}{seen}"
