@@ -225,8 +225,13 @@ _OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             f"{channel} steps from {low:.4g} to {high:.4g} {unit} between sample {sample}"
             f" ({time:.6g} s) and the next, and stays there, while {beside} not"
             + (f" ({n_more} more such step{_plural(n_more)})" if n_more else "")
-            + ". Possible causes: a slip, a break, a re-zeroed channel, or a change of unit;"
-            " results across the step mix both states"
+            + (
+                ". Possible causes: a slip, a break, a re-zeroed channel, or a change of unit;"
+                " results across the step mix both states"
+                if n_more < _JERKS
+                else ". So many are no slips: the channel moves in jerks, as with stick-slip or a"
+                " stepping motor; they act as noise"
+            )
         ),
     ),
     "rows-flagged": (
@@ -2076,6 +2081,8 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         ),
     ),
 }  # fmt: skip
+
+_JERKS = 20  # lone steps of a channel: more are its way of moving
 
 SENTENCES: Mapping[str, tuple[Severity, str | Callable[..., str]]] = {
     **_OF_READING, **_OF_STRAIN, **_OF_CYCLES, **_OF_MODULI, **_OF_HOLDS, **_OF_LINE,

@@ -165,3 +165,10 @@ def test_a_percent_sign_has_a_space_before_it_and_a_name_is_left_as_it_is():
     assert "a 10%-test: 3 of 10 cycles drift by more than 20 % of" in str(found)
     # also in a sentence that a function composes
     assert "differ by 7 % of" in str(note("wave-changes", share=0.07, last=4, first=5, begin=12.0))
+
+
+@pytest.mark.parametrize(("n_more", "said"), [(0, "a slip, a break"), (188, "moves in jerks")])
+def test_many_lone_steps_are_the_way_of_a_channel(n_more, said):
+    step = note("channel-steps", channel="tension of 'new'", low=1.6, high=1.9, unit="N", sample=60,
+                time=8.2, n_more=n_more, beside="the position does")  # fmt: skip
+    assert said in str(step)
