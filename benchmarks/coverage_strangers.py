@@ -36,9 +36,9 @@ from reduction.batch import run_campaign as runs
 from reduction.campaign.load import load_campaign
 from reduction.lines.archive_source import lines_of_archive
 from reduction.lines.line_lookup import look_up
-from reduction.report.campaign_page import CampaignAnswers
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
+from nopage import NO_ANSWERS
 from strangers import LAWS, Truth, make
 
 WANTED = 0.93
@@ -159,7 +159,7 @@ def archives_of(folder: Path) -> Iterator[tuple[str, xr.Dataset]]:
                 yield path.stem, in_memory(archive)
 
 
-_NO_PAGE = {"return_value.write.return_value": (None, CampaignAnswers((), False, (), frozenset()))}
+_NO_PAGE = {"return_value.write.return_value": (None, NO_ANSWERS)}
 
 
 def realise(law: str, seed: int) -> Realisation:
