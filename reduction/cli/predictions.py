@@ -358,6 +358,19 @@ def _show_armour(found: PredictedArmour, output: CommandOutput) -> None:
     stress, per_pascal = output.unit("Pa")
     if output.system == "si":
         stress, per_pascal = "MPa", 1e-6
+    output.say_each("warning", found.doubts)
+    held, free = found.axial_stiffness
+    output.say(
+        f"cable: tension {short(per_newton * float(found.together.tension[0]))} {force}, torque "
+        f"{float(found.together.torque[0]):.4g} N m; axial stiffness {short(per_newton * held)} "
+        f"{force} held from turning, {short(per_newton * free)} {force} free to turn"
+    )
+    if found.strength is not None:
+        output.say(
+            f"first yield: {found.layer_names[found.strength.governing_layer]} at "
+            f"{100 * found.strength.strain:.4g} %, tension of the cable "
+            f"{short(per_newton * found.strength.tension)} {force}"
+        )
     table = table_of(
         "layer", "theory", f"T [{force}]", f"N' [{force}]", "G' [N m]", "H [N m]",
         f"axial [{stress}]", f"bending [{stress}]", f"torsion [{stress}]", texts=2,
@@ -388,18 +401,6 @@ def _show_armour(found: PredictedArmour, output: CommandOutput) -> None:
             short(100 * float(found.thinning_loss[place]), 2),
         )
     output.show(table)
-    held, free = found.axial_stiffness
-    output.say(
-        f"cable: tension {short(per_newton * float(found.together.tension[0]))} {force}, torque "
-        f"{float(found.together.torque[0]):.4g} N m; axial stiffness {short(per_newton * held)} "
-        f"{force} held from turning, {short(per_newton * free)} {force} free to turn"
-    )
-    if found.strength is not None:
-        output.say(
-            f"first yield: {found.layer_names[found.strength.governing_layer]} at"
-            f" {100 * found.strength.strain:.4g} %, tension of the cable"
-            f" {short(per_newton * found.strength.tension)} {force}"
-        )
     for sentence in found.use[0].statement:
         output.say(f"  {sentence}")
     output.say_each("note", found.notes)
@@ -446,6 +447,7 @@ def _armour_document(found: PredictedArmour) -> dict[str, Any]:
         },
         "error_against_exact": errors,
         "notes": list(found.notes),
+        "doubts": list(found.doubts),
     }
 
 

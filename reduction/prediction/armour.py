@@ -166,13 +166,25 @@ class ArmourDesign:
         return np.asarray(self.bending_stiffness / (1 + np.asarray(self.poisson_ratio)))
 
 
+_UNITS = {
+    "winding_angle": "deg",
+    "wire_radius": "m",
+    "core_radius": "m",
+    "elastic_modulus": "Pa",
+    "yield_stress": "Pa",
+}
+"""Units of the numbers in messages; the others are ratios."""
+
+
 def _need(name: str, value: Floats, is_good: Bools, needed: str) -> None:
     if np.all(is_good):
         return
     bad = np.atleast_1d(~is_good)
     found = np.atleast_1d(value)[bad].flat[0]
     where = "" if bad.size == 1 else f" of {int(bad.sum())} of {bad.size} designs"
-    raise SettingsError(f"{name}{where} is not an armour", found=f"{found:g} in SI", needed=needed)
+    unit = _UNITS.get(name, "")
+    shown = f"{np.degrees(found) if unit == 'deg' else found:g} {unit}".rstrip()
+    raise SettingsError(f"{name}{where} is not an armour", found=shown, needed=needed)
 
 
 @dataclass(frozen=True)
@@ -557,7 +569,9 @@ def predict_armour(
     if bad.any():
         raise SettingsError(
             f"{int(bad.sum())} of {series.size} strains are none of a cable, "
-            f"first at index {int(np.flatnonzero(bad)[0])}",
+            f"first at index {int(np.flatnonzero(bad)[0])}"
+            if series.size > 1
+            else "the strain is not that of a cable",
             found=f"{series[bad][0]:g}",
             needed="numbers above -1",
         )
@@ -1136,6 +1150,7 @@ class PredictedArmour:
     gap: Floats
     thinning_loss: Floats
     notes: tuple[str, ...]
+    doubts: tuple[str, ...]
 
 
 def predict_armour_case(
@@ -1148,12 +1163,12 @@ def predict_armour_case(
     }
     together = _predict_layers(layers, strain)
     known = np.isfinite(layers.yield_stress)
-    notes = []
+    notes, doubts = list[str](), list[str]()
     for place, name in enumerate(names):
         if responses["exact"].is_lifted[place, 0]:
-            notes.append(f"{name}: the wires leave the core; no theory here holds")
+            doubts.append(f"{name}: the wires leave the core; no theory here holds")
         if together.is_yielding[place, 0]:
-            notes.append(f"{name}: the wires yield; all loads beyond that are too high")
+            doubts.append(f"{name}: the wires yield; all loads beyond that are too high")
     if abs(together.torque_imbalance[0]) > _UNBALANCED:
         notes.append(
             f"the layers do not balance: {100 * together.torque_imbalance[0]:.0f} % of their "
@@ -1178,6 +1193,7 @@ def predict_armour_case(
         gap=_wire_gap(design),
         thinning_loss=_thinning_loss(design),
         notes=tuple(notes),
+        doubts=tuple(doubts),
     )
 
 

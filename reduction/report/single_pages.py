@@ -276,7 +276,7 @@ def write_armour_page(
     ]  # fmt: skip
     return write_single_page(
         out, _title("Armour", name), "armour", parts, answer=layers_table(found, units),
-        tiles=tiles, notes=found.notes, units=units, about=_OF_ARMOUR,
+        tiles=tiles, notes=(*found.doubts, *found.notes), units=units, about=_OF_ARMOUR,
     )  # fmt: skip
 
 

@@ -45,7 +45,7 @@ def test_what_is_not_said_is_steel_of_one_wire_and_no_yield(load):
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ('"20 deg"', '"95 deg"', "winding_angle .* found 1.65806 in SI; needed between 0 and 90"),
+        ('"20 deg"', '"95 deg"', "winding_angle .* found 95 deg; needed between 0 and 90"),
         ('"20 deg"', '"0 deg"', "winding_angle of 1 of 2 designs is not an armour; found 0"),
         ('"20 deg"', '"-20 deg"', "winding_angle of 1 of 2 designs is not an armour"),
         ('"20 deg"', '"90 deg"', "winding_angle of 1 of 2 designs is not an armour"),

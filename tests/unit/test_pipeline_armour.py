@@ -100,12 +100,12 @@ def test_layers_that_do_not_balance_are_told(predict):
 
 
 def test_wires_that_yield_or_leave_the_core_are_told(predict):
-    notes = predict(changed(ARMOUR, '"0.1 %"', '"0.5 %"')).notes
-    assert notes[:2] == tuple(
+    doubts = predict(changed(ARMOUR, '"0.1 %"', '"0.5 %"')).doubts
+    assert doubts == tuple(
         f"{name}: the wires yield; all loads beyond that are too high"
         for name in ("inner", "outer")
     )
-    pushed = predict(changed(ARMOUR, '"0.1 %"', '"-0.1 %"')).notes
+    pushed = predict(changed(ARMOUR, '"0.1 %"', '"-0.1 %"')).doubts
     assert pushed[0] == "inner: the wires leave the core; no theory here holds"
 
 
@@ -134,5 +134,5 @@ def test_a_single_layer_is_all_of_one_hand(predict):
 
 
 def test_a_strain_that_no_cable_has_is_refused(predict):
-    with pytest.raises(SettingsError, match="1 of 1 strains are none of a cable.*found -1"):
+    with pytest.raises(SettingsError, match="the strain is not that of a cable.*found -1"):
         predict(changed(ARMOUR, '"0.1 %"', '"-100 %"'))
