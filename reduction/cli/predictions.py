@@ -611,6 +611,8 @@ def _show_comparison(named: NamedComparison, output: CommandOutput) -> None:
         f"{named.test} of {named.specimen} ({found.measured.loading}) against {named.hose}: "
         f"{verdict_words(found.validation, unit=force, factor=factor)}"
     )
+    warnings = [one for one in named.notes if one.severity == "warning"]
+    output.say_each("warning", warnings)
     table = table_of(
         f"predicted less measured [{force}]", "bias", "RMS", "RMS [%]", "worst", "at strain [%]",
     )  # fmt: skip
@@ -653,7 +655,7 @@ def _show_comparison(named: NamedComparison, output: CommandOutput) -> None:
         )
         if found.pressure.calibration is not None:
             _show_calibration(found.pressure.calibration, output)
-    output.say_each("note", named.notes)
+    output.say_each("note", (one for one in named.notes if one not in warnings))
 
 
 def _show_calibration(fit: HoseCalibration, output: CommandOutput) -> None:

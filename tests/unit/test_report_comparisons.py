@@ -19,6 +19,8 @@ from compared_hoses import (
 )
 
 from reduction.archive.write import write_archive
+from reduction.cli.output import CommandOutput
+from reduction.cli.predictions import _show_comparison
 from reduction.record.notes import note
 from reduction.report.campaign_page import write_report
 from reduction.report.campaign_sections import (
@@ -493,3 +495,14 @@ def test_an_archive_that_cannot_be_read_is_told_and_the_rest_stands(tmp_path):
     (tmp_path / "p" / "comparisons.nc").write_bytes(b"no archive")
     page = write_report(tmp_path / "p", tmp_path / "r").read_text(encoding="utf-8")
     assert "comparisons.nc" in page and "This file cannot be shown" in page
+
+
+def test_the_terminal_begins_with_synthetic_and_the_verdict_and_warnings_stand_below(capsys):
+    _show_comparison(replace(trading(), is_synthetic=True), CommandOutput())
+    said = capsys.readouterr().out.splitlines()
+    assert said[0] == "SYNTHETIC DATA: no specimen was tested."
+    assert said[1].startswith("D-64 of hose-64 (dynamic) against H64: ")
+    table = next(place for place, line in enumerate(said) if "predicted less measured" in line)
+    assert all(line.startswith("warning: ") for line in said[2:table])
+    assert any("cannot separate cord_load_scale" in line for line in said[2:table])
+    assert not any("cannot separate" in line for line in said[table:])
