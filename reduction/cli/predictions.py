@@ -186,9 +186,10 @@ def _show_hose(hose: PredictedHose, output: CommandOutput) -> None:
             short(100 * float(event.cord_strain), 4),
         )
     output.show(table)
+    moment, per_moment = output.unit("N m")
     output.say(
-        f"torque at the working load, held from turning: {hose.working_torque:.3g} N m; none with "
-        f"the outer layer at {np.degrees(hose.balanced_wrap_angle):.2f} degrees"
+        f"torque at the working load, held from turning: {per_moment * hose.working_torque:.3g} "
+        f"{moment}; none with the outer layer at {np.degrees(hose.balanced_wrap_angle):.2f} degrees"
     )
     prediction = hose.prediction
     table = table_of(
@@ -355,6 +356,8 @@ def _layers_csv(found: PredictedArmour) -> str:
 
 def _show_armour(found: PredictedArmour, output: CommandOutput) -> None:
     force, per_newton = output.unit("N")
+    moment, per_moment = output.unit("N m")
+    small = shown("small length", output.system)
     stress, per_pascal = output.unit("Pa")
     if output.system == "si":
         stress, per_pascal = "MPa", 1e-6
@@ -362,8 +365,9 @@ def _show_armour(found: PredictedArmour, output: CommandOutput) -> None:
     held, free = found.axial_stiffness
     output.say(
         f"cable: tension {short(per_newton * float(found.together.tension[0]))} {force}, torque "
-        f"{float(found.together.torque[0]):.4g} N m; axial stiffness {short(per_newton * held)} "
-        f"{force} held from turning, {short(per_newton * free)} {force} free to turn"
+        f"{per_moment * float(found.together.torque[0]):.4g} {moment}; axial stiffness "
+        f"{short(per_newton * held)} {force} held from turning, "
+        f"{short(per_newton * free)} {force} free to turn"
     )
     if found.strength is not None:
         output.say(
@@ -372,11 +376,13 @@ def _show_armour(found: PredictedArmour, output: CommandOutput) -> None:
             f"{short(per_newton * found.strength.tension)} {force}"
         )
     table = table_of(
-        "layer", "theory", f"T [{force}]", f"N' [{force}]", "G' [N m]", "H [N m]",
+        "layer", "theory", f"T [{force}]", f"N' [{force}]", f"G' [{moment}]", f"H [{moment}]",
         f"axial [{stress}]", f"bending [{stress}]", f"torsion [{stress}]", texts=2,
         title=f"One wire at {100 * float(found.strain[0]):g} % strain of the cable",
     )  # fmt: skip
-    scales = (per_newton, per_newton, 1.0, 1.0, per_pascal, per_pascal, per_pascal)
+    scales = (
+        per_newton, per_newton, per_moment, per_moment, per_pascal, per_pascal, per_pascal,
+    )  # fmt: skip
     for place, name in enumerate(found.layer_names):
         for theory, response in found.responses.items():
             numbers = (float(getattr(response, one)[place, 0]) for one in _OF_WIRE)
@@ -385,8 +391,8 @@ def _show_armour(found: PredictedArmour, output: CommandOutput) -> None:
             )
     output.show(table)
     table = table_of(
-        "layer", f"tension [{force}]", "torque [N m]", f"pressure [{stress}]",
-        f"von Mises [{stress}]", "gap [mm]", "thinning [%]",
+        "layer", f"tension [{force}]", f"torque [{moment}]", f"pressure [{stress}]",
+        f"von Mises [{stress}]", f"gap [{small.unit}]", "thinning [%]",
         title="Layers, theory conjugate",
     )  # fmt: skip
     for place, name in enumerate(found.layer_names):
@@ -394,10 +400,10 @@ def _show_armour(found: PredictedArmour, output: CommandOutput) -> None:
         table.add_row(
             name,
             short(per_newton * float(together.layer_tension[place, 0])),
-            short(float(together.layer_torque[place, 0])),
+            short(per_moment * float(together.layer_torque[place, 0])),
             short(per_pascal * float(together.core_pressure[place, 0])),
             short(per_pascal * float(together.wire_stress[place, 0])),
-            short(1e3 * float(found.gap[place]), 4),
+            short(small.factor * float(found.gap[place]), 4),
             short(100 * float(found.thinning_loss[place]), 2),
         )
     output.show(table)
@@ -487,6 +493,7 @@ def _csv(found: PredictedWaveLoad) -> str:
 def _show_wave_load(found: PredictedWaveLoad, output: CommandOutput) -> None:
     length, per_metre = output.unit("m")
     force, per_newton = output.unit("N")
+    area, per_area = ("cm2", 1e4) if output.system == "si" else output.unit("m2")
     section, theory = found.load.section, found.theory
     output.say_each("warning", found.doubts)
     table = table_of(
@@ -517,7 +524,7 @@ def _show_wave_load(found: PredictedWaveLoad, output: CommandOutput) -> None:
         f"immersed {per_metre * depth:.4g} {length} of "
         f"{per_metre * float(section.outer_diameter):.4g} {length} "
         f"({100 * depth / float(section.outer_diameter):.1f} %), "
-        f"{1e4 * float(section.submerged_section_area):.4g} cm2 of its section"
+        f"{per_area * float(section.submerged_section_area):.4g} {area} of its section"
     )
     output.say(
         f"wave of {per_metre * theory.wave_length:.4g} {length}: d/L {theory.relative_depth:.3g}, "

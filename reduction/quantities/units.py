@@ -310,6 +310,7 @@ _US = {
     "Pa": "psi",
     "m2": "in2",
     "J m-1": "ft lbf / ft",
+    "N m": "ft lbf",
     "m s-1": "ft s-1",
     "N s": "lbf s",
 }
@@ -322,6 +323,7 @@ _PER_SI = {
     "ft lbf / ft": 0.22480894309971053,
     "ft s-1": 3.2808398950131235,
     "lbf s": 0.22480894309971053,
+    "ft lbf": 0.7375621492772655,
 }
 """Factor from SI to the displayed unit, from pint."""
 

@@ -72,7 +72,9 @@ def test_a_wave_load_is_told_in_words(predict):
         "note: the given length is",
     ):  # fmt: skip
         assert text in done.stdout
-    assert "lbf/ft" in predict("wave-load", WAVE, "--units", "us").stdout
+    in_us = predict("wave-load", WAVE, "--units", "us").stdout
+    # 90.99 cm2
+    assert "lbf/ft" in in_us and "14.1 in2 of its section" in in_us
     assert predict("wave-load", WAVE, "--quiet").stdout == ""
 
 

@@ -103,6 +103,7 @@ def test_share_of_break_strength_needs_a_break_strength():
         ("s", "s", 1.0),
         # an energy over a length: the feet cancel in the number, not in the words
         ("J m-1", "ft lbf / ft", 1 / POUND_FORCE),
+        ("N m", "ft lbf", 1 / POUND_FORCE / 0.3048),
     ],
 )
 def test_us_display_is_the_inverse_of_the_factor(unit, shown, factor):
