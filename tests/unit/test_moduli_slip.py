@@ -175,7 +175,7 @@ def test_relaxation_in_cycles_that_the_machine_did_not_store_is_no_slip():
         cycle_counter=number,
     )
     located = SimpleNamespace(
-        cycles=cycles, position=position, tension=tension[None],
+        cycles=cycles, position=position, tension=tension[None], parted=(-1,),
         record=SimpleNamespace(specimens=("new",), time=time),
     )  # fmt: skip
     assert slips_of(located, ReductionSettings()).slip_cycle.size == 0
