@@ -1303,6 +1303,13 @@ _OF_LINE: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         " hold. Use the static stiffness between holds, or declare a part without holds as a step"
         " with its own from and to",
     ),
+    "pull-creeps": (
+        "warning",
+        "strain grows while the tension stands on the way to the peak, by {share:.1%} of the strain"
+        " of the pull: K_0 near these holds belongs neither to the pull nor to the hold. Use the"
+        " static stiffness between holds, or declare a part without holds as a step with its own"
+        " from and to",
+    ),
     "pull-rate-uneven": (
         "note",
         "the strain rate varies from {low:.2g} to {high:.2g} 1/s between quarters of the range",

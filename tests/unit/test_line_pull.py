@@ -567,3 +567,20 @@ def test_the_local_slope_follows_a_foot_and_a_kink(law, noise, least):
         assert np.isnan(foot) == (least > 0)
     assert np.sqrt(np.mean(np.square(distance), axis=0)).max() < 1.8
     assert np.median(size) < 0.04
+
+
+@pytest.mark.parametrize(("n_holds", "creep"), [(5, 0.01), (8, 0.02), (5, 0.0), (0, 0.0)])
+@pytest.mark.parametrize("noise", [0.0, 4.0])
+def test_a_pull_by_load_with_holds_in_which_the_line_creeps_is_told(n_holds, creep, noise):
+    """Tension rises by ramps; in each hold the strain grows by some of the strain of the pull."""
+    ramps = np.linspace(0, 1e4, 2001)
+    hold = np.repeat(np.searchsorted(ramps, 1e4 * np.arange(1, n_holds + 1) / (n_holds + 1)), 300)
+    place = np.sort(np.append(np.arange(2001), hold))
+    load = ramps[place]
+    stands = np.diff(place, prepend=-1) == 0
+    strain = 1e-5 * load * (1 - 2e-5 * load) + 0.08 * creep * np.cumsum(stands) / 300
+    rng = np.random.default_rng(2)
+    pull = fit_pull(0.1 * np.arange(load.size), strain, load + noise * rng.normal(size=load.size))
+    share = n_holds * 0.08 * creep / strain[-1]
+    told = [one.numbers["share"] for one in pull.notes if one.code == "pull-creeps"]
+    assert told == (pytest.approx([share], rel=0.1) if share else [])

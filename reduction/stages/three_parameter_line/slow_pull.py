@@ -95,6 +95,39 @@ def _fall_beyond_noise(tension: Floats) -> float:
     return max(_greatest_fall(means) - _NOISE_FACTOR * reading_noise(means), 0.0)
 
 
+_STANDS = 0.1  # of the rise of tension in a ramp
+
+_CREEPS = 0.5  # of the rise of strain in a ramp: slower than a line that is pulled through its foot
+
+_MEANS_OF_STAND = 5
+
+
+def _gain_in_holds(tension: Floats, strain: Floats) -> float:
+    """Strain gained on the way up while the tension stands and the strain slows down.
+
+    Examples
+    --------
+    Ten ramps with holds between them, in each of which a linear line creeps by a hundredth:
+
+    >>> load = np.repeat(np.arange(10.0), 200) + np.tile(np.minimum(np.arange(200) / 100, 1), 10)
+    >>> hold = np.repeat(np.arange(10), 200) + np.tile(np.clip(np.arange(200) / 100 - 1, 0, 1), 10)
+    >>> print(round(_gain_in_holds(load, 0.01 * load + 1e-4 * hold), 4))
+    0.001
+    """
+    together = max(tension.size // _MEANS_OF_PULL, 1)
+    whole = tension.size // together * together
+    load, stretch = (one[:whole].reshape(-1, together).mean(axis=1) for one in (tension, strain))
+    # so many that a ramp is far above the noise
+    step = (load[-1] - load[0]) / load.size
+    n = max(_MEANS_OF_STAND, int(2 * _NOISE_FACTOR * reading_noise(load) / step))
+    if load.size <= _FEWEST_SAMPLES * n:
+        return 0.0
+    rise, gain = (one[n:] - one[:-n] for one in (load, stretch))
+    fast = (np.quantile(one, 0.95) for one in (rise, gain))
+    stands = (rise < _STANDS * next(fast)) & (gain < _CREEPS * next(fast))
+    return float(np.maximum(gain[stands], 0.0).sum() / n)
+
+
 def _find_loading(
     tension: ArrayLike, strain: ArrayLike, *, reference_tension: float | None = None
 ) -> Integers:
@@ -665,6 +698,7 @@ _CLEARLY = 3.0  # standard uncertainties by which a slope must be below zero to 
 def _remarks(
     *,
     fall: float,
+    held: float,
     rates: tuple[float, ...],
     reference_length: float,
     reference_strain: float,
@@ -675,6 +709,7 @@ def _remarks(
     found = (
         (misfit > _MISFIT_NOTED, note("pull-misfit", misfit=misfit)),
         (fall > _FALL_NOTED, note("pull-falls", fall=fall)),
+        (held > _FALL_NOTED, note("pull-creeps", share=held)),
         (
             rates[2] > _UNEVEN_RATE * rates[1],
             note("pull-rate-uneven", low=rates[1], high=rates[2]),
@@ -845,6 +880,7 @@ def fit_pull(
         notes=_remarks(
             misfit=pull.misfit_share,
             fall=fall,
+            held=_gain_in_holds(load, stretch) / float(blocks.strain[-1] - blocks.strain[0]),
             rates=rates,
             reference_length=length,
             reference_strain=begins,
