@@ -117,3 +117,21 @@ def test_amplitudes_of_a_sweep_are_those_of_its_cycles():
     steady = located.__dict__ | {"position": sweep(0.0, step=0.1)[1][: time.size]}
     steady["cycles"] = cycles_of(time, steady["position"])
     assert _with_waveform_of_log(stated, SimpleNamespace(**steady)) == (stated, ())
+
+
+def test_each_cycle_of_a_log_with_three_speeds_has_its_own_period():
+    # ramps of 36, 18 and 12 s in turn, as a machine with three speeds makes them
+    own = np.tile([36.0, 18.0, 12.0], 4)
+    valley = np.append(0, np.cumsum(own))
+    turns = np.sort(np.concatenate([valley, valley[:-1] + own / 2]))
+    time = np.arange(0, valley[-1], 0.05)
+    wave = np.interp(time, turns, np.arange(turns.size) % 2)
+    begin = np.searchsorted(time, valley[:-1])
+    end, peak = np.append(begin[1:], time.size - 1), np.searchsorted(time, valley[:-1] + own / 2)
+    cycles = Cycles(
+        begin, end, np.stack([begin, peak], axis=1), np.stack([peak, end], axis=1),
+        np.ones((own.size, 2)), *np.zeros((3, time.size)), 0.1,
+    )  # fmt: skip
+    period, spread = own_periods(time, wave, cycles, time[end] - time[begin], noise=1e-6)
+    assert np.abs(period - own).max() < 0.1
+    assert np.all((spread > 0.005) & (spread < 0.05))

@@ -287,7 +287,8 @@ def own_periods(
     A turn is known to a sample, and noise shifts it ([1]_); the middle of a flank passes a
     level within the noise over its speed.  The period of a cycle is the mean of the time from its
     rise to the next one and of that to its fall from the one before; for the last of a row the
-    latter only.
+    latter only.  Beside a cycle that is longer or shorter by a quarter it is the time from turn to
+    turn.
 
     Examples
     --------
@@ -337,8 +338,24 @@ def own_periods(
     jitter = np.sqrt(np.median(second**2) / _OF_SECOND) if second.size else 0.0
     of_jitter = np.full(spread.shape, jitter)
     of_jitter[last] *= _OF_LAST
+    # a flank beside a cycle of another speed belongs to that one
+    on_flanks = _of_other_speeds(period)
+    on_flanks[1:] |= on_flanks[:-1].copy()  # the last of a row has one flank of its own
+    other = on_flanks & _of_other_speeds(duration)
+    period[other], of_jitter[other] = duration[other], 0.0
+    spread[other] = time_of_sample(duration, cycles)[other]
     return period, np.maximum(spread, of_jitter)
 
+
+def _of_other_speeds(period: Floats) -> Bools:
+    """Cycles that last clearly longer or shorter than one beside them."""
+    least = np.minimum(period[1:], period[:-1])
+    apart: Bools = np.abs(np.diff(period)) > _OTHER_SPEED * least
+    found: Bools = np.append(False, apart) | np.append(apart, False)
+    return found
+
+
+_OTHER_SPEED = 0.25  # of the shorter period, as between levels of a log
 
 _OF_LAST = np.sqrt(5)  # ratio of a sum that ends with its fall only to one with both flanks
 
