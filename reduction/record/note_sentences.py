@@ -896,7 +896,7 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "warning",
         lambda effect, density, is_stated, length: (
             f"if the specimen of {length:.3g} m lay horizontally, its sag moved EA by"
-            f" {100 * effect:+.1f} % ({density:.3g} kg/m,"
+            f" {100 * effect:+.2g} % ({density:.3g} kg/m,"
             f" {'as stated' if is_stated else 'usual for its break strength'}), and strain is that"
             " of its ends, which is not corrected. Support it, test at a higher tension or measure"
             " strain on the rope; if it hung, state vertical = true in the layout"
