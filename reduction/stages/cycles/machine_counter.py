@@ -202,6 +202,12 @@ def count_over_gaps(
     >>> time = np.array([0.0, 1, 2, 3, 4, 50, 51, 52])
     >>> count_over_gaps(time, np.array([0, 2, 5]), np.array([2, 4, 7]), rest)
     array([ 1,  2, 26])
+
+    Where it stores the peaks and valleys alone between them:
+
+    >>> time = np.array([0.0, 1, 2, 3, 4, 5, 6, 7, 8, 8.5, 9, 9.5, 10])
+    >>> count_over_gaps(time, np.array([0, 2, 8]), np.array([2, 4, 12]), rest)
+    array([1, 2, 5])
     """
     period = float(np.median(take_samples(time, last) - take_samples(time, first)))
     between = take_samples(time, first[1:]) - take_samples(time, last[:-1])
@@ -211,11 +217,14 @@ def count_over_gaps(
         steps = np.diff(time[span])
         gap = span.start + int(np.argmax(steps))
         rests = (standstills.first <= gap + 1) & (gap <= standstills.last)
-        if steps[gap - span.start] > period / 2 and not rests.any():
+        if steps[gap - span.start] > _OFF * period and not rests.any():
             hidden[row + 1] = round(float(between[row]) / period)
     if not hidden.any():
         return None
     return np.arange(1, first.size + 1) + np.cumsum(hidden)
+
+
+_OFF = 0.4  # of a period, without a reading; a logger of turns has half a period
 
 
 def _check_rises(counts: Integers) -> None:
