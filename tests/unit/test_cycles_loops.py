@@ -2205,3 +2205,28 @@ def test_few_readings_in_step_with_a_sine_do_not_tell_its_range(readings, shift)
     true = np.ptp(tension(np.linspace(0, 2 * np.pi, 9999))) / 0.2
     error = abs(found.apparent_spring_constant[0] - true)
     assert error < 2.5 * found.uncertainty["apparent_spring_constant"][0] < 0.3 * true
+
+
+@pytest.mark.parametrize("readings", [6.13, 8.37, 12.21, 20.4])
+def test_the_interval_of_a_single_sine_of_few_readings_is_that_of_its_noise(readings):
+    """Linear line of 4e4 N with a loss; third differences of six readings are a fifth of the wave."""
+    rng = np.random.default_rng(3)
+    turn = np.arange(int(41 * readings)) / readings
+    wave = 2 * np.pi * turn
+    noise = rng.normal(0, 1, (2, turn.size))
+    strain = 0.1 - 0.03 * np.cos(wave) + 3e-6 * noise[0]
+    tension = 4000 - 1200 * np.cos(wave) + 120 * np.sin(wave) + 2 * noise[1]
+    first = np.round(np.arange(40) * readings).astype(np.intp)
+    last = np.append(first[1:], round(40 * readings))
+    pair = np.column_stack([first, (first + last) // 2])
+    cycles = Cycles(
+        first, last, pair, np.column_stack([pair[:, 1], last]), np.ones((40, 2)),
+        np.zeros(turn.size, np.int32), np.zeros(turn.size, np.int8), np.zeros(turn.size, bool), 0.1,
+    )  # fmt: skip
+    loops = close_loops(turn, tension[None], strain[None], cycles, waveform="sinusoidal")
+    for name, true in (
+        ("apparent_spring_constant", np.hypot(1200, 120) / 0.03),
+        ("hysteresis_energy", np.pi * 0.03 * 120),
+    ):
+        z = (getattr(loops, name)[0] - true) / loops.uncertainty[name][0]
+        assert 0.4 < np.sqrt(np.mean(z**2)) < 2

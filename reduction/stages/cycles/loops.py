@@ -73,7 +73,9 @@ from reduction.stages.cycles.periods import (
     touching,
 )
 from reduction.stages.cycles.reading_noise import (
+    FEW_READINGS,
     noise_and_step,
+    noise_beside_sine,
     reading_noise,
     scatter_over_cycles,
 )
@@ -1350,7 +1352,14 @@ def close_loops(
     if waveform != "sinusoidal":
         cycles = _into_rests(cycles)
     measured = empty_like(tension, shape=(tension.shape[0], len(MEASURED), cycles.n_cycles))
-    noises = [(reading_noise(force), reading_noise(stretch)) for force, stretch in
+    of_reading, is_coarse = reading_noise, False
+    if waveform == "sinusoidal":
+        readings = float(np.median(period * (last - first) / (end - begin)))
+        # in step with the sine, the same harmonics are missing in all cycles
+        in_step = abs(readings - np.rint(readings)) * cycles.n_cycles < 1
+        is_coarse = bool(readings < FEW_READINGS and not in_step)
+        of_reading = partial(noise_beside_sine, readings=readings) if is_coarse else reading_noise
+    noises = [(of_reading(force), of_reading(stretch)) for force, stretch in
               zip(tension, strain, strict=True)]  # fmt: skip
     branches = np.median(cycles.branch_last - cycles.branch_first, axis=0)
     ways = [(way_of_series(force, cycles), way_of_series(stretch, cycles)) for force, stretch in
@@ -1454,6 +1463,11 @@ def close_loops(
                 uncertainty[name][index] = errors[name]
                 release_pages(uncertainty[name])
         release_pages(measured)
+    if is_coarse:  # harmonics that few readings take for one another scatter as the phase does
+        for energy, own in zip(
+            tables["hysteresis_energy"], uncertainty["hysteresis_energy"], strict=True
+        ):
+            own[:] = np.fmax(own, _scatter_about_line(energy))
     tables["cycle_start_time"][:] = begin
     tables["frequency"][:] = 1 / duration
     # a turn is known to one sample at each end of the cycle, uniformly distributed
@@ -1462,6 +1476,18 @@ def close_loops(
     uncertainty["frequency"][:] = turn_spread / duration**2 * np.sqrt(2)
     release_pages(*tables.values(), *uncertainty.values())
     return Loops(**tables, uncertainty=uncertainty)
+
+
+def _scatter_about_line(values: Floats) -> float:
+    """Standard deviation of a series about its straight line; 0 where it is short."""
+    known = np.flatnonzero(np.isfinite(values))
+    if known.size < _FEWEST_OF_SCATTER:
+        return 0.0
+    left = values[known] - np.polyval(np.polyfit(known, values[known], 1), known)
+    return float(np.sqrt(np.sum(left**2) / (known.size - 2)))
+
+
+_FEWEST_OF_SCATTER = 6
 
 
 def _into_rests(cycles: Cycles) -> Cycles:

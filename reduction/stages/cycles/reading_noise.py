@@ -82,6 +82,36 @@ def _noise_by_differences(differences: Floats, order: int) -> float:
 _FEWEST_DIFFERENCES = 48  # of a higher order: with fewer, those of noise may differ by half
 
 
+def noise_beside_sine(values: Floats, readings: float) -> float:
+    r"""Standard deviation of one reading of a sine with few readings a cycle.
+
+    .. math:: \Delta \prod_{h=1}^{3} (y_{k+1} - 2 \cos(2 \pi h / n) \, y_k + y_{k-1})
+
+    Third differences of six readings a cycle are a fifth of the amplitude; this difference has
+    neither the sine nor its second and third harmonic.
+
+    Examples
+    --------
+    >>> turn, noise = np.arange(900) / 6.13, np.random.default_rng(1).normal(0, 0.01, 900)
+    >>> wave = 5 - np.cos(2 * np.pi * turn) + 0.1 * np.cos(4 * np.pi * turn) + noise
+    >>> print(round(reading_noise(wave), 2), round(noise_beside_sine(wave, 6.13), 3))
+    0.2 0.01
+    """
+    usual = reading_noise(values)
+    weights = np.array([1.0, -1.0])
+    for harmonic in (1, 2, 3):
+        weights = np.convolve(weights, [1.0, -2 * np.cos(2 * np.pi * harmonic / readings), 1.0])
+    left = np.convolve(values[:_NOISE_SAMPLES], weights, mode="valid")
+    left = left[np.isfinite(left)]
+    if left.size == 0:
+        return usual
+    return min(usual, float(1.4826 * np.median(np.abs(left)) / np.sqrt(np.sum(weights**2))))
+
+
+FEW_READINGS = 24
+"""Of a cycle of a sine: fewer make third differences of the wave as large as noise. [1]"""
+
+
 def within_scatter(noise: float, top: Floats) -> float:
     """Noise of a reading, limited to what the scatter of extremes from cycle to cycle allows.
 
