@@ -14,7 +14,7 @@ from reduction.quantities.units import Dimension, parse_quantity, scale_to_si
 from reduction.readers.columns import DAY, clock_reading, is_of_a_zone
 from reduction.readers.layout import CLOCK, Channel, Layout
 from reduction.readers.raw_log import RawLog
-from reduction.readers.sample_flags import flag_record
+from reduction.readers.sample_flags import find_spikes, flag_record
 from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import Floats, Integers, LoadTrain, Record
 from reduction.record.notes import Note, note
@@ -105,9 +105,9 @@ def _on_common_time(
     values: Mapping[str, Floats],
     own: Mapping[str, Floats],
     *,
-    gap_factor: float,
+    quality: QualitySettings,
 ) -> _CommonTime:
-    """Bring channels to the time axis of the slowest."""
+    """Bring channels to the time axis of the slowest, without their spikes."""
     axes: list[_Axis] = []
     trimmed: dict[str, Floats] = {}
     for key, series in values.items():
@@ -143,8 +143,22 @@ def _on_common_time(
             continue
         _check_overlap(base, axis)
         for key in axis.keys:
+            series, is_count = trimmed[key], key == _COUNTED
+            # interpolation would spread a spike over the rows beside it
+            spikes: Integers = (
+                np.empty(0, dtype=np.intp)
+                if is_count
+                else np.flatnonzero(find_spikes(series, quality, axis.time))
+            )
+            if spikes.size:
+                first = float(axis.time[spikes[0]])
+                notes.append(
+                    note("spikes-not-resampled", channel=key, n_samples=spikes.size, time=first)
+                )
+                series = series.copy()
+                series[spikes] = np.nan
             result[key] = _interpolate(
-                base.time, axis, trimmed[key], gap_factor, is_count=key == _COUNTED
+                base.time, axis, series, quality.gap_factor, is_count=is_count
             )
         notes.append(
             note(
@@ -230,7 +244,7 @@ class _Piece:
         return f"{what} of {self.log.source.name}"
 
 
-def _to_piece(log: RawLog, layout: Layout, *, gap_factor: float) -> _Piece:
+def _to_piece(log: RawLog, layout: Layout, *, quality: QualitySettings) -> _Piece:
     """Bring a log to one time axis."""
     values, scale, unused = {}, {}, []
     for name, channel in layout.channels.items():
@@ -249,7 +263,7 @@ def _to_piece(log: RawLog, layout: Layout, *, gap_factor: float) -> _Piece:
     shared, of_hour = _on_one_time_of_day(_shared_time(log, layout), log, layout)
     shared, of_clock = _between_ticks(shared, values)
     _stamp_rows_with_readings(shared, values, own)
-    common = _on_common_time(shared, values, own, gap_factor=gap_factor)
+    common = _on_common_time(shared, values, own, quality=quality)
     notes = [*log.notes, *of_hour, *of_clock, *common.notes]
     if unused:
         notes.append(note("channels-not-used", channels=", ".join(unused)))
@@ -507,7 +521,7 @@ def to_record(
         raise SettingsError(f"test '{test_id}' has no file", needed="one or more logs")
     counts = [_check_channels(layout, test_id, len(specimens)) for _, layout in logs]
     position_is_length = _check_datum([layout for _, layout in logs], test_id, length_needed)
-    pieces = [_to_piece(log, layout, gap_factor=quality.gap_factor) for log, layout in logs]
+    pieces = [_to_piece(log, layout, quality=quality) for log, layout in logs]
     pieces = _on_one_clock(pieces)
     _check_order(pieces)
     n_samples = sum(piece.time.size for piece in pieces)

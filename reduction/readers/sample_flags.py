@@ -1011,7 +1011,7 @@ def flag_record(
     _set(position_flag, _missing("crosshead_position", position), Quality.MISSING)
     _set(position_flag, timing.gap, Quality.GAP)
     _set(position_flag, timing.backward, Quality.REPEATED_OR_BACKWARD_TIME)
-    _set(position_flag, _spikes(position, settings, record.time), Quality.SPIKE)
+    _set(position_flag, find_spikes(position, settings, record.time), Quality.SPIKE)
     if record.position_is_length:
         _set(position_flag, _no_length(position, position_flag), Quality.SPIKE)
     if "crosshead_position" in resampled:
@@ -1024,7 +1024,7 @@ def flag_record(
         stuck = _find_stuck(load, position, samples=settings.stuck_samples)
         _set(flags, stuck, Quality.STUCK)
         _set(flags, saturated, Quality.SATURATED, instead_of=Quality.STUCK)
-        _set(flags, _spikes(load, settings, record.time), Quality.SPIKE)
+        _set(flags, find_spikes(load, settings, record.time), Quality.SPIKE)
         if f"tension.{index + 1}" in resampled:
             _set_all(flags, Quality.RESAMPLED)
 
@@ -1068,7 +1068,7 @@ def flag_record(
     ]
     strains = None if record.measured_strain is None else copied(record.measured_strain)
     for name, strain in zip(record.specimens, () if strains is None else strains, strict=False):
-        lost = _spikes(strain, settings, record.time)
+        lost = find_spikes(strain, settings, record.time)
         if n_samples := count_samples(lost):
             strain[lost] = np.nan
             found.append(note("extensometer-drops-out", name, n_samples=n_samples))
@@ -1126,7 +1126,7 @@ def _missing(name: str, values: Floats) -> Bools:
     return missing
 
 
-def _spikes(values: Floats, settings: QualitySettings, time: Floats) -> Bools:
+def find_spikes(values: Floats, settings: QualitySettings, time: Floats) -> Bools:
     """Spikes, except steps of the signal where the logging rate changes."""
     low, high = finite_extremes(values)
     # smaller deviations change no result, however little noise the channel has

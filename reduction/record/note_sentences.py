@@ -1719,6 +1719,14 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         " resolution or the range of the amplifier is too coarse, or the log was rounded. This"
         " limits the accuracy of moduli and energies",
     ),
+    "spikes-not-resampled": (
+        "warning",
+        lambda n_samples, channel, time: (
+            f"single readings of {channel} jump away and back at once ({n_samples}, first at"
+            f" {time:.6g} s): they are not used, and nothing is interpolated beside them. Where"
+            " they are sound, raise reduction.quality.spike_factor"
+        ),
+    ),
     "extensometer-drops-out": (
         "note",
         "{n_samples} readings of the extensometer jump away and back at once and are not used. If"

@@ -125,7 +125,9 @@ def test_a_straight_line_survives_resampling(slope, offset, rate, lag):
     slow = np.arange(0, 20, 1.0) + lag
     fast = np.arange(0, 22, 1.0 / rate)
     values = {"crosshead_position": slope * fast + offset, "tension.1": slow}
-    result = _on_common_time(fast, values, {"tension.1": slow}, gap_factor=3.5)
+    result = _on_common_time(
+        fast, values, {"tension.1": slow}, quality=QualitySettings(gap_factor=3.5)
+    )
     found = result.values["crosshead_position"]
     known = np.isfinite(found)
     assert known.sum() >= 19

@@ -10,6 +10,7 @@ from reduction.readers.record_in_si import _to_piece
 from reduction.record import samples as blocks
 from reduction.record.errors import DataError
 from reduction.record.measurement import Source
+from reduction.record.settings import QualitySettings
 
 LAYOUT = Layout(
     format="delimited",
@@ -25,7 +26,7 @@ def read(time):
     log = RawLog(
         source=Source("T-1.csv", "0" * 64, 1), columns=columns, first_row=2, n_rows_read=time.size
     )
-    return _to_piece(log, LAYOUT, gap_factor=5.0)
+    return _to_piece(log, LAYOUT, quality=QualitySettings(gap_factor=5.0))
 
 
 def test_a_clock_that_slips_again_and_again_is_gone_over_once(monkeypatch):

@@ -3,21 +3,23 @@ import pytest
 
 from reduction.readers.record_in_si import _on_common_time
 from reduction.record.errors import DataError
+from reduction.record.settings import QualitySettings
 
 FAST, SLOW = np.arange(0, 10, 0.01), np.arange(0, 10, 0.1)
 NAN = np.nan
+QUALITY = QualitySettings(gap_factor=3.5)
 
 
 def common(shared, values, own):
     values = {key: np.asarray(series, float) for key, series in values.items()}
     own = {key: np.asarray(series, float) for key, series in own.items()}
     shared = None if shared is None else np.asarray(shared, float)
-    return _on_common_time(shared, values, own, gap_factor=3.5)
+    return _on_common_time(shared, values, own, quality=QUALITY)
 
 
 def test_one_time_axis_is_handed_on_untouched():
     position = 2 * FAST
-    result = _on_common_time(FAST, {"crosshead_position": position}, {}, gap_factor=3.5)
+    result = _on_common_time(FAST, {"crosshead_position": position}, {}, quality=QUALITY)
     assert result.time is FAST and result.values["crosshead_position"] is position
     assert result.resampled == frozenset() and tuple(map(str, result.notes)) == ()
 
@@ -123,3 +125,17 @@ def test_time_axes_that_do_not_overlap_are_two_time_bases():
         match=r"two time bases; found crosshead_position from 0 to 9.9 s, tension.1 from 1e",
     ):
         common(SLOW, {"crosshead_position": SLOW, "tension.1": FAST}, {"tension.1": FAST + 1e6})
+
+
+def test_a_drop_out_is_not_interpolated_into_the_readings_beside_it():
+    # the position reads 0 at 4 s; the load is read 4 ms before each reading of the position
+    position = np.where(FAST < 3, FAST, 3.0)
+    position[400] = 0.0
+    load = np.arange(0, 10, 0.011)
+    result = common(FAST, {"crosshead_position": position, "tension.1": load}, {"tension.1": load})
+    found, clean = result.values["crosshead_position"], np.minimum(load, 3.0)
+    lost = np.isnan(found) & (load < 9.9)
+    assert 1 <= lost.sum() <= 3 and np.abs(load[lost] - 4.0).max() < 0.011
+    known = np.isfinite(found)
+    assert np.abs(found - clean)[known].max() < 0.01
+    assert "readings of crosshead_position jump away and back at once (1, " in str(result.notes[0])
