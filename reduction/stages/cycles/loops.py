@@ -1353,12 +1353,12 @@ def close_loops(
         cycles = _into_rests(cycles)
     measured = empty_like(tension, shape=(tension.shape[0], len(MEASURED), cycles.n_cycles))
     of_reading, is_coarse = reading_noise, False
-    if waveform == "sinusoidal":
-        readings = float(np.median(period * (last - first) / (end - begin)))
+    if waveform == "sinusoidal" and np.all(end > begin):
+        per_cycle = float(np.median(period * (last - first) / (end - begin)))
         # in step with the sine, the same harmonics are missing in all cycles
-        in_step = abs(readings - np.rint(readings)) * cycles.n_cycles < 1
-        is_coarse = bool(readings < FEW_READINGS and not in_step)
-        of_reading = partial(noise_beside_sine, readings=readings) if is_coarse else reading_noise
+        in_step = abs(per_cycle - np.rint(per_cycle)) * cycles.n_cycles < 1
+        is_coarse = bool(per_cycle < FEW_READINGS and not in_step)
+        of_reading = partial(noise_beside_sine, readings=per_cycle) if is_coarse else reading_noise
     noises = [(of_reading(force), of_reading(stretch)) for force, stretch in
               zip(tension, strain, strict=True)]  # fmt: skip
     branches = np.median(cycles.branch_last - cycles.branch_first, axis=0)
