@@ -312,6 +312,16 @@ class _StrokeBalance:
             return np.nan
         return float(replace(self, cycles=_inside_turns(cycles)).mean[self.way])
 
+    def turns_late(self, effect: float) -> bool:
+        """Whether the turns show a lag of tension that explains a mean residual.
+
+        A lag of some share of the stroke opens the turns by four times the residual that it leaves.
+        """
+        begin, end = self.cycles.branch_first[:, 0], self.cycles.branch_last[:, 0]
+        rise = np.nanmedian(take_samples(self.tension, end) - take_samples(self.tension, begin))
+        opens = _opens(self.strain, self.tension, self.cycles)
+        return effect < 0 and opens < -2 * abs(effect * float(rise))
+
     @property
     def of_strain(self) -> float:
         """Mean residual of the strain gained in cycles, the lesser of lines and parabolas. [1]."""
@@ -399,10 +409,11 @@ def check_identity(
     turn between two readings, which varies in cycles out of step with the clock and is constant in
     those in step: these are judged without the readings at the turns of the branches, and a lag
     of less than a reading cannot be detected.  Under a driven load, strain goes on after a turn of
-    the tension, where slopes over strain have no branch.  A positive residual, as this causes,
-    therefore counts only if the strain gained in a cycle also differs from the compliances of its
-    branches.  Tension logged late makes the residual negative on a curve that stiffens: by some
-    0.7 to 1.1 % for a two-hundredth of the period.
+    the tension, where slopes over strain have no branch: the residual is positive where creep
+    reaches far, and negative for a sine on a curve that stiffens.  It therefore counts only if the
+    strain gained in a cycle also differs from the compliances of its branches, or if the turns are
+    open as tension logged late opens them.  This makes the residual negative on a curve that
+    stiffens: by some 0.7 to 1.1 % for a two-hundredth of the period.
 
     NaN for a cycle in which a piece has fewer than 3 samples or samples in less than
     about two thirds of it, or whose first or last sample is missing, and for one that is counted
@@ -452,8 +463,8 @@ def check_identity(
         least = max(_SIGNIFICANT * float(error[row]), worth_a_note)
         if not (size > least and size > (most := least + one.change_by_bend)):
             continue
-        # creep continues after a turn of the load; a late load has the other sign
-        if control == "load" and 0 < effect and one.of_strain <= most:
+        # strain has no branch where it goes on after a turn of the load
+        if control == "load" and one.of_strain <= most and not one.turns_late(effect):
             continue
         explained = 0.0 if time is None or not any(lag) else one.change_by_lag(time, lag[row])
         # intervals include the stated lag already; its residual is not worth a warning
