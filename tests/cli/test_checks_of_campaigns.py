@@ -48,7 +48,7 @@ JUSTIFIED = (
     ("nylon-synthetic", "experiment nylon", "a quadratic of H is negative inside the range",
      "this surface falls to"),
     ("hose-synthetic", "L-64", "the static cycles begin and end slack: amplitudes are no EA",
-     "include the slack part. 1 similar note in L-68"),
+     "If it is taut at this load, state a lower phases.slack_tension. 1 similar note in L-68"),
     ("hose-synthetic", "comparison H64-dynamic", "angle and cord load do the same to one curve",
      "The curve does not determine the fitted numbers"),
     ("hose-synthetic", "comparison H68-dynamic", "cord load and the others do the same to it",

@@ -135,7 +135,7 @@ def test_coefficients_bring_along_why_runs_have_the_status_check(command, archiv
     """R05 of the synthetic campaign goes slack in every cycle."""
     out = tmp_path / "s.md"
     done = command("export", archive, "--to", "markdown", "--out", out, *form)
-    said = "DOUBTFUL: 1 of 15 runs has the status check; R05: the line goes slack"
+    said = "DOUBTFUL: 1 of 15 runs has the status check; R05: the spring-dashpot model does not"
     assert done.stdout.split("\n")[1].startswith(f"  note: {said}")
     assert said in out.read_text(encoding="utf-8")
 

@@ -40,7 +40,7 @@ def test_a_run_prints_why_a_test_has_no_answer(capsys):
         report=None,
         answers=ShownAnswers((), (), ("T-1",), withheld={"T-2": "no hold found", "T-3": "more"}),
     )
-    _say_run(result, "small", CommandOutput())
+    _say_run(result, CommandOutput())
     shown = capsys.readouterr().out
     assert "no hold found" in shown and "a warning" in shown
     assert "T-1" not in shown and "more" not in shown

@@ -33,7 +33,7 @@ def test_the_library_is_over_break_strength_and_diameter():
 @pytest.mark.parametrize(
     ("fields", "form", "message"),
     [
-        ({}, "library", "library of MoorPy is linear"),
+        ({}, "library", "the library is linear"),
         ({"viscoelasticity": growing()}, "library", "rated break strength"),
         ({"linear_density": math.nan}, "table", "linear density"),
     ],

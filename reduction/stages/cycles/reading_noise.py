@@ -87,7 +87,7 @@ def noise_beside_sine(values: Floats, readings: float) -> float:
 
     .. math:: \Delta \prod_{h=1}^{3} (y_{k+1} - 2 \cos(2 \pi h / n) \, y_k + y_{k-1})
 
-    Third differences of six readings a cycle are a fifth of the amplitude; this difference has
+    Differences of six readings a cycle are a tenth of the amplitude and more; this difference has
     neither the sine nor its second and third harmonic.
 
     Examples
@@ -95,7 +95,7 @@ def noise_beside_sine(values: Floats, readings: float) -> float:
     >>> turn, noise = np.arange(900) / 6.13, np.random.default_rng(1).normal(0, 0.01, 900)
     >>> wave = 5 - np.cos(2 * np.pi * turn) + 0.1 * np.cos(4 * np.pi * turn) + noise
     >>> print(round(reading_noise(wave), 2), round(noise_beside_sine(wave, 6.13), 3))
-    0.2 0.01
+    0.08 0.01
     """
     usual = reading_noise(values)
     weights = np.array([1.0, -1.0])

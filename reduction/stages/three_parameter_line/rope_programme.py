@@ -251,6 +251,7 @@ def dynamic_stiffness(
     --------
     >>> one = {name: np.full((1, 4), 1.0) for name in Loops.__dataclass_fields__}
     >>> one["apparent_spring_constant"] = np.array([[500.0, 99.0, 100.0, 101.0]])
+    >>> one["uncertainty"] = {}
     >>> found = dynamic_stiffness(Loops(**one), last_cycles=3, rated_break_strength=10.0)
     >>> print(found.dynamic_stiffness, found.drift_per_cycle, found.dynamic_stiffness_over_strength)
     [[100.]] [[1.]] [[10.]]
