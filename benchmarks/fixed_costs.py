@@ -6,7 +6,8 @@ Each revision is taken from the repository into a temporary folder and run there
 interpreter, in turn with the working tree, so that a machine that slows down slows all of them.
 Processor time is user and system time of the command and of all processes that it started.  A
 ratio is of the two runs of one round; printed are the median of the rounds and their range.  The
-campaigns are those of raw/ of the working tree (synthetic, but for the one of 17 rows).
+campaigns are those of raw/ of each revision (synthetic, but for the one of 17 rows): the same logs,
+and a campaign.toml with the keys that it knows.
 """
 
 from __future__ import annotations
@@ -50,9 +51,9 @@ def _trees(scratch: Path, revisions: Sequence[str]) -> Iterator[tuple[str, Path,
     for name in ("this", *revisions):
         source, work = ROOT, scratch / f"work-{name}"
         if name != "this":
-            source = package_of(name, scratch / f"tree-{name}")
+            source = package_of(name, scratch / f"tree-{name}", "raw")
         work.mkdir()
-        shutil.copytree(ROOT / "raw", work / "raw")
+        shutil.copytree(source / "raw", work / "raw")
         yield name, source, work
 
 

@@ -128,11 +128,15 @@ def _memory_of(process: int) -> float:
     return int((rollup.split() or ["0"])[0]) / 1024 + sum(map(_memory_of, children))
 
 
-def package_of(revision: str, folder: Path) -> Path:
-    """Unpack the package of another revision of this repository; the folder that it lies in."""
+def package_of(revision: str, folder: Path, *others: str) -> Path:
+    """Unpack the package of another revision of this repository; the folder that it lies in.
+
+    ``others`` are files or folders that are unpacked beside it.
+    """
     packed = subprocess.run(
-        ["git", "-C", str(ROOT), "archive", revision, "reduction"], capture_output=True, check=True
-    )
+        ["git", "-C", str(ROOT), "archive", revision, "reduction", *others],
+        capture_output=True, check=True,
+    )  # fmt: skip
     with tarfile.open(fileobj=io.BytesIO(packed.stdout)) as archive:
         archive.extractall(folder, filter="data")
     return folder
