@@ -23,21 +23,21 @@ from pathlib import Path
 from figures import Figure, hand_on
 from programs import ROOT, package_of, usage_of
 
-RAW = ROOT / "raw" / "tmt-synthetic"
 LOGS = ("T-1", "T-2", "T-3", "T-5", "T-6")
 
 
-def write_batch(folder: Path, n_tests: int) -> Path:
-    """Write the logs, the marks and campaign.toml of a batch."""
+def write_batch(folder: Path, n_tests: int, tree: Path) -> Path:
+    """Write the logs, the marks and campaign.toml of a batch, from the campaign of a revision."""
     folder.mkdir(parents=True)
-    text = (RAW / "campaign.toml").read_text(encoding="utf-8")
+    raw = tree / "raw" / "tmt-synthetic"
+    text = (raw / "campaign.toml").read_text(encoding="utf-8")
     head = re.sub(r'id = "[^"]*"', 'id = "batch"', text.partition("[report]")[0], count=1)
     # tables of both specimens, which each pair has under names of its own
     general, _, sheets = head.partition("[specimens.new]")
     sheets, layouts, rest = ("[specimens.new]" + sheets).partition("[layouts.logger]")
     parts = [general]
     tests = []
-    header, *rows = (RAW / "marks.csv").read_text(encoding="utf-8").splitlines()
+    header, *rows = (raw / "marks.csv").read_text(encoding="utf-8").splitlines()
     marks = [header]
     for number in range(n_tests):
         log, pair = LOGS[number % len(LOGS)], number // len(LOGS) + 1
@@ -45,7 +45,7 @@ def write_batch(folder: Path, n_tests: int) -> Path:
         if number % len(LOGS) == 0:
             own = sheets.replace("specimens.new", f"specimens.{new}")
             parts.append(own.replace("specimens.used", f"specimens.{used}"))
-        shutil.copyfile(RAW / f"{log}.csv", folder / f"{name}.csv")
+        shutil.copyfile(raw / f"{log}.csv", folder / f"{name}.csv")
         low, high = re.search(  # type: ignore[union-attr]
             rf"\[tests\.{log}\].*?target_strain = \[([\d.]+), ([\d.]+)\]", text, re.DOTALL
         ).groups()
@@ -83,11 +83,11 @@ def main(sizes: Sequence[int], jobs: int, revision: str) -> list[Figure]:
     with tempfile.TemporaryDirectory() as scratch:
         trees = {"this": ROOT}
         if revision:
-            trees[revision] = package_of(revision, Path(scratch) / "tree")
+            trees[revision] = package_of(revision, Path(scratch) / "tree", "raw")
         for n_tests in sizes:
             folders = {side: Path(scratch) / f"{side}-{n_tests}" for side in trees}
-            campaigns = {side: write_batch(folder / "raw", n_tests) for side, folder in
-                         folders.items()}  # fmt: skip
+            campaigns = {side: write_batch(folder / "raw", n_tests, trees[side]) for side, folder
+                         in folders.items()}  # fmt: skip
             for what in ("first", "nothing changed", "one log changed"):
                 seconds = {}
                 for side, tree in trees.items():
