@@ -49,7 +49,7 @@ from reduction.lines.export_tables import (
 from reduction.quantities.digits import plain_number
 from reduction.quantities.units import UnitSystem
 from reduction.record.errors import SettingsError
-from reduction.record.measurement import Floats, read_only_arrays
+from reduction.record.measurement import STANDARD_GRAVITY, Floats, read_only_arrays
 
 ABAQUS_POINTS = 200
 """Rows of a table. [1]"""
@@ -363,7 +363,6 @@ WhoiCableForm = Literal["expression", "table"]
 CABLE_POINTS = 100
 """Pairs of a table. [1]"""
 
-_GRAVITY = 9.80665
 
 _SMALL = 1e-4  # bending and torsion were not measured, and zero would be singular
 
@@ -389,7 +388,7 @@ def _whoicable_text(line: ExportLine, *, form: WhoiCableForm = "expression") -> 
         remarks[0] = f"Te and Tee from a spline; {remarks[0]}"
     volume, words = line.volume_diameter
     mass, water = line.needed("linear_density"), line.hydrodynamics
-    wet = (mass - SEA_WATER * math.pi / 4 * volume**2) * _GRAVITY
+    wet = (mass - SEA_WATER * math.pi / 4 * volume**2) * STANDARD_GRAVITY
     strength = line.rated_break_strength
     along = water.axial_added_mass
     head = header_lines(

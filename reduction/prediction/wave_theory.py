@@ -96,10 +96,7 @@ from scipy.special import ellipe, ellipkm1, expit
 from reduction.prediction.stream_function import SteadyWave, steady_wave
 from reduction.record.arrays import as_finite, as_positive
 from reduction.record.errors import DataError, FitError, SettingsError
-from reduction.record.measurement import Floats, read_only_arrays
-
-STANDARD_GRAVITY = 9.80665
-"""Standard acceleration of free fall. [m s-2]"""
+from reduction.record.measurement import STANDARD_GRAVITY, Floats, read_only_arrays
 
 _STEP = 1e-14  # greatest last Newton step, relative to the root
 

@@ -21,7 +21,6 @@ import scipy
 
 from reduction.prediction.wave_load import ImmersedSection, immerse_hose, load_factors, wave_load
 from reduction.prediction.wave_theory import (
-    STANDARD_GRAVITY,
     WaveHarmonics,
     airy_wave,
     breaking_height,
@@ -31,7 +30,7 @@ from reduction.prediction.wave_theory import (
 from reduction.published.printed_cells import Cell, cells_of, table_of
 from reduction.published.reproduced_item import Answer, Answers, ReproducedItem, items_from
 from reduction.record.errors import SettingsError
-from reduction.record.measurement import Floats
+from reduction.record.measurement import STANDARD_GRAVITY, Floats
 
 LENGTH, PERIOD, SPEED, HEIGHT = 20.0, 3.57, 5.6, 1.25
 """Table 4. [m], [s], [m/s], [m]."""

@@ -20,6 +20,9 @@ from reduction.record.notes import Note
 
 _T = TypeVar("_T")
 
+STANDARD_GRAVITY = 9.80665
+"""Standard acceleration of free fall. [m s-2]"""
+
 Floats = NDArray[np.float64]
 
 Integers = NDArray[np.integer[Any]]

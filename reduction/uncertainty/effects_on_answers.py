@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 
 from reduction.record.contributions import InstrumentErrors
+from reduction.record.measurement import STANDARD_GRAVITY
 from reduction.record.notes import Note, note
 from reduction.stages.load_train import length_by_stroke, turn_acceleration
 from reduction.stages.moduli.modulus_product import AmplitudeSummary
@@ -128,7 +129,7 @@ def _sag(
         density = _USUAL_DENSITY * specimen.rated_break_strength
     if density is None or not mean > amplitude:
         return
-    weight = _GRAVITY * density * length
+    weight = STANDARD_GRAVITY * density * length
     low, high = mean - amplitude, mean + amplitude
     taken_out = weight**2 / 24 * (1 / low**2 - 1 / high**2)
     effect = taken_out / (2 * float(summary.strain_amplitude[index]))
@@ -141,8 +142,6 @@ def _sag(
 
 
 _SMALL_SAG = 0.005  # of K_ap
-
-_GRAVITY = 9.80665  # m/s2
 
 _USUAL_DENSITY = 2.2e-6  # kg/m a newton of break strength: polyester rope; nylon and wire have more
 

@@ -8,7 +8,6 @@ from scipy.optimize import brentq
 from scipy.special import ellipe, ellipj, ellipk
 
 from reduction.prediction.wave_theory import (
-    STANDARD_GRAVITY,
     _wave_number,
     airy_wave,
     cnoidal_wave,
@@ -18,6 +17,7 @@ from reduction.prediction.wave_theory import (
     wave_period_of,
 )
 from reduction.record.errors import DataError, FitError, SettingsError
+from reduction.record.measurement import STANDARD_GRAVITY
 
 SEA = {"wave_height": 1.25, "wave_period": 3.57, "water_depth": 3.0}
 MAKERS = [airy_wave, stokes_wave]
