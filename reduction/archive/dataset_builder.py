@@ -22,7 +22,7 @@ from reduction.archive.variables import Values
 from reduction.quantities.row import Quantity
 from reduction.record.errors import ArchiveError
 from reduction.record.measurement import Origin, Source, Step
-from reduction.record.notes import full_note
+from reduction.record.notes import note_message
 from reduction.record.samples import release_pages
 from reduction.stages.reduced_test import ReducedTest
 
@@ -238,13 +238,12 @@ _LEGAL = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 
 def _status(test: ReducedTest) -> str:
     """Status with the gravest warning, for a reader who sees only the root of the archive."""
-    warnings = [
-        full_note(one.stage, str(one)) for one in test.all_notes() if one.severity == "warning"
-    ]
-    if not warnings:
+    notes = test.all_notes()
+    others = sum(one.severity == "warning" for one in notes) - 1
+    if others < 0:
         return "reduced"
-    more = f" (and {len(warnings) - 1} more in the group notes)" if len(warnings) > 1 else ""
-    return f"check: {warnings[0]}{more}"
+    more = f" (and {others} more in the group notes)" if others else ""
+    return f"check: {note_message(notes)}{more}"
 
 
 def global_attributes(

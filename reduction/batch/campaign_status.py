@@ -9,7 +9,6 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any, Literal, Protocol, cast
 
-from reduction.record.notes import Note, by_severity, full_note
 from reduction.record.plain_text import bare_cell, safe_cell
 
 Status = Literal["reduced", "check", "unchanged", "no_work", "failed"]
@@ -170,15 +169,6 @@ class CampaignResult:
         seen = [test.exit_status for test in self.tests]
         seen += [one.exit_status for parts in self.parts.values() for one in parts]
         return max(seen, default=0)
-
-
-def note_message(notes: Sequence[Note]) -> str:
-    """The note with the largest effect on an answer; empty if there is none.
-
-    The other notes are in the archive, and in a collapsed part of the report.
-    """
-    doubts = [one for one in by_severity(notes) if one.severity == "warning"]
-    return full_note(doubts[0].stage, str(doubts[0])) if doubts else ""
 
 
 class Progress(Protocol):

@@ -13,7 +13,7 @@ from reduction import __version__
 from reduction.archive.open import KeptArchive, as_kept
 from reduction.archive.test_dataset import kept_samples, to_dataset
 from reduction.archive.write import write_archive
-from reduction.batch.campaign_status import Progress, Status, TestStatus, note_message
+from reduction.batch.campaign_status import Progress, Status, TestStatus
 from reduction.batch.reuse import Basis, describe, reusable_product
 from reduction.batch.run_lock import RunLock
 from reduction.batch.slow_pulls import pull_conditions
@@ -32,7 +32,7 @@ from reduction.campaign.plan import Campaign
 from reduction.pipeline.reduce_test import check_stated_errors, reduce_stepwise_test, reduce_test
 from reduction.readers.raw_log import hash_source
 from reduction.record.errors import LogError, ReductionError
-from reduction.record.notes import Note
+from reduction.record.notes import Note, note_message
 from reduction.stages.reduced_test import History, ReducedTest
 from reduction.stages.strain.strain_model import StrainModel
 from reduction.stages.three_parameter_line.line_product import SlowPull

@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 
 from reduction.archive.product_files import OF_CAMPAIGN
-from reduction.batch.campaign_status import Progress, TestStatus, note_message
+from reduction.batch.campaign_status import Progress, TestStatus
 from reduction.batch.plausibility import implausible
 from reduction.batch.reuse import Basis, basis_of
 from reduction.batch.run_lock import RunLock
@@ -18,6 +18,7 @@ from reduction.batch.test_history import earlier_tests_of, fit_strain_models
 from reduction.batch.workers import Workers
 from reduction.campaign.plan import Campaign
 from reduction.record.errors import ReductionError, SettingsError
+from reduction.record.notes import note_message
 from reduction.stages.strain.strain_model import StrainModel
 from reduction.stages.strain.stress import check_constant_volume
 

@@ -7,7 +7,7 @@ A stage raises a note by its code.  The severity and the sentence of each code a
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import isfinite
 from typing import Any
@@ -115,6 +115,15 @@ def full_note(stage: str, text: str) -> str:
     specimen = stage.split(" ")[-1]
     is_said = text.startswith((f"{stage}:", f"{specimen}:", f"{specimen},"))
     return text if is_said or " " not in stage else f"{stage}: {text}"
+
+
+def note_message(notes: Sequence[Note]) -> str:
+    """The note with the largest effect on an answer; empty if there is none.
+
+    The other notes are in the archive, and in a collapsed part of the report.
+    """
+    doubts = [one for one in by_severity(notes) if one.severity == "warning"]
+    return full_note(doubts[0].stage, str(doubts[0])) if doubts else ""
 
 
 _CLAUSE_END = re.compile(r"\.(?=\s+[A-Z])|[:;](?=\s)|$")

@@ -6,9 +6,8 @@ from string import Formatter
 
 import pytest
 
-from reduction.batch.campaign_status import note_message
 from reduction.record.note_sentences import SENTENCES
-from reduction.record.notes import SEVERITIES, Note, by_severity, full_note, note
+from reduction.record.notes import SEVERITIES, Note, by_severity, full_note, note, note_message
 
 REFUSED = replace(note("drop-not-told-from-zero", drop=0.0003, spread=0.0011), stage="hold 1 new")
 OPEN = replace(
