@@ -358,9 +358,7 @@ def _show_armour(found: PredictedArmour, output: CommandOutput) -> None:
     force, per_newton = output.unit("N")
     moment, per_moment = output.unit("N m")
     small = shown("small length", output.system)
-    stress, per_pascal = output.unit("Pa")
-    if output.system == "si":
-        stress, per_pascal = "MPa", 1e-6
+    stress = shown("stress", output.system)
     output.say_each("warning", found.doubts)
     held, free = found.axial_stiffness
     output.say(
@@ -377,11 +375,11 @@ def _show_armour(found: PredictedArmour, output: CommandOutput) -> None:
         )
     table = table_of(
         "layer", "theory", f"T [{force}]", f"N' [{force}]", f"G' [{moment}]", f"H [{moment}]",
-        f"axial [{stress}]", f"bending [{stress}]", f"torsion [{stress}]", texts=2,
+        f"axial [{stress.unit}]", f"bending [{stress.unit}]", f"torsion [{stress.unit}]", texts=2,
         title=f"One wire at {100 * float(found.strain[0]):g} % strain of the cable",
     )  # fmt: skip
     scales = (
-        per_newton, per_newton, per_moment, per_moment, per_pascal, per_pascal, per_pascal,
+        per_newton, per_newton, per_moment, per_moment, stress.factor, stress.factor, stress.factor,
     )  # fmt: skip
     for place, name in enumerate(found.layer_names):
         for theory, response in found.responses.items():
@@ -391,8 +389,8 @@ def _show_armour(found: PredictedArmour, output: CommandOutput) -> None:
             )
     output.show(table)
     table = table_of(
-        "layer", f"tension [{force}]", f"torque [{moment}]", f"pressure [{stress}]",
-        f"von Mises [{stress}]", f"gap [{small.unit}]", "thinning [%]",
+        "layer", f"tension [{force}]", f"torque [{moment}]", f"pressure [{stress.unit}]",
+        f"von Mises [{stress.unit}]", f"gap [{small.unit}]", "thinning [%]",
         title="Layers, theory conjugate",
     )  # fmt: skip
     for place, name in enumerate(found.layer_names):
@@ -401,8 +399,8 @@ def _show_armour(found: PredictedArmour, output: CommandOutput) -> None:
             name,
             short(per_newton * float(together.layer_tension[place, 0])),
             short(per_moment * float(together.layer_torque[place, 0])),
-            short(per_pascal * float(together.core_pressure[place, 0])),
-            short(per_pascal * float(together.wire_stress[place, 0])),
+            short(stress.factor * float(together.core_pressure[place, 0])),
+            short(stress.factor * float(together.wire_stress[place, 0])),
             short(small.factor * float(found.gap[place]), 4),
             short(100 * float(found.thinning_loss[place]), 2),
         )
@@ -493,7 +491,7 @@ def _csv(found: PredictedWaveLoad) -> str:
 def _show_wave_load(found: PredictedWaveLoad, output: CommandOutput) -> None:
     length, per_metre = output.unit("m")
     force, per_newton = output.unit("N")
-    area, per_area = ("cm2", 1e4) if output.system == "si" else output.unit("m2")
+    area = shown("area", output.system)
     section, theory = found.load.section, found.theory
     output.say_each("warning", found.doubts)
     table = table_of(
@@ -524,7 +522,7 @@ def _show_wave_load(found: PredictedWaveLoad, output: CommandOutput) -> None:
         f"immersed {per_metre * depth:.4g} {length} of "
         f"{per_metre * float(section.outer_diameter):.4g} {length} "
         f"({100 * depth / float(section.outer_diameter):.1f} %), "
-        f"{per_area * float(section.submerged_section_area):.4g} {area} of its section"
+        f"{area.factor * float(section.submerged_section_area):.4g} {area.unit} of its section"
     )
     output.say(
         f"wave of {per_metre * theory.wave_length:.4g} {length}: d/L {theory.relative_depth:.3g}, "

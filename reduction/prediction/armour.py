@@ -77,7 +77,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from reduction.prediction.hose_geometry import cord_stretch_ratio, hose_stretch_ratio
-from reduction.record.arrays import as_increasing
+from reduction.record.arrays import as_increasing, require_of_design
 from reduction.record.errors import FitError, SettingsError
 from reduction.record.measurement import Bools, Floats, read_only_arrays
 
@@ -177,14 +177,8 @@ _UNITS = {
 
 
 def _need(name: str, value: Floats, is_good: Bools, needed: str) -> None:
-    if np.all(is_good):
-        return
-    bad = np.atleast_1d(~is_good)
-    found = np.atleast_1d(value)[bad].flat[0]
-    where = "" if bad.size == 1 else f" of {int(bad.sum())} of {bad.size} designs"
     unit = _UNITS.get(name, "")
-    shown = f"{np.degrees(found) if unit == 'deg' else found:g} {unit}".rstrip()
-    raise SettingsError(f"{name}{where} is not an armour", found=shown, needed=needed)
+    require_of_design("an armour", name, value, is_good, needed, unit)
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from typing import Literal
 import numpy as np
 
 from reduction.prediction.cord_curve import CordCurve
-from reduction.record.errors import SettingsError
+from reduction.record.arrays import require_of_design
 from reduction.record.measurement import Bools, Floats, read_only_arrays
 
 RubberLaw = Literal["neo-hookean", "linear", "linear-current", "hencky"]
@@ -141,14 +141,8 @@ _UNITS = {"wrap_angle": "deg", "cords_per_length": "1/m", "rubber_modulus": "Pa"
 
 
 def _need(name: str, value: Floats, is_good: Bools, needed: str) -> None:
-    if np.all(is_good):
-        return
-    bad = np.atleast_1d(~is_good)
-    found = np.broadcast_to(np.atleast_1d(value), bad.shape)[bad].flat[0]
-    where = "" if bad.size == 1 else f" of {int(bad.sum())} of {bad.size} designs"
     unit = "m" if name.endswith("diameter") else _UNITS.get(name, "")
-    shown = f"{np.degrees(found) if unit == 'deg' else found:g} {unit}".rstrip()
-    raise SettingsError(f"{name}{where} is not that of a hose", found=shown, needed=needed)
+    require_of_design("a hose", name, value, is_good, needed, unit)
 
 
 @dataclass(frozen=True)

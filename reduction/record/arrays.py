@@ -70,6 +70,22 @@ def as_same_shape(**named: ArrayLike) -> tuple[Floats, ...]:
     return tuple(arrays.values())
 
 
+def require_of_design(
+    what: str, name: str, values: Floats, is_good: Bools, needed: str, unit: str
+) -> None:
+    """Refuse the first number of a design that is not good, an angle in degrees."""
+    if np.all(is_good):
+        return
+    bad = np.atleast_1d(~is_good)
+    found = np.broadcast_to(np.atleast_1d(values), bad.shape)[bad].flat[0]
+    where = "" if bad.size == 1 else f" of {int(bad.sum())} of {bad.size} designs"
+    raise SettingsError(
+        f"{name}{where} is not that of {what}",
+        found=f"{np.degrees(found) if unit == 'deg' else found:g} {unit}".rstrip(),
+        needed=needed,
+    )
+
+
 def as_spread(name: str, value: float) -> float:
     """Return a standard uncertainty, or raise `SettingsError` if it is negative or unknown."""
     if not (np.isfinite(value) and value >= 0):

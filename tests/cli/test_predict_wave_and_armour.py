@@ -67,14 +67,14 @@ def test_a_wave_load_is_told_in_words(predict):
     done = predict("wave-load", WAVE)
     assert done.returncode == 0
     for text in (
-        "immersed 0.09512 m of 0.114 m (83.4 %), 90.99 cm2 of its section",
+        "immersed 0.09512 m of 0.114 m (83.4 %), 9099 mm² of its section",
         "wave of 20 m: d/L 0.3, H/L 0.0625", "Keulegan-Carpenter", "anchor force:",
         "note: the given length is",
     ):  # fmt: skip
         assert text in done.stdout
     in_us = predict("wave-load", WAVE, "--units", "us").stdout
-    # 90.99 cm2
-    assert "lbf/ft" in in_us and "14.1 in2 of its section" in in_us
+    # 9,099 mm2
+    assert "lbf/ft" in in_us and "14.1 in² of its section" in in_us
     assert predict("wave-load", WAVE, "--quiet").stdout == ""
 
 
@@ -186,9 +186,9 @@ def test_an_armour_has_tables_and_a_page(predict, tmp_path):
     [
         ('"20 deg"', '"95 deg"', "needed between 0 and 90 deg"),
         ('"20 deg"', '"-1 deg"', "needed between 0 and 90 deg"),
-        ('"2.5 mm"', '"-2.5 mm"', "wire_radius of 1 of 2 designs is not an armour"),
-        ('"5 mm"', '"-5 mm"', "wire_radius of 1 of 2 designs is not an armour"),
-        ('"60 mm"', '"-60 mm"', "core_radius of 1 of 2 designs is not an armour"),
+        ('"2.5 mm"', '"-2.5 mm"', "wire_radius of 1 of 2 designs is not that of an armour"),
+        ('"5 mm"', '"-5 mm"', "wire_radius of 1 of 2 designs is not that of an armour"),
+        ('"60 mm"', '"-60 mm"', "core_radius of 1 of 2 designs is not that of an armour"),
         ('"0.1 %"', '"-100 %"', "the strain is not that of a cable"),
     ],
 )

@@ -31,13 +31,15 @@ GOOD = {
     ],
 )
 def test_a_number_outside_its_range_is_refused(name, value, needed):
-    with pytest.raises(SettingsError, match=f"{name} is not an armour; found .*; needed {needed}"):
+    with pytest.raises(
+        SettingsError, match=f"{name} is not that of an armour; found .*; needed {needed}"
+    ):
         ArmourDesign(**GOOD | {name: value})
 
 
 def test_one_bad_design_of_many_is_counted():
     with pytest.raises(
-        SettingsError, match="wire_radius of 1 of 3 designs is not an armour; found -1"
+        SettingsError, match="wire_radius of 1 of 3 designs is not that of an armour; found -1"
     ):
         ArmourDesign(**GOOD | {"wire_radius": np.array([1.0, -1.0, 2.0])})
 
