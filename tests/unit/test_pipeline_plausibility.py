@@ -158,10 +158,11 @@ def test_what_the_cell_reads_at_slack_says_what_is_slack_in_the_cycles():
     assert _slack_in_cycles(located, stated) == [430.0] * 3
 
 
-@pytest.mark.parametrize(("valley", "level"), [(19.0, 10.0), (5.0, 20.0), (0.0, 20.0)])
-def test_a_line_that_turns_at_a_low_load_is_not_slack(valley, level):
-    """Load 0 to 1000 N over the travel, cut off at zero; a fiftieth of the peak is 20 N."""
-    travel = 1 - np.abs(np.arange(2001) % 400 / 200 - 1)  # five cycles from 0 to 1
+TRAVEL = 1 - np.abs(np.arange(2001) % 400 / 200 - 1)  # five cycles from 0 to 1
+
+
+def slack_of(position, tension):
+    """Slack tensions of five cycles of 400 readings; a fiftieth of the peak is 20 N."""
     at = np.arange(0, 2000, 400)
     ends = np.column_stack([at, at + 200])
     cycles = Cycles(
@@ -170,10 +171,15 @@ def test_a_line_that_turns_at_a_low_load_is_not_slack(valley, level):
     )  # fmt: skip
     located = SimpleNamespace(
         record=SimpleNamespace(specimens=("new",)), standstills=SimpleNamespace(slack_tension=20.0),
-        load_at_slack=(), cycles=cycles, position=travel,
-        tension=np.maximum(valley + (1000 - valley) * travel, 0)[None],
+        load_at_slack=(), cycles=cycles, position=position, tension=tension[None],
     )  # fmt: skip
-    assert _slack_in_cycles(located, ReductionSettings()) == [level]
+    return _slack_in_cycles(located, ReductionSettings())
+
+
+@pytest.mark.parametrize(("valley", "level"), [(19.0, 10.0), (5.0, 20.0), (0.0, 20.0)])
+def test_a_line_that_turns_at_a_low_load_is_not_slack(valley, level):
+    """Load up to 1000 N over the travel."""
+    assert slack_of(TRAVEL, valley + (1000 - valley) * TRAVEL) == [level]
 
 
 @pytest.mark.parametrize(("hangs", "level"), [(0.0, 10.0), (0.05, 20.0)])
@@ -182,19 +188,8 @@ def test_a_rope_that_turns_at_a_hundredth_of_its_peak_is_not_slack(hangs, level)
 
     One that hangs gives way by a share of the stroke at its lowest load.
     """
-    at = np.arange(0, 2000, 400)
-    load = 12 + 988 * (1 - np.abs(np.arange(2001) % 400 / 200 - 1))
-    length = load**0.75 / 1000**0.75 - hangs * (load < 15)
-    ends = np.column_stack([at, at + 200])
-    cycles = Cycles(
-        at, at + 400, ends, ends + 200, np.ones((5, 2)), np.zeros(2001, np.int32),
-        np.zeros(2001, np.int8), np.zeros(2001, bool), 0.1,
-    )  # fmt: skip
-    located = SimpleNamespace(
-        record=SimpleNamespace(specimens=("new",)), standstills=SimpleNamespace(slack_tension=20.0),
-        load_at_slack=(), cycles=cycles, position=length, tension=load[None],
-    )  # fmt: skip
-    assert _slack_in_cycles(located, ReductionSettings()) == [level]
+    load = 12 + 988 * TRAVEL
+    assert slack_of(load**0.75 / 1000**0.75 - hangs * (load < 15), load) == [level]
 
 
 @pytest.mark.parametrize(("share", "n_notes"), [(0.5, 1), (0.7, 0)])

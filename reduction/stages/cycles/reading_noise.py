@@ -109,7 +109,7 @@ def noise_beside_sine(values: Floats, readings: float) -> float:
 
 
 FEW_READINGS = 24
-"""Of a cycle of a sine: fewer make third differences of the wave as large as noise. [1]"""
+"""Of a cycle of a sine: with fewer, differences of its harmonics are as large as noise. [1]"""
 
 
 def within_scatter(noise: float, top: Floats) -> float:
