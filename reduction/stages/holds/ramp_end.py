@@ -107,26 +107,29 @@ _SLOWS = 0.8  # of the rate of the steps before: a slower last whole step
 def time_to_stop(time: Floats, place: Floats, *, held_at: float) -> float:
     """Time for which a ramp that slows down moves on after its last sample. [s].
 
-    For uniform deceleration, from the remaining distance and the last speed; zero for one that
-    reaches its corner at the mean speed of the ramp, or runs back.
+    For uniform deceleration, from the remaining distance and the mean speed of the last five
+    steps; zero for one that reaches its corner at the mean speed of the ramp, or runs back.
 
     Examples
     --------
-    Uniform deceleration to a stand at 4 s, with the last sample at 3 s: short of 1 s, since the
-    last speed is the mean of five steps.
+    Uniform deceleration to a stand at 4 s, with the last sample at 3 s:
 
     >>> t = np.arange(0.0, 3.1, 0.1)
     >>> x = np.where(t < 2, t, 4 - (4 - t) ** 2 / 4 - 1)
     >>> print(round(time_to_stop(t, x, held_at=3.0), 1))
-    0.8
+    1.0
     """
     if time.size <= FEWEST_STEPS:
         return 0.0
     back = min(_STEPS_BEFORE, time.size - 2)
-    speed = (place[-1] - place[-1 - back]) / (time[-1] - time[-1 - back])
+    lasted = float(time[-1] - time[-1 - back])
+    speed = (place[-1] - place[-1 - back]) / lasted
     mean = (place[-1] - place[0]) / (time[-1] - time[0])
-    left = (held_at - place[-1]) / speed if speed else 0.0
-    return 2 * float(left) if left > 0 and abs(speed) < _SLOWS * abs(mean) else 0.0
+    left = float(held_at - place[-1]) / speed if speed else 0.0
+    if left <= 0 or abs(speed) >= _SLOWS * abs(mean):
+        return 0.0
+    # t squared / 2 is left of the stroke, and t plus half of the steps is their mean speed
+    return left + (left**2 + left * lasted) ** 0.5
 
 
 @dataclass(frozen=True)
