@@ -1,11 +1,15 @@
+"""None"""
+
 import math
+import re
 from dataclasses import replace
 
 import pytest
+import yaml
 from export_lines import constant, growing, line, syrope
-from export_readers import moordyn_sections, moordyn_table
+from export_readers import moordyn_sections, moordyn_table, moorpy_table
 
-from reduction.lines.deck_moordyn import moordyn_files
+from reduction.lines.deck_moordyn import moordyn_files, moorpy_files, openfast_files
 from reduction.record.errors import SettingsError
 
 
@@ -99,3 +103,91 @@ def test_the_line_of_a_deck_is_as_long_as_the_line_that_is_exported():
         for one in (text, moordyn_files(line(), "x")[""])
     )
     assert step == pytest.approx(3.6 * of_ten, rel=0.01)
+
+
+def test_the_name_of_the_table_stands_in_bars_and_the_table_ends_at_a_rule():
+    files = moorpy_files(line(), "x")
+    (row,) = moordyn_sections(files[""])["LINE TYPES"]
+    assert row[3] == "|x_moorpy.txt|"
+    assert files["x_moorpy.txt"].endswith("\n---")
+    assert moorpy_table(files["x_moorpy.txt"]).shape == (2, 30)
+    assert "working folder" in files[""]
+
+
+def test_the_library_is_over_break_strength_and_diameter():
+    one = line(viscoelasticity=growing(), rated_break_strength=5e4)
+    props = yaml.safe_load(moorpy_files(one, "x", form="library")[""])["lineProps"]["new_tether"]
+    assert all(isinstance(value, float) for value in props.values())
+    assert props["MBL_d2"] * 0.026**2 == pytest.approx(5e4)
+    assert props["EA_MBL"] == 0.4
+    assert props["EAd_MBL"] == 0.6
+    assert props["EAD_LM"] == props["EAd_MBL_Lm"] == 10
+    assert not {"d_min", "d_max"} & set(props)
+
+
+@pytest.mark.parametrize(
+    ("fields", "form", "message"),
+    [
+        ({}, "library", "the library is linear"),
+        ({"viscoelasticity": growing()}, "library", "rated break strength"),
+        ({"linear_density": math.nan}, "table", "linear density"),
+    ],
+)
+def test_what_the_line_has_not_is_refused_in_moorpy(fields, form, message):
+    with pytest.raises(SettingsError, match=message):
+        moorpy_files(line(**fields), "x", form=form)
+
+
+def test_without_a_dashpot_the_dynamic_stiffness_is_that_of_the_cycle():
+    """K_0 20 kN, K_1 30 kN, tau 18 s and 0.01 Hz: K_ap of eq. 1, not the 50 kN of a fast pull."""
+    part = replace(growing(), frequency=0.01)
+    one = line(viscoelasticity=part, rated_break_strength=5e4)
+    turned = 2j * math.pi * 0.01 * 9e5 / 3e4
+    expected = abs(2e4 + 3e4 * turned / (1 + turned))
+    text = moorpy_files(one, "x", form="library")[""]
+    props = yaml.safe_load(text)["lineProps"]["new_tether"]
+    assert props["EAd_MBL"] * 5e4 + props["EAD_LM"] * 2000 == pytest.approx(expected)
+    assert "K_ap at that frequency" in text
+
+
+def test_a_name_that_yaml_takes_for_a_number_stays_text():
+    one = line(name="1", viscoelasticity=growing(), rated_break_strength=5e4)
+    assert list(yaml.safe_load(moorpy_files(one, "x", form="library")[""])["lineProps"]) == ["1"]
+
+
+def test_options_of_the_other_code_are_left_out():
+    files, other = openfast_files(line(), "x"), moordyn_files(line(), "x")
+    assert files["x_table.txt"] == other["x_table.txt"]
+    sections, others = moordyn_sections(files[""]), moordyn_sections(other[""])
+    assert {row[1] for row in sections["OPTIONS"]} == {"dtM", "WtrDpth"}
+    # gravity of OpenFAST stays: 0 g would take the weight of every line of the module
+    assert "NO GRAVITY" in other[""]
+    assert {row[1]: row[0] for row in others["OPTIONS"]}["g"] == "0"
+    assert "NO GRAVITY" not in files[""]
+    said = " ".join(files[""].split())
+    assert "gravity is that of OpenFAST" in said
+    assert "looks for the table in the folder where it is started" in said
+
+
+def test_damping_of_a_table_is_a_number_above_zero():
+    """MoorDyn-F ends where a share of critical damping, a number below zero, stands beside one."""
+    (row,) = moordyn_sections(openfast_files(line(), "x")[""])["LINE TYPES"]
+    assert float(row[4]) > 0
+    (other,) = moordyn_sections(moordyn_files(line(), "x")[""])["LINE TYPES"]
+    assert [*row[:4], *row[5:]] == [*other[:4], *other[5:]]
+
+
+@pytest.mark.parametrize("form", ["table", "static-dynamic"])
+def test_names_are_no_longer_than_what_is_read(form):
+    names = set()
+    for name in ("polyester-double-braid-0.5in-new", "polyester-double-braid-0.5in-exposed"):
+        one = line(name=name, viscoelasticity=constant())
+        files = openfast_files(one, "a" * 60, form=form)
+        sections = moordyn_sections(files[""])
+        ((found, *_),), ((_, used, *_),) = sections["LINE TYPES"], sections["LINES"]
+        assert found == used
+        assert len(found) <= 20
+        names.add(found)
+        assert all(len(beside) <= 40 and beside in files[""] for beside in files if beside)
+        assert re.search(rf"\b{name}\b", files[""]), "the header has the whole name"
+    assert len(names) == 2

@@ -5,6 +5,8 @@ import pytest
 
 from reduction.record.errors import DataError
 from reduction.stages.holds.relaxation_numbers import (
+    _tension_variation,
+    creep_rate,
     end_mean,
     logarithmic_blocks,
     rate_per_decade,
@@ -112,3 +114,101 @@ def test_a_value_between_two_readings_of_a_slow_log_has_the_noise_of_one():
     _, spread = value_at_times(time, series, np.arange(15, 100, 10.0))
     assert 0.05 == pytest.approx(spread.min(), rel=0.2)
     assert np.median(spread) < 0.1
+
+
+# block means that grow with time
+
+
+def test_blocks_keep_the_sum_of_the_series():
+    time = np.arange(1.0, 5001.0)
+    values = np.random.default_rng(0).standard_normal(5000)
+    blocks = logarithmic_blocks(time, values)
+    assert blocks.count.sum() == 5000
+    assert blocks.count @ blocks.value == pytest.approx(values.sum())
+    assert np.all(np.diff(blocks.elapsed) > 0)
+
+
+def test_a_night_becomes_a_few_hundred_blocks():
+    time = np.arange(1, 1_000_001) * 0.05
+    assert logarithmic_blocks(time, time).elapsed.size < 260
+
+
+@pytest.mark.parametrize("relaxation_time", [1.0, 30.0, 1000.0])
+def test_an_exponential_is_off_by_less_than_stated(relaxation_time):
+    time = np.arange(0.01, 3000, 0.01)
+    blocks = logarithmic_blocks(time, np.exp(-time / relaxation_time))
+    error = blocks.value - np.exp(-blocks.elapsed / relaxation_time)
+    assert np.abs(error).max() < 2e-4
+
+
+def test_no_block_counts_for_more_than_sixty_four_samples():
+    blocks = logarithmic_blocks(np.arange(1.0, 1e5), np.ones(99999))
+    assert blocks.weight[0] == 1
+    assert blocks.weight.max() < 64
+
+
+def test_time_at_zero_is_refused():
+    with pytest.raises(DataError, match="time does not start above zero; found 0 s"):
+        logarithmic_blocks([0.0, 1.0], [1.0, 1.0])
+
+
+def test_no_samples_are_refused():
+    with pytest.raises(DataError, match="time does not start above zero; found no samples"):
+        logarithmic_blocks([], [])
+
+
+def test_time_that_goes_back_is_refused():
+    with pytest.raises(DataError, match="not above the one before"):
+        logarithmic_blocks([1.0, 3.0, 2.0], [1.0, 1.0, 1.0])
+
+
+# creep at constant tension
+
+TIME_OF_CREEP = np.arange(1.0, 2001.0)
+
+
+STRAIN = 1 + 0.03 * np.log10(TIME_OF_CREEP)
+
+
+def test_a_logarithmic_creep_gives_its_rate_under_noisy_tension():
+    tension = 400 + 3 * np.random.default_rng(0).standard_normal(TIME_OF_CREEP.size)
+    # The first blocks hold one sample each: three standard deviations stay within 1 %.
+    tension = np.clip(tension, 397, 403)
+    assert creep_rate(TIME_OF_CREEP, STRAIN, tension, ramp_duration=2.0).value == pytest.approx(
+        0.03, rel=1e-2
+    )
+
+
+def test_tension_that_is_not_constant_is_refused():
+    with pytest.raises(DataError, match="tension is not constant: it strays .* needed 1 % or less"):
+        creep_rate(TIME_OF_CREEP, STRAIN, 400 - 10 * np.log10(TIME_OF_CREEP), ramp_duration=2.0)
+
+
+@pytest.mark.parametrize(("size", "lasts", "is_given"), [(0.05, 3.0, True), (0.05, 12.0, False)])
+def test_a_load_that_overshoots_shortly_before_the_readings_that_count_gives_a_rate(
+    size, lasts, is_given
+):
+    """Ramp of 6 s, readings count from 18 s on; a specimen whose creep is a logarithm of time."""
+    over = TIME_OF_CREEP <= lasts
+    # the response to the overshoot, which ends there
+    after = np.maximum(TIME_OF_CREEP - lasts, 1e-3)
+    strain = 0.03 * (
+        (1 + size) * np.log10(TIME_OF_CREEP) - size * np.log10(np.where(over, 1, after))
+    )
+    tension = np.where(over, 400 * (1 + size), 400.0)
+    if is_given:
+        found = creep_rate(TIME_OF_CREEP, strain, tension, ramp_duration=6.0)
+        assert found.value == pytest.approx(0.03, rel=5e-3)
+        return
+    with pytest.raises(DataError, match="tension is not constant"):
+        creep_rate(TIME_OF_CREEP, strain, tension, ramp_duration=6.0)
+
+
+def test_no_tension_is_refused():
+    with pytest.raises(DataError, match="creep under no tension; found 0 N"):
+        _tension_variation(TIME_OF_CREEP, np.zeros(TIME_OF_CREEP.size))
+
+
+def test_a_hold_too_short_is_refused():
+    with pytest.raises(DataError, match="too short for a rate per decade"):
+        creep_rate(TIME_OF_CREEP[:5], STRAIN[:5], np.full(5, 400.0), ramp_duration=2.0)

@@ -1,8 +1,29 @@
+"""None"""
+
+import csv
+from dataclasses import replace
+from pathlib import Path
+
 import numpy as np
 import pytest
+from assemblies import DRIVEN
 
-from reduction.lines.composite import CompositeRule, CurvePiece, _composite_curve
+from reduction.lines.assembly import SeriesPart, _assemble, _equal_tethers, _Tether
+from reduction.lines.composite import (
+    CompositeRule,
+    CurvePiece,
+    _composite_curve,
+    mean_piece,
+    piece_of_pull,
+    piece_of_steps,
+    pieces_of_branches,
+)
+from reduction.record.contributions import Component, Contributions, InstrumentErrors
 from reduction.record.errors import DataError, SettingsError
+from reduction.record.measurement import StepReadings
+from reduction.stages.moduli.stepwise_test import reduce_stepwise
+from reduction.stages.strain.strain_model import StrainModel
+from reduction.uncertainty.propagation import stepwise_contributions
 
 
 def law(strain):
@@ -271,3 +292,352 @@ def test_tests_of_one_kind_are_not_told_to_be_of_several():
     assert len(told) == 1
     assert "the tests are of different states; name those that you want" in told[0]
     assert "kinds" not in told[0]
+
+
+# errors that pieces share go through a composite by their sign, and weigh nothing between them
+
+CELL, OTHER = Component("tension_gain", "A"), Component("tension_gain", "B")
+
+
+ZERO = Component("tension_offset", "A")
+
+
+MODEL = StrainModel("T", "gauge-length", {"reference_position": 1.0, "gauge_length": 1.0})
+
+
+def piece_of_shared(slope, low, high, name="T-1", kind="cyclic", spread=0.5, **shares):
+    at = np.linspace(low, high, 81)
+    found = CurvePiece(name, kind, "mean", at, slope * at, np.full(81, spread))
+    return with_shares(found, **shares) if shares else found
+
+
+def with_shares(one, **shares):
+    cells = {"a": CELL, "b": OTHER}
+    rows = np.stack([share * one.tension for share in shares.values()])
+    return replace(one, component=tuple(cells[name] for name in shares), contribution=rows)
+
+
+PIECES = (
+    piece_of_shared(100, 0.5, 1.2), piece_of_shared(120, 0.9, 2.0, "T-2"), piece_of_shared(108, 1.5, 2.6, "T-3"),
+    piece_of_shared(90, 0.2, 0.9, "T-1", "first-loading"),
+)  # fmt: skip
+
+
+def test_a_gain_of_every_piece_moves_the_whole_curve_and_nothing_between_them():
+    plain = _composite_curve(PIECES)
+    gained = _composite_curve([with_shares(one, a=0.1) for one in PIECES])
+    assert gained.between_pieces == pytest.approx(plain.between_pieces, rel=1e-12)
+    assert gained.tension == pytest.approx(plain.tension, rel=1e-12)
+    assert gained.doubt == plain.doubt
+    assert gained.random_standard_uncertainty == pytest.approx(plain.standard_uncertainty)
+    assert gained.component == (CELL,)
+    assert gained.contribution == pytest.approx(0.1 * gained.tension[None])
+    both = np.hypot(plain.standard_uncertainty, 0.1 * plain.tension)
+    assert gained.standard_uncertainty == pytest.approx(both)
+
+
+def test_the_contribution_of_a_gain_is_what_scaled_logs_would_change():
+    step = 1e-3
+    gained = _composite_curve([with_shares(one, a=step) for one in PIECES])
+    scaled = _composite_curve([replace(one, tension=(1 + step) * one.tension) for one in PIECES])
+    assert scaled.tension - gained.tension == pytest.approx(gained.contribution[0], rel=1e-6)
+
+
+def test_a_zero_of_the_cell_goes_through_the_weights_as_shifted_logs_do():
+    """Weights move with tension a little: a shift of 0.01 N of 50 to 260."""
+    step = 0.01
+    pieces = [
+        replace(one, component=(ZERO,), contribution=np.full((1, 81), step)) for one in PIECES[:3]
+    ]
+    found = _composite_curve(pieces)
+    shifted = _composite_curve([replace(one, tension=one.tension + step) for one in PIECES[:3]])
+    nodes = (found.piece >= 0) & (found.strain > 0.5)
+    moved = (shifted.tension - found.tension)[nodes]
+    assert found.contribution[0, nodes] == pytest.approx(moved, rel=0.2)
+    assert found.contribution[0, nodes] == pytest.approx(np.full(nodes.sum(), step), rel=0.2)
+
+
+def test_two_cells_explain_part_of_what_two_pieces_differ_by():
+    """20 of 110: a deviation of 12.9 %; cells good to 5 % each explain 5 % of it in each piece."""
+    one, two = (
+        piece_of_shared(100, 0.5, 1.5, spread=0.0),
+        piece_of_shared(120, 0.5, 1.5, "T-2", spread=0.0),
+    )
+    alone = _composite_curve([one, two]).between_pieces
+    assert alone == pytest.approx(20 / 110 / np.sqrt(2), rel=1e-6)
+    cells = [with_shares(one, a=0.05), with_shares(two, b=0.05)]
+    found = _composite_curve(cells)
+    expected = np.sqrt(alone**2 - (0.05 * 100 * 120 / 110**2) ** 2)
+    assert found.between_pieces == pytest.approx(expected, rel=1e-6)
+    # each has one part of the mean, by its cell and by what is between them
+    middle = np.argmin(np.abs(found.strain - 1.0))
+    weight = 1 / (np.array([5.0, 6.0]) ** 2 + (expected * 110) ** 2)
+    weight /= weight.sum()
+    assert found.tension[middle] == pytest.approx(weight @ [100, 120], rel=1e-6)
+    assert found.contribution[:, middle] == pytest.approx(weight * [5.0, 6.0], rel=1e-6)
+
+
+def test_a_piece_whose_cell_is_bad_has_less_to_say_and_one_whose_error_all_share_has_not():
+    one, two = (
+        piece_of_shared(100, 0.5, 1.5, spread=1.0),
+        piece_of_shared(104, 0.5, 1.5, "T-2", spread=1.0),
+    )
+    fair = _composite_curve([one, two]).tension_at(1.0)
+    alike = _composite_curve([with_shares(one, a=0.1), with_shares(two, a=0.1)]).tension_at(1.0)
+    assert alike == pytest.approx(fair)
+    bad = _composite_curve([one, with_shares(two, b=0.2)]).tension_at(1.0)
+    assert 100 < bad < fair - 1.5
+
+
+def test_over_a_gap_what_both_ends_share_stays_whole():
+    found = _composite_curve(
+        [piece_of_shared(100, 0.5, 1.0, a=0.1), piece_of_shared(100, 1.4, 2.0, "T-2", a=0.1)]
+    )
+    middle = np.flatnonzero(found.is_gap[:-1] & found.is_gap[1:]) + 1
+    assert found.contribution[0, middle] == pytest.approx(0.1 * found.tension[middle])
+    assert found.contribution[0, 0] == 0
+
+
+def test_tethers_of_one_curve_share_all_of_it_and_of_two_curves_what_their_tests_do():
+    one = _Tether(_composite_curve([piece_of_shared(100, 0.5, 2.0, a=0.1, spread=4.0)]), MODEL)
+    two = _Tether(_composite_curve([piece_of_shared(100, 0.5, 2.0, a=0.1, spread=4.0)]), MODEL)
+    alike, apart = _assemble(_equal_tethers(one, 2)), _assemble([one, two])
+    for found, random in ((alike, 8.0), (apart, 4 * np.sqrt(2))):
+        both, own, shared = found.uncertainty_at(2.0)
+        assert own == pytest.approx(random, rel=1e-3)
+        assert shared == pytest.approx(0.1 * 200, rel=1e-6)
+        assert both == pytest.approx(np.hypot(own, shared))
+        assert found.component == (CELL,)
+        assert found.contribution[0] == pytest.approx(0.1 * found.tension, rel=1e-6, abs=1e-9)
+    assert alike.standard_uncertainty == pytest.approx(
+        np.hypot(alike.random_standard_uncertainty, alike.shared_standard_uncertainty)
+    )
+
+
+@pytest.mark.parametrize("is_stated", [False, True])
+def test_the_cell_of_the_marks_is_in_the_splices_too_and_stated_splices_know_no_cell(is_stated):
+    """Logs 1 % high: the law of the splices is fitted again to loads that are 1 % high, or stated."""
+    step = 0.01
+    known = dict(DRIVEN.coefficients)
+    if not is_stated:
+        known["splice_compliance"] /= (1 + step) ** known["splice_exponent"]
+    rubber = piece_of_shared(400, 0.1, 2.0, a=step)
+    found = _assemble([_Tether(_composite_curve([rubber]), DRIVEN, is_stated=is_stated)])
+    high = _composite_curve([replace(rubber, tension=(1 + step) * rubber.tension)])
+    other = _assemble([_Tether(high, replace(DRIVEN, coefficients=known))])
+    at = np.linspace(found.total_length[5], 0.98 * found.total_length[-1], 20)
+    moved = other.tension_at(at) / found.tension_at(at) - 1
+    rows = np.interp(at, found.total_length, found.contribution[0]) / found.tension_at(at)
+    assert rows == pytest.approx(moved, rel=0.02)
+    assert bool(rows[-1] > 0.999 * step) is not is_stated
+
+
+def test_a_soft_part_in_line_takes_its_share_of_a_wrong_cell():
+    """Half of the stretch is in the part, which is stated: half of the gain is left at one length."""
+    tether = _Tether(_composite_curve([piece_of_shared(100, 0.5, 2.0, a=0.1)]), MODEL)
+    found = _assemble([tether], [SeriesPart("spring", 1.0, 100.0)])
+    assert found.uncertainty_at(3.0)[2] == pytest.approx(0.1 * 50 / 2, rel=1e-3)
+
+
+TABLE_4 = Path(__file__).parents[1] / "golden" / "whoi_2005_10_table_4.csv"
+
+
+INCH, LBF = 0.0254, 4.4482216152605
+
+
+def pieces(ascending, descending, **asked):
+    load = np.array([ascending, descending], dtype=float)
+    strain = 0.1 * (1 + np.arange(load.shape[1]))
+    return pieces_of_branches(strain, load, np.ones_like(load), name="T", **asked)
+
+
+def table_4():
+    with open(TABLE_4, encoding="utf-8") as lines:
+        rows = list(csv.reader(line for line in lines if line[0] != "#"))[1:]
+    weight, length, elongation, eye = np.array([row[1:5] for row in rows], dtype=float).T
+    readings = StepReadings(
+        clock=tuple(row[0] for row in rows),
+        time=900.0 * np.arange(len(rows)),
+        tension=LBF * weight,
+        length=INCH * length,
+        eye_to_eye_length=INCH * eye,
+        printed_strain=elongation / 100,
+        length_standard_uncertainty=0.02 * INCH,
+    )
+    return reduce_stepwise(readings, area=np.pi / 4 * INCH**2)
+
+
+def test_static_branches_of_table_4_leave_the_row_out_that_contradicts_itself():
+    up = piece_of_steps(table_4(), name="1997")
+    down = piece_of_steps(table_4(), name="1997", branch="descending")
+    assert up.tension / LBF == pytest.approx([51, 74, 97, 119, 141, 163, 185, 208])
+    assert 100 * up.strain == pytest.approx([52, 86, 111, 135, 157, 175, 194, 210], abs=0.7)
+    assert down.tension / LBF == pytest.approx([51, 97, 119, 141, 163, 185])  # without 74 lb
+    # 0.02 in on 3.2 to 12.9 in of elongation, and the tension goes with it by the secant
+    share = 0.02 / (6.125 * up.strain)
+    assert up.random_standard_uncertainty / up.tension == pytest.approx(share, rel=0.05)
+
+
+def test_the_static_test_alone_gives_85_pounds_at_a_stretch_of_100_percent_within_3_percent():
+    curve = _composite_curve([piece_of_steps(table_4(), name="1997")])
+    assert curve.tension_at(1.0) / LBF == pytest.approx(85, rel=0.03)  # sec. 2.3.2 prints 85
+
+
+def test_a_gap_parts_a_branch_into_pieces_and_slack_is_left_out():
+    found = pieces([-1, 2, 3, np.nan, 5, 6, np.nan, 8], 8 * [1.0], branch="ascending")
+    assert [one.tension.tolist() for one in found] == [[2, 3], [5, 6]]
+    assert found[0].strain == pytest.approx([0.2, 0.3])
+
+
+def test_the_mean_of_both_branches_stands_where_both_do():
+    (found,) = pieces([10, 20, 30], [np.nan, 16, 28])
+    assert found.tension.tolist() == [18, 29]
+    assert found.random_standard_uncertainty == pytest.approx(np.sqrt(2) / 2)
+
+
+def test_a_first_rise_has_one_branch():
+    with pytest.raises(SettingsError, match="a first rise only rises"):
+        pieces([1, 2], [1, 2], kind="first-loading")
+
+
+@pytest.mark.parametrize(
+    ("strain", "tension", "spread", "message"),
+    [
+        ([0.1, 0.1], [1, 2], [0, 0], "not above the one before"),
+        ([0.1], [1], [0], "is not a curve"),
+        ([0.0, 0.1], [1, 2], [0, 0], "points that are slack"),
+        ([0.1, 0.2], [0, 2], [0, 0], "points that are slack"),
+        ([0.1, 0.2], [1, np.nan], [0, 0], "not finite"),
+        ([0.1, 0.2], [1, 2], [0, np.nan], "not finite"),
+        ([0.1, 0.2], [1, 2], [0, -1], "is negative"),
+        ([0.1, 0.2], [1, 2], [0], "do not pair up"),
+    ],
+)
+def test_what_is_no_curve_is_refused(strain, tension, spread, message):
+    arrays = [np.array(one, dtype=float) for one in (strain, tension, spread)]
+    with pytest.raises(DataError, match=message):
+        CurvePiece("T", "cyclic", "mean", *arrays)
+
+
+CELL_OF_PIECES, CLOCK = Component("tension_gain", "cell"), Component("lag", "clock")
+
+
+def test_the_mean_of_two_branches_keeps_a_gain_whole_and_loses_a_lag():
+    """A gain is in both branches with one sign, a lag with two; scatter is less by a root of 2."""
+    load = np.array([[10.0, 20.0, 30.0], [6.0, 18.0, 30.0]])
+    rows = np.stack([0.1 * load, np.array([[-1.0] * 3, [1.0] * 3])])
+    shared = Contributions((CELL_OF_PIECES, CLOCK), {"tension": rows})
+    at = [0.1, 0.2, 0.3]
+    given = {"name": "T", "shared": shared}
+    (mean,) = pieces_of_branches(at, load, np.ones((2, 3)), **given)
+    assert mean.contribution[0] == pytest.approx(0.1 * mean.tension)
+    assert mean.contribution[1] == pytest.approx(np.zeros(3))
+    assert mean.random_standard_uncertainty == pytest.approx(np.full(3, np.sqrt(2) / 2))
+    (down,) = pieces_of_branches(at, load, np.ones((2, 3)), branch="descending", **given)
+    assert down.component == (CELL_OF_PIECES, CLOCK)
+    assert down.contribution[1] == pytest.approx(np.ones(3))
+
+
+def test_a_point_of_which_nothing_shared_is_known_stays_in_the_piece():
+    rows = np.full((1, 2, 3), 0.5)
+    rows[0, 0, 1] = np.nan
+    shared = Contributions((CELL_OF_PIECES,), {"tension": rows})
+    load = [[10.0, 20.0, 30.0]] * 2
+    (up,) = pieces_of_branches(
+        [0.1, 0.2, 0.3], load, np.ones((2, 3)), name="T", branch="ascending", shared=shared
+    )
+    assert up.contribution.tolist() == [[0.5, 0.0, 0.5]]
+
+
+def test_contributions_have_to_fit_the_piece():
+    at = np.array([0.1, 0.2])
+    with pytest.raises(
+        DataError, match="contributions to T do not fit.*found shape .1, 3.; needed"
+    ):
+        CurvePiece("T", "cyclic", "mean", at, at, 0 * at, (CELL_OF_PIECES,), np.ones((1, 3)))
+
+
+def test_weights_that_are_heavier_than_they_say_move_the_static_piece_and_a_diameter_does_not():
+    steps = table_4()
+    area = np.pi / 4 * INCH**2
+    errors = InstrumentErrors("1997", tension_gain=0.01, diameter=0.02 * INCH)
+    up = piece_of_steps(steps, name="1997", shared=stepwise_contributions(steps, errors, area=area))
+    rows = {one.source: row for one, row in zip(up.component, up.contribution, strict=True)}
+    assert rows["tension_gain"] == pytest.approx(0.01 * up.tension)
+    assert "diameter" not in rows
+    # a longer gauge length is less strain at one tension: the chord has more tension at one strain
+    relative = steps.gauge_length_standard_uncertainty / steps.gauge_length
+    assert rows["gauge_length"] == pytest.approx(
+        up.tension * (1 + up.strain) / up.strain * relative
+    )
+
+
+def test_branches_have_to_fit_their_grid():
+    with pytest.raises(DataError, match="not that of two branches on the grid"):
+        pieces_of_branches([0.1, 0.2], [1.0, 2.0], [0.1, 0.1], name="T")
+    with pytest.raises(DataError, match="strain are not above the one before"):
+        pieces_of_branches([0.2, 0.1], [[1.0, 2.0]] * 2, [[0.1, 0.1]] * 2, name="T")
+
+
+def branch(way, low, high, slope, spread=3.0):
+    at = np.linspace(low, high, 5)
+    return CurvePiece("T", "static", way, at, slope * at, np.full(5, spread))
+
+
+def test_the_mean_of_two_branches_stands_where_both_were_read():
+    mean = mean_piece(branch("ascending", 0.5, 2.0, 110), branch("descending", 0.8, 2.2, 90, 4.0))
+    assert (mean.strain[0], mean.strain[-1]) == (0.8, 2.0)
+    assert mean.tension == pytest.approx(100 * mean.strain)
+    assert mean.random_standard_uncertainty == pytest.approx(
+        np.full(mean.strain.size, 2.5)
+    )  # 3, 4, 5
+    assert (mean.kind, mean.branch) == ("static", "mean")
+
+
+CELL_OF_STATIC, TAPE = Component("tension_gain", "cell"), Component("gauge_length", "new")
+
+
+def test_what_both_ways_share_is_whole_in_their_mean_and_what_one_has_is_half():
+    up, down = branch("ascending", 0.5, 2.0, 110), branch("descending", 0.8, 2.2, 90)
+    up = replace(
+        up,
+        component=(CELL_OF_STATIC, TAPE),
+        contribution=np.stack([0.1 * up.tension, 0 * up.tension + 4]),
+    )
+    down = replace(down, component=(CELL_OF_STATIC,), contribution=0.1 * down.tension[None])
+    mean = mean_piece(up, down)
+    rows = dict(zip(mean.component, mean.contribution, strict=True))
+    assert rows[CELL_OF_STATIC] == pytest.approx(0.1 * mean.tension)
+    assert rows[TAPE] == pytest.approx(np.full(mean.strain.size, 2.0))
+
+
+def test_a_cell_that_reads_high_makes_a_pull_stretch_too_little_and_its_tension_too_high():
+    """Strain at a logged tension is 1 % less of its slope: tension at a strain is 1 % more."""
+    load = np.array([100.0, 200.0, 300.0])
+    strain = 1e-4 * load
+    shared = Contributions((CELL_OF_STATIC,), {"strain": -0.01 * strain[None]})
+    found = piece_of_pull(strain, load, np.full(3, 1e-4), name="Q", shared=shared)
+    assert found.component == (CELL_OF_STATIC,)
+    assert found.contribution == pytest.approx(0.01 * load[None])
+
+
+def test_branches_that_do_not_overlap_have_no_mean():
+    with pytest.raises(DataError, match="the branches of T do not overlap; found 0.5 to 1 and 1.2"):
+        mean_piece(branch("ascending", 0.5, 1.0, 110), branch("descending", 1.2, 2.0, 90))
+
+
+def test_a_pull_ends_where_its_cubic_turns_back():
+    load = np.array([0.0, 100.0, 200.0, 300.0, 400.0])
+    found = piece_of_pull([0.0, 0.01, 0.02, 0.019, 0.03], load, np.full(5, 1e-4), name="Q")
+    assert found.tension == pytest.approx([100, 200])
+
+
+def test_a_pull_of_one_point_is_no_curve():
+    with pytest.raises(DataError, match="Q is not a curve; found 1 points"):
+        piece_of_pull([0.01, np.nan], [100.0, 200.0], [1e-4, 1e-4], name="Q")
+
+
+def test_a_fit_that_begins_below_zero_strain_begins_where_it_is_above():
+    load = np.array([50.0, 100.0, 200.0])
+    found = piece_of_pull([-0.001, 0.01, 0.02], load, np.full(3, 1e-4), name="Q")
+    assert found.strain == pytest.approx([0.01, 0.02])

@@ -1,12 +1,25 @@
 """Local regression from nine sums: exact on parabolas, equal to polyfit, honest about noise."""
 
+from __future__ import annotations
+
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
+from scipy.special import stdtrit
 
 from reduction.record.errors import DataError
-from reduction.stages.moduli.local_regression import accumulate_moments, fit_windows
+from reduction.stages.moduli.local_regression import (
+    CycleGroups,
+    RunningStatistics,
+    accumulate_moments,
+    curve_at,
+    fit_windows,
+    select_cycles,
+    sums_by_cell,
+)
 from reduction.stages.moduli.tangent_window import StrainGrid
 
 GRID = StrainGrid(low=1.0, width=0.02, n_bins=25, half_window=3)
@@ -186,3 +199,182 @@ def test_the_levels_of_curves_of_few_samples_are_found_beside_their_slope():
     # across a bin tension rises by 35 N; of that, a few hundredths of a newton are taken for level
     assert fits.slope[0, known] == pytest.approx(1000 + 800 * grid.centres[known], rel=2e-3)
     assert np.sqrt(fits.slope_variance[0, known]).max() < 2.0
+
+
+# groups of cycles: break-in apart, no short last group, and the cycles whose curves are kept
+
+
+def test_a_cycle_is_a_group_where_none_are_pooled():
+    groups = CycleGroups.of(5, 0, 1)
+    assert list(groups.first) == [0, 1, 2, 3, 4]
+    assert list(groups.of_cycle) == [-1, 0, 1, 2, 3, 4]
+    assert not groups.is_break_in.any()
+
+
+def test_last_group_takes_the_remainder():
+    groups = CycleGroups.of(11, 0, 3)
+    assert list(groups.first) == [0, 3, 6]
+    assert np.bincount(groups.of_cycle[1:]).tolist() == [3, 3, 5]
+
+
+def test_break_in_cycles_share_no_group_with_the_others():
+    groups = CycleGroups.of(10, 4, 3)
+    assert list(groups.first) == [0, 3, 4, 7]
+    assert list(groups.is_break_in) == [True, True, False, False]
+
+
+def test_fewer_cycles_than_a_group_wants_are_one_group():
+    groups = CycleGroups.of(3, 1, 8)
+    assert list(groups.first) == [0, 1]
+
+
+def test_blocks_follow_each_other_and_hold_whole_groups(triangle):
+    _, cycles = triangle(n_cycles=2000, per_cycle=100)
+    groups = CycleGroups.of(2000, 0, 3)
+    blocks = list(groups.blocks(cycles, 50))
+    assert len(blocks) > 1
+    assert blocks[0][0] == 0
+    assert blocks[-1][1] == groups.first.size
+    assert all(one[1] == other[0] for one, other in pairwise(blocks))
+    for start, stop, samples in blocks:
+        of_group = groups.of_cycle[cycles.cycle_number]
+        inside = np.flatnonzero((of_group >= start) & (of_group < stop))
+        assert samples.start <= inside[0]
+        assert samples.stop > inside[-1]
+
+
+def test_long_test_keeps_first_last_and_spaced_cycles():
+    numbers = select_cycles(3000, longest=24)
+    assert len(numbers) <= 24
+    assert list(numbers[:3]) == [1, 2, 3]
+    assert list(numbers[-3:]) == [2998, 2999, 3000]
+    assert np.max(numbers[4:-3] / numbers[3:-4]) < 1.7
+
+
+@pytest.mark.parametrize("n_cycles", [1, 24])
+def test_short_test_keeps_every_cycle(n_cycles):
+    assert list(select_cycles(n_cycles, longest=24)) == list(range(1, n_cycles + 1))
+
+
+def test_selection_from_no_cycle_is_refused():
+    with pytest.raises(DataError, match="no cycle to select; found 0"):
+        select_cycles(0, longest=24)
+
+
+# running statistics: blocks merge to what numpy says of the whole
+
+
+def test_blocks_merge_to_the_statistics_of_the_whole():
+    rng = np.random.default_rng(6)
+    values = 1e4 + rng.normal(0, 1, (40, 2, 5))
+    values[rng.random(values.shape) < 0.2] = np.nan
+    parts = [
+        RunningStatistics.of(block, np.ones_like(block), weight=np.ones(len(block)))
+        for block in (values[:7], values[7:8], values[8:])
+    ]
+    merged = parts[0] + parts[1] + parts[2]
+    assert merged.value() == pytest.approx(np.nanmean(values, axis=0), rel=1e-14)
+    assert merged.scatter() == pytest.approx(np.nanstd(values, axis=0, ddof=1), rel=1e-9)
+    assert merged.lowest() == pytest.approx(np.nanmin(values, axis=0))
+    assert merged.highest() == pytest.approx(np.nanmax(values, axis=0))
+    assert (merged.count == np.isfinite(values).sum(axis=0)).all()
+
+
+def test_one_curve_keeps_the_uncertainty_it_came_with():
+    one = RunningStatistics.of(np.array([[3.0]]), np.array([[4.0]]), weight=np.ones(1))
+    assert one.standard_uncertainty() == 2.0
+    assert np.isnan(one.scatter())
+
+
+def test_nothing_seen_is_nan():
+    none = RunningStatistics.of(np.full((3, 2), np.nan), np.ones((3, 2)), weight=np.ones(3))
+    for value in (none.value(), none.lowest(), none.highest(), none.standard_uncertainty()):
+        assert np.isnan(value).all()
+
+
+def test_curve_of_pooled_cycles_counts_them_all():
+    pooled = RunningStatistics.of(np.ones((2, 1)), np.ones((2, 1)), weight=np.array([5.0, 7.0]))
+    assert pooled.count == 12
+    assert pooled.n_curves == 2
+
+
+def test_bends_of_blocks_are_those_of_the_whole():
+    rng = np.random.default_rng(7)
+    values = np.cumsum(rng.normal(0, 1, (12, 2, 3)), axis=0) + 0.01 * rng.normal(0, 1, (12, 2, 3))
+    values[5, 0, 0] = np.nan
+    whole = RunningStatistics.of(values, 0 * values, weight=np.ones(12))
+    parts = [
+        RunningStatistics.of(block, 0 * block, weight=np.ones(len(block)))
+        for block in (values[:1], values[1:4], values[4:5], values[5:7], values[7:])
+    ]
+    merged = parts[0] + parts[1] + (parts[2] + parts[3]) + parts[4]
+    for name in ("bends", "n_bends", "head", "tail"):
+        assert getattr(merged, name) == pytest.approx(getattr(whole, name), nan_ok=True)
+    assert merged.standard_uncertainty() == pytest.approx(whole.standard_uncertainty())
+
+
+@pytest.mark.parametrize("cycles", [10, 50])
+@pytest.mark.parametrize(
+    "course",
+    [
+        lambda n: -0.12 * (1 - np.exp(-n / 3)),  # softens within some cycles
+        lambda n: (1 + n) ** -0.05,  # by a power of their number
+        lambda n: 0.1 * (1 - np.exp(-n / n[-1])),  # warms up and stiffens
+        lambda n: 0 * n,
+    ],
+)
+def test_a_mean_over_cycles_that_soften_is_as_well_known_as_they_are(course, cycles):
+    rng = np.random.default_rng(3)
+    level = 500 * (1 + course(np.arange(cycles)))
+    values = level[:, None] + 0.5 * rng.normal(size=(cycles, 2000))
+    found = RunningStatistics.of(values, np.full_like(values, 0.25), weight=np.ones(cycles))
+    off = (found.value() - level.mean()) / found.standard_uncertainty()
+    # the scatter about the mean is up to 48 times the noise; the first steps of a decay stay in
+    assert 0.25 < np.sqrt(np.mean(off**2)) < 1.25
+    assert np.mean(np.abs(off) < stdtrit(cycles - 1, 0.975)) > 0.94
+
+
+@pytest.mark.parametrize("place", [0, 4, 9])
+def test_one_cycle_that_is_unlike_the_others_is_no_trend(place):
+    values = np.full(10, 100.0)
+    values[place] = 90.0
+    found = RunningStatistics.of(values, np.zeros(10), weight=np.ones(10))
+    # the mean is off that of the others by 1
+    assert 1.96 * found.standard_uncertainty() > 1.0
+
+
+# sums by cell, against numpy's own count of bins
+
+
+def test_sums_are_those_of_bincount_to_the_last_bit() -> None:
+    rng = np.random.default_rng(5)
+    cell, values = rng.integers(0, 300, 20_000), rng.normal(0, 1e3, 20_000)
+    expected = np.bincount(cell, weights=values, minlength=301)
+    assert np.array_equal(sums_by_cell(cell, 301) @ values, expected)
+
+
+def test_no_samples_leave_every_cell_empty() -> None:
+    empty = np.empty(0, dtype=np.int64)
+    assert np.array_equal(sums_by_cell(empty, 4) @ np.empty(0), np.zeros(4))
+
+
+def test_more_cells_than_32_bits_count_are_refused() -> None:
+    with pytest.raises(ValueError, match="too many for one block"):
+        sums_by_cell(np.zeros(1, dtype=np.int64), 1 << 31)
+
+
+# curves between their bins
+
+
+def test_curve_is_not_carried_over_a_gap_or_its_ends():
+    x = np.arange(8.0)
+    curve = np.where((x == 3) | (x == 4), np.nan, 10 * x)
+    at = curve_at([-0.5, 0.0, 1.5, 2.5, 3.5, 5.0, 6.5, 7.1], x, curve, spacing=1.0)
+    assert at == pytest.approx([np.nan, 0, 15, np.nan, np.nan, 50, 65, np.nan], nan_ok=True)
+    assert np.isnan(curve_at([1.0], x, np.full(8, np.nan), spacing=1.0)).all()
+
+
+def test_grids_that_differ_by_rounding_are_the_same():
+    x = 0.1 * np.arange(1, 9)
+    at = curve_at(x * (1 + 1e-15), x, np.arange(8.0), spacing=0.1)
+    assert np.isfinite(at).all()

@@ -5,10 +5,22 @@ import pytest
 
 from reduction.record.errors import DataError
 from reduction.record.settings import PhaseSettings
-from reduction.stages.standstills import find_standstills, median_step
+from reduction.stages.standstills import (
+    _block_extremes,
+    _still_blocks,
+    estimate_noise,
+    find_standstills,
+    find_tension_stands,
+    median_step,
+    noise_range,
+)
 
 TEST = [(0, 3), (20, 3), (40, 4), (100, 4), (110, 5), (290, 5), (300, 4), (310, 4)]
+
+
 TEST += [(310 + 5 * i, 4 + i % 2) for i in range(1, 21)] + [(430, 3), (500, 3)]
+
+
 START, END = [0, 40, 110, 300, 430], [20, 100, 290, 310, 500]
 
 
@@ -221,3 +233,254 @@ def test_a_hold_of_an_encoder_without_noise_does_not_end_where_the_servo_moves_b
     assert stand.first.size == 1
     assert abs(stand.start_time[0] - 300) < 0.5
     assert stand.end_time[0] == time[-1]
+
+
+# noise and quantum are told from movement
+
+TIME = np.arange(20_000)
+
+
+@pytest.fixture
+def noise():
+    return np.random.default_rng(7).normal(0, 0.01, TIME.size)
+
+
+@pytest.mark.parametrize(
+    "movement",
+    [
+        0 * TIME,
+        0.3 * TIME,
+        np.abs((TIME / 100) % 2 - 1),
+        np.sin(2 * np.pi * TIME / 19),
+        np.where(TIME < 9_000, 0.0, np.sin(2 * np.pi * TIME / 400)),
+    ],
+    ids=["standing", "ramp", "triangle of 200 samples", "sine of 19 samples", "hold, then sine"],
+)
+def test_noise_is_found_under_any_movement(noise, movement):
+    found, quantum = estimate_noise(movement + noise)
+    assert found == pytest.approx(0.01, rel=0.08)
+    assert quantum == 0
+
+
+def test_triangle_of_20_samples_without_noise_has_neither_noise_nor_quantum():
+    assert estimate_noise(np.abs((np.arange(4000) / 10) % 2 - 1)) == (
+        pytest.approx(0, abs=1e-12),
+        0,
+    )
+
+
+def test_quantum_of_a_12_bit_channel_is_found():
+    step = 50 / 4096
+    level = 12.26 + np.random.default_rng(1).normal(0, 0.004, 5000)
+    noise, quantum = estimate_noise(np.round(level / step) * step)
+    assert quantum == pytest.approx(step, rel=1e-9)
+    # below a quantum of noise the differences of a held level may be mostly zero
+    assert noise < step
+
+
+def test_scale_and_level_carry_through(noise):
+    one, _ = estimate_noise(noise)
+    assert estimate_noise(1000 * noise + 5e4)[0] == pytest.approx(1000 * one, rel=1e-9)
+
+
+def test_missing_samples_are_left_out(noise):
+    noise[::7] = np.nan
+    assert estimate_noise(noise)[0] == pytest.approx(0.01, rel=0.1)
+
+
+def test_eight_samples_are_needed():
+    with pytest.raises(DataError, match="too few samples to tell noise .* found 3 finite samples"):
+        estimate_noise([1.0, 2.0, np.nan, 3.0])
+    with pytest.raises(DataError, match="found 0 finite samples"):
+        estimate_noise(np.full(100, np.nan))
+
+
+def test_noise_range_covers_a_long_hold():
+    level = np.random.default_rng(2).normal(0, 1.0, 1_000_000)
+    assert noise_range(level) > np.ptp(level)
+
+
+def test_noise_range_covers_a_quantised_hold():
+    level = np.round(np.random.default_rng(1).normal(0, 0.3, 100_000))
+    assert noise_range(level) >= np.ptp(level)
+
+
+@pytest.mark.parametrize("level", [0.0, 1e-3, 2e5])
+def test_noise_range_of_a_constant_is_not_zero(level):
+    assert 0 < noise_range(np.full(100, level)) <= max(1e-9 * level, 1e-12)
+
+
+def test_rare_flicker_of_a_hold_is_found_in_a_record_that_mostly_moves():
+    # ramps of ten codes a sample, then a level that reads one code more in 1 of 40 samples
+    step = 40 / 4096
+    ramps = 10 * np.abs((np.arange(4000) % 100) - 50)
+    level = 250 + (np.arange(400) % 40 == 7)
+    readings = np.round(step * np.concatenate([ramps, level]), 5)  # five decimals, as printed
+    assert noise_range(readings) == pytest.approx(3 * step, rel=2e-3)
+
+
+@pytest.mark.parametrize(("per_cycle", "dwell"), [(11, 0.25), (12, 0.2), (12.3, 0.2), (13, 0.25)])
+def test_ramps_and_rests_of_a_dozen_readings_a_cycle_are_no_noise(per_cycle, dwell):
+    # most differences have a corner: their median is a tenth of the stroke
+    turn = (np.arange(200) + 0.3) / per_cycle
+    wave = np.interp(turn % 1, [0, 0.5 - dwell, 0.5, 1 - dwell, 1], [0, 1, 1, 0, 0])
+    noise = np.random.default_rng(1).normal(0, 1e-3, turn.size)
+    assert 8e-3 < noise_range(2 * wave + noise) < 0.06
+    # what is all noise keeps its twelve deviations
+    assert noise_range(noise) == pytest.approx(12e-3, rel=0.2)
+
+
+# blocks of samples and the runs of them that stand still
+
+
+def test_extremes_are_those_of_whole_and_broken_blocks():
+    position = np.random.default_rng(0).normal(size=1003)
+    least, greatest = _block_extremes(position, 10)
+    rows = [position[i : i + 10] for i in range(0, 1003, 10)]
+    assert least.tolist() == [row.min() for row in rows]
+    assert greatest.tolist() == [row.max() for row in rows]
+
+
+def test_missing_samples_are_left_out_of_a_block():
+    position = np.array([np.nan, 2.0, 1.0, 3.0, np.nan, np.nan])
+    least, greatest = _block_extremes(position, 2)
+    assert (least.tolist(), greatest.tolist()) == ([2, 1, np.inf], [2, 3, -np.inf])
+
+
+def test_a_length_of_zero_is_refused():
+    with pytest.raises(ZeroDivisionError):
+        _block_extremes(np.ones(3), 0)
+
+
+def test_a_slow_ramp_is_no_standstill_and_a_hold_in_it_is_one():
+    level = np.concatenate([np.linspace(0, 4, 100), np.full(40, 4.0), np.linspace(4, 0, 100)])
+    # four blocks of the ramp keep within the tolerance, 28 do not
+    first, last = _still_blocks(level, level + 0.1, window=4, tolerance=0.3)
+    assert first.size == 1
+    assert (first[0], last[0]) == (pytest.approx(100, abs=5), pytest.approx(139, abs=5))
+
+
+def test_the_turn_of_a_slow_cycle_is_no_standstill():
+    level = np.abs(np.arange(800) % 200 - 100.0) / 25
+    first, _ = _still_blocks(level, level + 0.1, window=4, tolerance=0.4)
+    assert first.size == 0
+
+
+def test_nothing_moves_and_all_is_one_standstill():
+    first, last = _still_blocks(np.zeros(9), np.full(9, 0.2), window=3, tolerance=0.3)
+    assert (first.tolist(), last.tolist()) == ([0], [8])
+
+
+def test_fewer_blocks_than_a_window_hold_no_standstill():
+    first, _ = _still_blocks(np.zeros(2), np.zeros(2), window=3, tolerance=0.3)
+    assert first.size == 0
+
+
+def test_a_long_standstill_soon_after_a_short_one_leaves_both():
+    """Looked at as long before it as it lasted, the long one goes back beyond the short one."""
+    time = np.arange(0, 600, 0.1)
+    position = np.interp(time, [0, 50, 60, 90, 300, 600], [0, 5, 5, 8, 8, 30])
+    least, greatest = _block_extremes(position, 10)
+    first, last = _still_blocks(least, greatest, window=3, tolerance=0.01)
+    np.testing.assert_array_equal(first, [50, 90])
+    np.testing.assert_array_equal(last, [59, 299])
+
+
+# holds at constant tension: the crosshead creeps in them and is no guide to where they are
+
+LOAD = [(0, 0), (20, 0), (40, 300), (640, 300), (650, 500), (950, 500), (960, 0), (1000, 0)]
+
+
+START_OF_HELD, END_OF_HELD = [0, 40, 650, 960], [20, 640, 950, 1000]
+
+
+def creep(points=LOAD, *, rate=5.0, noise=0.3, wander=0.0):
+    """Tension as told, position that creeps 4 cm a decade under it."""
+    knots = np.array(points, dtype=float)
+    time = np.arange(0, knots[-1, 0] + 0.5 / rate, 1 / rate)
+    load = np.interp(time, *knots.T)
+    creeping = np.where(load > 0, 0.04 * np.log10(1 + np.clip(time - 40, 0, None)), 0)
+    random = np.random.default_rng(1)
+    position = 3 + load / 300 + creeping + wander * (load == 0) * time
+    position += random.normal(0, 0.0005, time.size)
+    return time, position, load + random.normal(0, noise, time.size)
+
+
+def find_of_held(time, position, *tension, **settings):
+    return find_tension_stands(time, position, tension, settings=PhaseSettings(**settings))
+
+
+def test_holds_of_a_creeping_specimen_are_where_its_tension_stands():
+    time, position, tension = creep()
+    found = find_of_held(time, position, tension)
+    # the crosshead needs 0.2 s, the load 0.3 s to leave the noise
+    assert found.start_time == pytest.approx(START_OF_HELD, abs=0.5)
+    assert found.end_time == pytest.approx(END_OF_HELD, abs=0.5)
+    assert found.is_rest.tolist() == [True, False, False, True]
+    assert found.mean_tension[0] == pytest.approx([0, 300, 500, 0], abs=0.2)
+    assert found.tension_tolerance == pytest.approx(12 * 0.3, rel=0.1)
+    by_position = find_standstills(time, position, [tension], settings=PhaseSettings())
+    assert by_position.tension_tolerance is None
+    assert not np.any(np.abs(by_position.start_time - 40) < 1)
+
+
+def test_the_mean_of_the_specimens_is_what_stands_still():
+    time, position, tension = creep(noise=0.1)
+    # one sheds to the other what it loses, as two on one crosshead under load control do
+    shift = 30 * np.clip((time - 40) / 600, 0, 1) * (tension > 10)
+    found = find_of_held(time, position, tension + shift, tension - shift)
+    assert found.end_time[1] == pytest.approx(640, abs=0.5)
+    assert found.mean_tension[:, 1] == pytest.approx([315, 285], abs=0.5)
+
+
+def test_a_crosshead_that_wanders_under_a_slack_specimen_is_not_at_rest():
+    found = find_of_held(*creep(wander=0.01))
+    assert not found.is_rest.any()
+    assert found.start_time == pytest.approx(START_OF_HELD[1:3], abs=0.5)
+
+
+def test_a_stated_tolerance_holds_what_a_hunting_controller_breaks():
+    time, position, tension = creep(noise=0.05)
+    hunting = tension + 4 * np.sin(2 * np.pi * time / 9) * (tension > 10)
+    assert find_of_held(time, position, hunting).is_rest.all()
+    found = find_of_held(time, position, hunting, tension_tolerance=12.0)
+    assert found.tension_tolerance == 12.0
+    assert found.start_time[1:3] == pytest.approx(START_OF_HELD[1:3], abs=0.5)
+
+
+def test_missing_tension_does_not_end_a_hold():
+    time, position, tension = creep()
+    tension[(time > 200) & (time < 230)] = np.nan
+    assert find_of_held(time, position, tension).end_time == pytest.approx(END_OF_HELD, abs=0.5)
+
+
+def test_a_rest_that_meets_a_hold_ends_before_it():
+    time = np.arange(0, 60, 0.1)
+    # stands for a minute while the load goes from just below the slack tension to just above
+    load = np.where(time < 30, 4.0, 6.0)
+    found = find_of_held(time, np.ones(time.size), load, slack_tension=5.0)
+    assert found.is_rest.tolist() == [True, False]
+    assert found.last[0] == found.first[1] - 1
+
+
+def test_holds_of_a_valve_that_dithers_faster_than_the_log_are_all_found():
+    """Six steps of 120 N of 480 N, held for 600 s; a dither of 2.4 N is read near every half turn.
+
+    Its differences are those of noise of 32 N from end to end in twelve deviations, a quarter of a
+    step, though it spans 4.8 N.
+    """
+    levels = [120, 240, 360, 240, 360, 480, 0]
+    knots, now = [(0.0, 0.0), (10.0, 0.0)], 10.0
+    for level in levels:
+        knots += [(now + 20, level), (now + 620, level)]
+        now += 620
+    time = np.arange(0, now, 0.5)
+    tension = np.interp(time, *np.array(knots).T)
+    position = 3 + tension / 300 + 0.002 * np.log1p(time)
+    tension += (tension > 0) * 2.4 * np.sin(2.2 * time / 0.5)
+    tension += np.random.default_rng(6).normal(0, 0.25, time.size)
+    found = find_of_held(time, position, tension)
+    held = ~found.is_rest
+    assert found.mean_tension[0, held] == pytest.approx(levels[:-1], abs=1)
+    assert found.start_time[held] == pytest.approx(30 + 620 * np.arange(6), abs=3)
+    assert found.tension_tolerance < 20

@@ -6,16 +6,27 @@ import numpy as np
 import pytest
 
 from reduction.prediction.cord_curve import CordCurve
+from reduction.prediction.hose_geometry import hose_stretch_ratio
 from reduction.prediction.hose_product import HOSE_PARAMETERS, HoseDesign
-from reduction.prediction.hose_sensitivity import hose_sensitivity
+from reduction.prediction.hose_sensitivity import (
+    _stretch_ratio_per_angle,
+    _stretch_ratio_per_cord_stretch,
+    hose_sensitivity,
+)
 from reduction.prediction.hose_tension import find_events, predict_hose
-from reduction.record.errors import DataError
+from reduction.record.errors import DataError, SettingsError
 
 LAWS = ("neo-hookean", "linear", "linear-current", "hencky")
+
+
 EVENTS = ("deepest_slack", "pick_up", "working", "cord_break")
+
+
 CORD = CordCurve(
     np.array([0.0, 0.02, 0.06, 0.10, 0.15, 0.22]), np.array([0.0, 7.0, 22.0, 45.0, 80.0, 133.0])
 )
+
+
 STRAIN = np.linspace(0.013, 2.2, 61)
 
 
@@ -159,3 +170,19 @@ def test_the_stiffness_at_an_event_is_the_slope_of_the_tension_below_it(event):
     slope = (5 * one - 8 * two + 3 * three) / (2 * step)  # second order, from the side of slack
     found = getattr(hose_sensitivity(design, STRAIN), event).stiffness
     np.testing.assert_allclose(found, slope, rtol=1e-4)
+
+
+def test_sensitivities_are_the_differences_of_the_inverse():
+    angle, cord, step = np.radians(np.array([40.0, 64.0, 68.0])), 1.095, 1e-6
+    for found, plus, minus in (
+        (_stretch_ratio_per_angle(cord, angle), (cord, angle + step), (cord, angle - step)),
+        (_stretch_ratio_per_cord_stretch(cord, angle), (cord + step, angle), (cord - step, angle)),
+    ):
+        difference = (hose_stretch_ratio(*plus) - hose_stretch_ratio(*minus)) / (2 * step)
+        np.testing.assert_allclose(found, difference, rtol=1e-8)
+
+
+@pytest.mark.parametrize("function", [_stretch_ratio_per_angle, _stretch_ratio_per_cord_stretch])
+def test_an_angle_that_is_none_of_a_helix_is_refused(function):
+    with pytest.raises(SettingsError, match="wrap_angle is not an angle of a helix; found 90 deg"):
+        function(1.1, np.radians(90.0))

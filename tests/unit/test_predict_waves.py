@@ -7,19 +7,39 @@ import pytest
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipj, ellipk
 
+from reduction.prediction import wave_theory as dispersion
+from reduction.prediction.stream_function import steady_wave
 from reduction.prediction.wave_theory import (
+    GREATEST_URSELL_NUMBER,
+    _group_velocity,
+    _printed_theory,
+    _refuse_breaking,
+    _theory_by_depth,
     _wave_number,
     airy_wave,
+    breaking_height,
     cnoidal_wave,
+    cosine_series,
+    describe_wave,
     high_stokes_wave,
     particle_motion,
+    phase_derivative,
+    regular_wave,
+    root_phases,
+    series_product,
+    sine_series,
     stokes_wave,
+    stream_wave,
+    sum_at,
     wave_period_of,
 )
+from reduction.published.zhang_2015 import printed_airy_wave, printed_stokes_wave
 from reduction.record.errors import DataError, FitError, SettingsError
 from reduction.record.measurement import STANDARD_GRAVITY
 
 SEA = {"wave_height": 1.25, "wave_period": 3.57, "water_depth": 3.0}
+
+
 MAKERS = [airy_wave, stokes_wave]
 
 
@@ -310,3 +330,430 @@ def test_waves_that_a_theory_of_height_does_not_have(monkeypatch):
     monkeypatch.setitem(sys.modules, "raschii", None)
     with pytest.raises(SettingsError, match=r"mooring-reduction\[waves\]"):
         high_stokes_wave(order=5, wave_period=4.0, **sea)
+
+
+# description of a wave: theory, limits, doubts
+
+SHALLOW = {"wave_height": 1.25, "wave_period": 3.57, "water_depth": 3.0}
+
+
+def test_the_second_printed_example_is_at_the_edge():
+    wave = describe_wave(**SHALLOW, wave_length=20.0)
+    assert wave.ursell_number == pytest.approx(18.5, abs=0.05)
+    assert wave.height_to_depth == pytest.approx(0.417, abs=0.0005)
+    assert wave.velocity_ratio == pytest.approx(0.26, abs=0.005)
+    assert wave.elevation_ratio == pytest.approx(0.30, abs=0.005)
+    assert wave.breaking_ratio == pytest.approx(0.0625 / 0.105, abs=0.005)
+    assert wave.is_beyond_stokes and not wave.is_breaking
+    assert any("Stokes' second order is at its end" in one for one in wave.reasons)
+    assert any("the given length is +22.7 % off" in one for one in wave.reasons)
+
+
+@pytest.mark.parametrize(("depth", "period"), [(3.0, 3.57), (6.0, 3.57), (40.0, 5.0), (1.0, 2.0)])
+def test_ratios_of_the_harmonics_are_those_of_the_wave_itself(depth, period):
+    sea = {"wave_height": 0.1, "wave_period": period, "water_depth": depth}
+    wave, found = stokes_wave(**sea, elevation=0.0), describe_wave(**sea)
+    assert found.elevation_ratio == pytest.approx(wave.elevation[1] / wave.elevation[0], rel=1e-11)
+    ratio = wave.horizontal_velocity[1] / wave.horizontal_velocity[0]
+    assert found.velocity_ratio == pytest.approx(ratio, rel=1e-11)
+
+
+def test_over_very_deep_water_the_ratios_go_on_smoothly():
+    below, above = (
+        describe_wave(
+            wave_height=0.1, wave_period=2.0, water_depth=depth, wave_length=2 * np.pi
+        ) for depth in (19.999, 20.001)
+    )  # fmt: skip
+    assert above.elevation_ratio == pytest.approx(below.elevation_ratio, rel=1e-12)
+    # both are 1e-18 or so, and fall as exp(-2 kd)
+    fall = above.velocity_ratio / below.velocity_ratio
+    assert fall == pytest.approx(np.exp(-0.004), rel=1e-9)
+
+
+def test_the_limit_of_ursell_is_the_secondary_crest_over_shallow_water():
+    # a2/a1 = 1/4 there
+    length, depth = 400.0, 1.0
+    height = GREATEST_URSELL_NUMBER * depth**3 / length**2
+    wave = describe_wave(
+        wave_height=height, wave_period=100.0, water_depth=depth, wave_length=length
+    )
+    assert wave.elevation_ratio == pytest.approx(0.25, rel=1e-3)
+
+
+def test_an_airy_wave_whose_second_harmonic_counts_says_so():
+    steep = describe_wave(wave_height=1.25, wave_period=3.57, water_depth=6.0)
+    assert steep.theory == "airy"
+    # kH/8 (2 + 3 / sinh^2 kd) coth kd by hand: 12 %
+    assert any("the second harmonic of the surface is 12 %" in one for one in steep.reasons)
+    flat = describe_wave(wave_height=0.2, wave_period=3.57, water_depth=6.0)
+    assert flat.is_second_order_small and flat.reasons == ()
+    assert flat.length_mismatch == 0
+
+
+@pytest.mark.parametrize("length", [0.0, -20.0])
+def test_a_length_that_no_wave_has_is_refused(length):
+    with pytest.raises(DataError, match="values of wave_length are not positive"):
+        describe_wave(wave_height=1.25, wave_period=3.57, water_depth=6.0, wave_length=length)
+
+
+def test_a_breaking_wave_is_flagged():
+    wave = describe_wave(wave_height=3.0, wave_period=3.57, water_depth=6.0)
+    assert wave.is_breaking and wave.breaking_ratio > 1
+    assert any(one.startswith("the wave breaks: 1.") for one in wave.reasons)
+
+
+def test_a_wave_beyond_the_table_is_computed_by_name_alone():
+    sea = {"wave_height": 0.2, "wave_period": 12.0, "water_depth": 1.5}
+    wave = describe_wave(**sea)
+    assert wave.theory == "beyond the table" and not wave.is_computed
+    assert any("Table 1 names no theory" in one for one in wave.reasons)
+    with pytest.raises(DataError, match="the theory of this wave is not computed: beyond"):
+        regular_wave(wave, **sea, elevation=0.0)
+    assert regular_wave(wave, **sea, elevation=0.0, theory="airy").elevation.size == 1
+    assert regular_wave(wave, **sea, elevation=0.0, theory="cnoidal").elevation.size > 5
+
+
+def test_the_theory_of_the_description_is_the_one_computed():
+    deep = {"wave_height": 1.0, "wave_period": 3.0, "water_depth": 6.0}
+    assert regular_wave(describe_wave(**deep), **deep, elevation=-0.1).elevation.size == 1
+    wave = regular_wave(
+        describe_wave(**SHALLOW, wave_length=20.0), **SHALLOW, elevation=-0.1
+    )  # fmt: skip
+    assert wave.elevation.size == 2
+    assert wave.wave_number == pytest.approx(2 * np.pi / 20)
+
+
+@pytest.mark.parametrize("name", ["wave_height", "wave_period", "water_depth"])
+def test_sizes_are_positive_in_wavetheory(name):
+    with pytest.raises(DataError, match=name):
+        describe_wave(**{**SHALLOW, name: 0.0})
+
+
+# breaking height and its refusal
+
+
+def test_steepness_limits_deep_water_and_depth_shallow_water():
+    assert breaking_height(2 * np.pi / 10, 100.0) == pytest.approx(1.42)
+    assert breaking_height(2 * np.pi / 400, 2.0) == pytest.approx(1.56)
+
+
+def test_the_lower_limit_holds():
+    depth = np.geomspace(0.1, 100, 50)
+    number = 2 * np.pi / 20
+    miche = 0.142 * 20 * np.tanh(number * depth)
+    assert breaking_height(number, depth) == pytest.approx(np.minimum(miche, 0.78 * depth))
+
+
+def test_a_wave_at_the_limit_passes_and_one_above_is_refused():
+    greatest = float(breaking_height(0.3, 3.0))
+    _refuse_breaking(wave_height=greatest, wave_number=0.3, water_depth=3.0)
+    with pytest.raises(DataError, match="a wave 20.94 m long breaks before it is this high"):
+        _refuse_breaking(wave_height=1.0001 * greatest, wave_number=0.3, water_depth=3.0)
+
+
+def test_numbers_are_positive():
+    with pytest.raises(DataError, match="water_depth"):
+        breaking_height(0.3, 0.0)
+
+
+# wave number from period and depth, with and without a current
+
+
+def residual(number, period, depth, current=0.0):
+    intrinsic = 2 * np.pi / period - number * current
+    return intrinsic**2 / (STANDARD_GRAVITY * number * np.tanh(number * depth)) - 1
+
+
+def test_the_root_is_exact_from_a_ripple_to_a_tide():
+    period = np.geomspace(0.1, 1e5, 400)[:, None]
+    depth = np.geomspace(0.01, 1e4, 300)
+    number = _wave_number(period, depth)
+    assert number.shape == (400, 300)
+    assert np.max(np.abs(residual(number, period, depth))) < 1e-14
+
+
+def test_limits_of_deep_and_shallow_water():
+    deep, shallow = _wave_number(5.0, 1e4), _wave_number(1e4, 0.5)
+    assert deep == pytest.approx((2 * np.pi / 5) ** 2 / STANDARD_GRAVITY, rel=1e-14)
+    assert shallow == pytest.approx(2 * np.pi / 1e4 / np.sqrt(STANDARD_GRAVITY * 0.5), rel=1e-7)
+
+
+@pytest.mark.parametrize("current", [-1.2, -0.5, 0.3, 2.0, 15.0])
+def test_a_current_shifts_the_frequency(current):
+    period = np.array([8.0, 12.0, 30.0])
+    number = _wave_number(period, 10.0, current_velocity=current)
+    assert np.max(np.abs(residual(number, period, 10.0, current))) < 1e-13
+    # shorter against the current, longer with it, and energy still goes forward
+    assert np.all((number > _wave_number(period, 10.0)) == (current < 0))
+    assert np.all(_group_velocity(number, 10.0) + current > 0)
+
+
+def test_no_current_is_the_limit_of_a_small_one():
+    still = _wave_number(6.0, 4.0)
+    for small in (1e-12, -1e-12):
+        assert _wave_number(6.0, 4.0, current_velocity=small) == pytest.approx(
+            float(still), rel=1e-11
+        )
+
+
+def test_over_deep_water_the_waves_end_at_a_quarter_of_their_speed():
+    # U = -g / (4 omega): the closed form of blocking; length is then a quarter of the still one
+    period = 4.0
+    limit = STANDARD_GRAVITY * period / (8 * np.pi)
+    number = _wave_number(period, 1e3, current_velocity=-limit * (1 - 1e-9))
+    assert number / _wave_number(period, 1e3) == pytest.approx(4.0, rel=1e-3)
+    with pytest.raises(DataError, match="the opposing current stops the wave"):
+        _wave_number(period, 1e3, current_velocity=-limit * (1 + 1e-9))
+
+
+def test_a_blocked_wave_among_others_is_named():
+    with pytest.raises(
+        DataError, match="stops 1 of 3 waves, first at index 1; found a current of -9"
+    ):
+        _wave_number(4.0, 10.0, current_velocity=[0.0, -9.0, 1.0])
+
+
+def test_period_is_the_inverse():
+    period = np.array([2.0, 3.57, 9.0])[:, None]
+    depth, current = np.array([1.0, 6.0, 80.0]), 0.4
+    number = _wave_number(period, depth, current_velocity=current)
+    back = wave_period_of(number, depth, current_velocity=current)
+    assert back == pytest.approx(np.broadcast_to(period, back.shape), rel=1e-13)
+
+
+def test_a_length_that_the_current_carries_back_has_no_period():
+    with pytest.raises(DataError, match="the opposing current stops"):
+        wave_period_of(2 * np.pi / 5, 10.0, current_velocity=-2.0)
+
+
+def test_group_velocity_is_the_derivative_of_the_frequency():
+    number, depth = np.geomspace(1e-3, 5, 50), 7.0
+
+    def frequency(k):
+        return np.sqrt(STANDARD_GRAVITY * k * np.tanh(k * depth))
+
+    step = 1e-4 * number
+    slope = (frequency(number + step) - frequency(number - step)) / (2 * step)
+    assert _group_velocity(number, depth) == pytest.approx(slope, rel=1e-7)
+    assert np.isfinite(_group_velocity(1e4, 1e4))
+
+
+@pytest.mark.parametrize(("period", "current"), [(5.0, 0.0), (5.0, 1.0)])
+def test_a_search_that_does_not_end_says_so(monkeypatch, period, current):
+    start = dispersion._still_water
+    monkeypatch.setattr(dispersion, "_MOST_STEPS", 1)
+    if current:
+
+        def ended(frequency):
+            monkeypatch.setattr(dispersion, "_MOST_STEPS", 100)
+            root = start(frequency)
+            monkeypatch.setattr(dispersion, "_MOST_STEPS", 1)
+            return root
+
+        monkeypatch.setattr(dispersion, "_still_water", ended)
+    with pytest.raises(FitError, match="the wave number was not found"):
+        _wave_number(period, 6.0, current_velocity=current)
+
+
+@pytest.mark.parametrize("bad", [0.0, -1.0, np.nan, np.inf])
+def test_periods_and_depths_are_positive_numbers(bad):
+    with pytest.raises(DataError, match="wave_period"):
+        _wave_number(bad, 3.0)
+    with pytest.raises(DataError, match="water_depth"):
+        _wave_number(3.0, [1.0, bad])
+    with pytest.raises(DataError, match="wave_number"):
+        wave_period_of(bad, 3.0)
+
+
+# sums of harmonics and the phases of their roots
+
+PHASE = np.linspace(-7.0, 7.0, 101)
+
+
+COSINES, SINES = np.array([1.3, -0.4, 0.2]), np.array([0.7, 0.1, -0.5])
+
+
+def test_sums_are_those_of_cosines_and_sines():
+    n = np.arange(1, 4)
+    assert sum_at(cosine_series(COSINES, 0.6), PHASE) == pytest.approx(
+        0.6 + np.cos(np.outer(PHASE, n)) @ COSINES, abs=1e-14
+    )
+    assert sum_at(sine_series(SINES), PHASE) == pytest.approx(
+        np.sin(np.outer(PHASE, n)) @ SINES, abs=1e-14
+    )
+
+
+def test_derivative_and_product():
+    n = np.arange(1, 4)
+    first, second = cosine_series(COSINES, 0.6), sine_series(SINES)
+    assert sum_at(phase_derivative(first), PHASE) == pytest.approx(
+        -np.sin(np.outer(PHASE, n)) @ (n * COSINES), abs=1e-14
+    )
+    assert sum_at(series_product(first, second), PHASE) == pytest.approx(
+        sum_at(first, PHASE) * sum_at(second, PHASE), abs=1e-13
+    )
+
+
+def test_every_zero_is_among_the_roots():
+    # sin 3x has six zeros a turn
+    found = np.sort(np.mod(root_phases(sine_series(np.array([0.0, 0.0, 1.0]))) + 0.1, 2 * np.pi))
+    assert found == pytest.approx(0.1 + np.pi / 3 * np.arange(6), abs=1e-13)
+
+
+def test_many_sums_at_once_and_an_order_that_is_rounding():
+    clean = np.stack([cosine_series(np.array([1.0, 0.0]), c) for c in (0.0, 0.5)])
+    noisy = clean + 1e-17
+    for coefficients in (clean, noisy):
+        phases = root_phases(coefficients)
+        assert phases.shape == (2, 2)
+        assert np.sort(phases, axis=-1) == pytest.approx(
+            np.array([[-1, 1], [-4 / 3, 4 / 3]]) * np.pi / 2, abs=1e-13
+        )
+
+
+def test_a_sum_that_is_zero_gives_a_phase_and_no_sums_none():
+    assert root_phases(np.zeros((3, 5), dtype=complex)).shape == (3, 1)
+    assert root_phases(np.zeros((0, 5), dtype=complex)).size == 0
+
+
+def test_shapes_that_are_no_sum_are_refused():
+    with pytest.raises(DataError, match="the coefficients have no middle"):
+        root_phases(np.ones(4, dtype=complex))
+
+
+# steady waves by the stream function, against the equations that they have to meet
+
+GRAVITY = 9.80665
+
+
+@pytest.mark.parametrize(
+    ("height", "number", "rest"),
+    [(0.45, 0.3, 5e-5), (0.3, 1.0, 1e-6), (0.2, 2.5, 1e-5), (0.04, 18.0, 1e-6)],
+)
+def test_the_surface_is_a_streamline_at_one_pressure_between_the_points_too(height, number, rest):
+    """psi and (u^2 + w^2) / 2 + eta at 1,000 points; the solver holds them at its own few."""
+    wave = steady_wave(height=height, first_number=number, frequency=None, current=0.0)
+    order = np.arange(1, wave.surface.size + 1)
+    phase = np.multiply.outer(np.linspace(0, np.pi, 1000), order)
+    surface = 1 + np.cos(phase) @ wave.surface
+    level, flat = np.multiply.outer(surface, order * number), order * number
+    rising, falling = np.exp(level - flat), np.exp(-level - flat)
+    scale = 1 + np.exp(-2 * flat)
+    sinh, cosh = (rising - falling) / scale, (rising + falling) / scale
+    stream = -wave.speed * surface + (sinh * np.cos(phase)) @ (wave.velocity / order) / number
+    u = -wave.speed + (cosh * np.cos(phase)) @ wave.velocity
+    w = (sinh * np.sin(phase)) @ wave.velocity
+    assert np.ptp(stream) < rest
+    assert np.ptp((u**2 + w**2) / 2 + surface) < 10 * rest
+    assert surface[0] - surface[-1] == pytest.approx(height)
+
+
+def test_a_low_wave_is_airys_over_a_current_and_over_deep_water():
+    for depth, current in ((3.0, 0.6), (3.0, -0.4), (4000.0, 0.0)):
+        sea = {"wave_height": 1e-4, "wave_period": 4.0, "water_depth": depth, "elevation": -0.5}
+        own = stream_wave(**sea, current_velocity=current)
+        airy = airy_wave(**sea, current_velocity=current)
+        assert own.wave_number == pytest.approx(airy.wave_number, rel=1e-6)
+        for name in ("horizontal_velocity", "vertical_acceleration"):
+            assert getattr(own, name)[0] == pytest.approx(getattr(airy, name)[0], rel=1e-4)
+
+
+def test_a_current_carries_the_whole_wave():
+    """Seen from water that drifts with it, a wave of another period is the same wave."""
+    still = stream_wave(wave_height=1.0, wave_period=5.0, water_depth=3.0, elevation=0.0)
+    speed = still.angular_frequency / still.wave_number
+    period = 2 * np.pi / (still.wave_number * (speed + 0.7))
+    carried = stream_wave(
+        wave_height=1.0, wave_period=period, water_depth=3.0, elevation=0.0, current_velocity=0.7
+    )
+    assert carried.wave_number == pytest.approx(still.wave_number, rel=1e-9)
+    assert carried.horizontal_velocity[:5] == pytest.approx(still.horizontal_velocity[:5], rel=1e-7)
+    assert carried.horizontal_acceleration[:5] == pytest.approx(
+        still.horizontal_acceleration[:5], rel=1e-7
+    )
+
+
+def test_a_solitary_wave_has_its_speed():
+    """Of height .3 d: c^2 = g d (1 + .3 - .3^2 / 20 - 3 / 70 .3^3), Fenton (1972)."""
+    wave = stream_wave(wave_height=0.3, wave_period=12.0, water_depth=1.0, elevation=0.0)
+    # between the crests the water is lower than on average, and drifts back
+    signs = (-1.0) ** np.arange(1, wave.elevation.size + 1)
+    rest, drift = 1 + signs @ wave.elevation, signs @ wave.horizontal_velocity
+    height = 0.3 / rest
+    theory = GRAVITY * rest * (1 + height - height**2 / 20 - 3 * height**3 / 70)
+    speed = wave.angular_frequency / wave.wave_number - drift
+    assert speed**2 == pytest.approx(theory, rel=1e-3)
+
+
+def test_waves_that_break_or_are_too_long_are_refused():
+    with pytest.raises(DataError, match="breaks before it is this high"):
+        stream_wave(wave_height=5.0, wave_period=5.0, water_depth=6.0, elevation=0.0)
+    with pytest.raises(FitError, match="do not change with the period"):
+        stream_wave(wave_height=2.0, wave_period=400.0, water_depth=6.0, elevation=0.0)
+
+
+def test_a_search_that_runs_off_ends_without_a_warning_of_the_arithmetic():
+    """A wave of .87 of the depth: a step of Newton's method left surfaces without a number."""
+    with np.errstate(all="raise"), pytest.raises(DataError, match="breaks before"):
+        stream_wave(wave_height=3.5, wave_period=9.0, water_depth=4.0, elevation=0.0)
+
+
+# which theory the printed table names, and which is meant
+
+
+@pytest.mark.parametrize(
+    ("relative_depth", "theory"),
+    [
+        (0.5, "airy"), (0.2, "airy"), (0.199, "stokes"), (0.1, "stokes"),
+        (0.099, "cnoidal"), (0.041, "cnoidal"),
+        (0.04, "beyond the table"), (0.01, "beyond the table"),
+    ],
+)  # fmt: skip
+def test_depth_names_the_theory(relative_depth, theory):
+    assert _theory_by_depth(relative_depth) == theory
+
+
+@pytest.mark.parametrize(
+    ("relative_depth", "steepness", "theory"),
+    [
+        (0.3, 0.0625, "airy"), (0.3, 0.2, "airy"), (0.3, 0.201, "none"), (0.0999, 0.01, "cnoidal or solitary"), (0.15, 0.0625, "none"), (0.15, 0.2, "stokes"),
+        (0.1, 0.2, "none"), (0.07, 0.01, "cnoidal or solitary"), (0.03, 0.01, "none"),
+    ],
+)  # fmt: skip
+def test_the_letter_of_the_table(relative_depth, steepness, theory):
+    assert _printed_theory(relative_depth, steepness) == theory
+
+
+def test_no_wave_that_stands_is_in_the_printed_row_of_stokes():
+    # 0.142 is the steepest wave on any depth, and the row begins at 0.2
+    for relative_depth in (0.11, 0.13, 0.15, 0.17, 0.19):
+        assert _printed_theory(relative_depth, 0.142) == "none"
+
+
+def test_ratios_are_positive():
+    with pytest.raises(DataError, match="relative_depth"):
+        _theory_by_depth(0.0)
+    with pytest.raises(DataError, match="steepness"):
+        _printed_theory(0.3, -0.1)
+
+
+# printed settings beside the theories of the package
+
+
+def test_the_printed_stokes_wave_is_that_of_the_package_but_for_the_rounded_frequency():
+    printed = printed_stokes_wave()
+    wave = stokes_wave(
+        wave_height=1.25, wave_period=3.57, water_depth=3.0, elevation=0.0,
+        wave_number=2 * np.pi / 20,
+    )  # fmt: skip
+    for name in (
+        "elevation", "horizontal_velocity", "vertical_velocity",
+        "horizontal_acceleration", "vertical_acceleration",
+    ):  # fmt: skip
+        assert getattr(printed, name) == pytest.approx(getattr(wave, name), rel=1e-13)
+    assert wave.angular_frequency == pytest.approx(1.76, abs=0.005)
+
+
+def test_only_two_loads_are_printed():
+    with pytest.raises(SettingsError, match="the paper has no such load; found 'third'"):
+        printed_airy_wave("third")

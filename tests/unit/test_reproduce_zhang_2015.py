@@ -1,15 +1,29 @@
 """Zhang (2015) again: what comes back, what is wrong, and what cannot be known."""
 
 from collections import Counter
+from dataclasses import replace
+from math import pi
 
+import numpy as np
 import pytest
 from misprinted import verdicts_of_misprints
 
-from reduction.published.printed_cells import cells_of, errata_of
-from reduction.published.zhang_2015 import _answers, items
+from reduction.prediction.wave_load import wave_load
+from reduction.published.printed_cells import cells_of, errata_of, number_of, table_of
+from reduction.published.zhang_2015 import (
+    _answers,
+    _equation_answers,
+    _table_answers,
+    items,
+    printed_airy_wave,
+    printed_section,
+)
 
 ITEMS = items()
+
+
 BY_KEY = {item.cell.key: item for item in ITEMS}
+
 
 # by hand: of Table 7, 40 vertical Airy cells less the four at t = 0, where there is no velocity;
 # of Table 5 the four vertical ones; of Table 8 both of P2, the maximum of P3, the averages of P3
@@ -80,3 +94,81 @@ def test_a_changed_digit_is_found():
 )  # fmt: skip
 def test_what_is_recomputed(key, value, within):
     assert BY_KEY[key].recomputed == pytest.approx(value, abs=within)
+
+
+# equations of Zhang (2015): factors and powers are whole numbers, to the last bits
+
+ANSWERS = _equation_answers()
+
+
+SPEED = ("eq 14", "wave number k", "divisor of 2 pi")
+
+
+@pytest.mark.parametrize(
+    "key", [key for key in ANSWERS if key != SPEED], ids=lambda key: " ".join(key)
+)
+def test_answers_are_exact(key):
+    cell = table_of("Zhang-2015", key[0])[key[1:]]
+    assert ANSWERS[key].value == pytest.approx(cell.value, rel=1e-12)
+
+
+def test_the_wave_number_is_that_of_the_length():
+    # 5.6 m/s over 3.57 s; a period in its place would be off by 16 m
+    assert ANSWERS[SPEED].value == pytest.approx(19.992, abs=1e-9)
+    assert ANSWERS[SPEED].tolerance == pytest.approx(0.1785, abs=1e-4)
+
+
+# tables 5 to 8 of Zhang (2015): what the two kinematics of the vertical Airy loads do
+
+ANSWERS_OF_WAVES = _table_answers()
+
+
+CELLS = [cell for cell in cells_of("Zhang-2015") if cell.table == "7"]
+
+
+HALF_A_HUNDREDTH = 0.005 * (1 + 1e-9)
+
+
+def test_there_is_one_answer_for_each_cell_of_the_tables():
+    tables = {cell.key for cell in cells_of("Zhang-2015") if cell.table in ("5", "6", "7", "8")}
+    assert ANSWERS_OF_WAVES.keys() == tables
+
+
+def test_every_load_difference_and_ratio_comes_back_to_the_digit_but_for_two_kinematics():
+    for cell in CELLS:
+        if cell.row.startswith("Airy") and cell.column.startswith("vertical"):
+            continue
+        assert abs(ANSWERS_OF_WAVES[cell.key].value - number_of(cell.printed)) <= HALF_A_HUNDREDTH
+
+
+@pytest.mark.parametrize(("column", "which"), [("load F0", "classic"), ("load F1", "improved")])
+def test_vertical_airy_loads_come_back_with_the_velocity_of_their_own_column(column, which):
+    wave = replace(printed_airy_wave(which), angular_frequency=2 * pi / 3.57)
+    rows = [c for c in CELLS if c.row.startswith("Airy") and c.column == f"vertical {column}"]
+    time = np.array([float(cell.row.partition("t = ")[2].removesuffix(" s")) for cell in rows])
+    load = wave_load(
+        wave, printed_section(), time, drag_coefficient=1.2, inertia_coefficient=2.0,
+        water_density=1030.0, vertical_width="immersion depth",
+    )  # fmt: skip
+    found = load.vertical_classic if which == "classic" else load.vertical
+    printed = [number_of(cell.printed) for cell in rows]
+    assert np.max(np.abs(found - printed)) <= HALF_A_HUNDREDTH
+
+
+def test_with_one_velocity_the_ratio_at_large_loads_is_twice_the_printed_one():
+    for seconds, printed in (("0.90", 8.50), ("2.70", 8.47), ("4.50", 8.44)):
+        key = ("7", f"Airy theory, t = {seconds} s", "vertical ratio P")
+        assert 16.6 <= ANSWERS_OF_WAVES[key].value <= 16.8
+        assert ANSWERS_OF_WAVES[key].value > 1.9 * printed
+
+
+def test_printed_averages_of_table_8_leave_out_one_row():
+    for column, of_all, printed in (("horizontal", 17.1345, 15.26), ("vertical", 14.1127, 14.01)):
+        ratios = {
+            cell.row: number_of(cell.printed)
+            for cell in CELLS
+            if cell.row.startswith("Stokes") and cell.column == f"{column} ratio P"
+        }
+        assert np.mean(list(ratios.values())) == pytest.approx(of_all, abs=5e-5)
+        del ratios["Stokes theory, t = 4.00 s"]
+        assert np.mean(list(ratios.values())) == pytest.approx(printed, abs=0.005)

@@ -4,11 +4,18 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy import stats
 
 from reduction.record.errors import DataError
 from reduction.record.measurement import Specimen, SpliceMarks
 from reduction.stages.standstills import Standstills
-from reduction.stages.strain.mark_readings import check_marks, measure_mark_tension
+from reduction.stages.strain.mark_readings import (
+    LEVEL,
+    check_marks,
+    measure_mark_tension,
+    relaxed_lengths,
+    row_scatter,
+)
 from reduction.stages.strain.strain_fit import fit_strain_model
 
 
@@ -49,7 +56,11 @@ def measured(rows, holds, tension, **more):
 
 
 HOLDS = [(0.0, 5.0, 3.74, True), (20.0, 80.0, 5.90, False), (90.0, 290.0, 6.63, False)]
+
+
 RAMP = np.arange(4000) / 10  # a tension that tells the time
+
+
 TWO = marks([3.74, 5.90, 6.63], [2.55, 4.51, 5.17], hold=("slack", "min", "max"))
 
 
@@ -293,3 +304,143 @@ def test_a_last_test_whose_only_mark_has_no_hold_has_no_marks_of_its_own():
     assert "splices-slip" in [one.code for one in model.notes]
     # it may have slipped by as much as the others differ
     assert model.splice_slip == pytest.approx(0.03 * np.std([0, 1, -1, 2]), rel=0.3)
+
+
+# relaxed lengths of tape readings; covariances against many sets of marks drawn
+
+READING = 0.00124
+
+
+DRAWS = 4000
+
+
+def drawn_rows(n_rows, seed):
+    """Free and splice lengths of many sets of slack rows."""
+    near, far, thimble = np.random.default_rng(seed).normal(0, READING, (3, DRAWS, n_rows))
+    return 2.55 + far - near, 1.18 + thimble - far + near
+
+
+def test_relaxed_lengths_share_their_toe_readings():
+    free, splice = drawn_rows(6, 1)
+    means = np.stack([free.mean(axis=1), splice.mean(axis=1)])
+    found = relaxed_lengths([2.55], [1.18], reading_uncertainty=READING)
+    # one row is all the tape says; six rows are a sixth of it
+    np.testing.assert_allclose(np.cov(means), found.covariance / 6, rtol=0.1)
+
+
+def test_scatter_that_the_tape_explains_leaves_its_error_as_stated():
+    """The larger of both would be 1.37 times too large in the mean: E max(1, chi^2_2 / 2)."""
+    free, splice = drawn_rows(2, 2)
+    found = [
+        relaxed_lengths(one, other, reading_uncertainty=READING).covariance
+        for one, other in zip(free, splice, strict=True)
+    ]
+    # two rows leave two degrees of freedom; sound ones are widened in one set of 200
+    expected = 1 + stats.chi2.sf(stats.chi2.isf(0.005, 2), 4) - 0.005
+    assert expected == pytest.approx(1.027, abs=1e-3)
+    mean = np.mean(found, axis=0).diagonal() / (np.array([2.0, 3.0]) * READING**2 / 2)
+    np.testing.assert_allclose(mean, expected, atol=0.02)
+
+
+def test_relaxed_lengths_that_differ_are_widened_together():
+    found = relaxed_lengths([2.50, 2.60], [1.18, 1.18], reading_uncertainty=READING)
+    assert found.values.tolist() == pytest.approx([2.55, 1.18])
+    # the inverse of [[2, -2], [-2, 3]] has 3/2 for the free length; two rows, each 0.05 off
+    chi_square = 2 * 1.5 * (0.05 / READING) ** 2
+    widened = READING**2 * chi_square / 2
+    np.testing.assert_allclose(found.covariance, widened * np.array([[2, -2], [-2, 3]]) / 2)
+    ratio = np.sqrt(chi_square / 2)
+    assert str(found.note).startswith(
+        f"the rows scatter {ratio:.1f} times as much as tape reading explains"
+    )
+
+
+def test_rows_without_a_stated_error_take_their_scatter():
+    free = np.array([2.54, 2.55, 2.56])
+    found = relaxed_lengths(free, 3.73 - free, reading_uncertainty=0.0)
+    # free and splices differ by one toe: their scatter is 1 cm each, against one another, and
+    # 0.01^2 (3/2 - 2 + 1) in readings; four degrees of freedom, Student's t 2.776 over 1.960
+    reading = np.sqrt(2 * 0.01**2 * 0.5 / 4) * 2.776445 / 1.959964
+    assert np.sqrt(found.covariance[0, 0]) == pytest.approx(reading * np.sqrt(2 / 3), rel=1e-5)
+    assert str(found.note).endswith("it is estimated from their scatter, with 4 degrees of freedom")
+
+
+def test_no_slack_row_is_refused():
+    with pytest.raises(DataError, match="the marks have no slack row"):
+        relaxed_lengths([], [], reading_uncertainty=READING)
+
+
+def test_relaxed_lengths_are_positive():
+    with pytest.raises(DataError, match="relaxed length are not positive"):
+        relaxed_lengths([0.0], [1.18], reading_uncertainty=READING)
+
+
+# scatter of tape readings; expected values from printed quantiles and from draws
+
+LINE = np.stack([np.ones(3), np.arange(3.0)])
+
+
+AWAY = np.array([1.0, -2.0, 1.0]) / np.sqrt(6)  # what no line through three rows can follow
+
+
+def test_a_stated_error_stands_up_to_the_quantile_and_widens_beyond():
+    # 7.879 is the 99.5 % point of chi-square with one degree of freedom
+    inside = row_scatter(4.0, 2 * np.sqrt(7.87) * AWAY, LINE)
+    assert (inside.variance, inside.widening, inside.note) == (4.0, 1.0, None)
+    beyond = row_scatter(4.0, 2 * np.sqrt(7.89) * AWAY, LINE)
+    assert beyond.widening == pytest.approx(np.sqrt(7.89))
+    assert beyond.variance == pytest.approx(4.0 * 7.89)
+    assert str(beyond.note) == (
+        "the rows scatter 2.8 times as much as tape reading explains (chi-square 7.89 with 1 "
+        "degree of freedom, probability one in 201); their uncertainty is increased by this factor"
+    )
+
+
+def test_an_error_of_what_the_rows_share_explains_residuals_too():
+    # the relaxed length moves the rows by twice what one reading does, along what is left over
+    found = row_scatter(1.0, 4.0 * AWAY, LINE, 2.0 * AWAY)
+    assert found.widening == 1.0  # 16 / (1 + 4) is 3.2
+    assert row_scatter(1.0, 4.0 * AWAY, LINE).widening == pytest.approx(4.0)
+
+
+def test_what_the_coefficients_follow_explains_nothing():
+    assert row_scatter(1.0, 4.0 * AWAY, LINE, 5.0 * LINE).widening == pytest.approx(4.0)
+
+
+def test_the_mean_variance_of_sound_rows_is_the_derived_one():
+    rng = np.random.default_rng(3)
+    residual = rng.normal(size=(20_000, 1)) * AWAY
+    mean = np.mean([row_scatter(1.0, one, LINE).variance for one in residual])
+    expected = 1 + stats.chi2.sf(stats.chi2.isf(LEVEL, 1), 3) - LEVEL
+    assert expected == pytest.approx(1.0436, abs=1e-4)
+    assert mean == pytest.approx(expected, abs=0.015)
+
+
+def test_without_a_stated_error_an_interval_by_1_96_holds_95_per_cent():
+    rng = np.random.default_rng(4)
+    rows = rng.normal(size=(4000, 3))
+    held = [
+        abs(row.mean())
+        <= 1.96 * np.sqrt(row_scatter(0.0, row - row.mean(), np.ones((1, 3))).variance / 3)
+        for row in rows
+    ]
+    assert np.mean(held) == pytest.approx(0.95, abs=0.011)
+
+
+@pytest.mark.parametrize(
+    ("size", "note"), [(2, "they are treated as exact"), (3, "1 degree of freedom")]
+)
+def test_without_a_stated_error_the_note_says_what_is_taken(size, note):
+    found = row_scatter(0.0, np.zeros(size), LINE[:, :size])
+    assert found.variance == 0.0
+    assert str(found.note).startswith("the rows have no stated reading error") and str(
+        found.note
+    ).endswith(note)
+
+
+def test_a_row_to_spare_is_needed_to_refute_the_tape():
+    assert row_scatter(1.0, np.zeros(2), LINE[:, :2]).variance == 1.0
+
+
+def test_odds_that_are_too_small_to_print_are_not_printed():
+    assert "below one in a million" in str(row_scatter(1.0, 100 * AWAY, LINE).note)

@@ -1,14 +1,18 @@
 """Doubts of fitted surfaces: below zero where no run is, drift over the runs."""
 
+import re
+
 import numpy as np
 import pytest
+import statsmodels.api as sm
 
-from reduction.experiments.designs import box_behnken
+from reduction.experiments.designs import box_behnken, model_matrix, quadratic_exponents
 from reduction.experiments.response_surfaces import _levels, fit_surfaces
 from reduction.experiments.surface_warnings import (
     drift_over_order,
     drifting_responses,
     negative_surfaces,
+    outlying_runs,
 )
 
 CODED = box_behnken(3).coded
@@ -96,3 +100,116 @@ def test_levels_off_the_range_by_more_than_a_twentieth_of_it_are_told(ends, how)
     """Coded levels of -1 to 1: a tenth of that scale is a twentieth of the range."""
     found = _levels(np.array(ends)[:, None], ["load"])
     assert [one.numbers["how"] for one in found] == ([how] if how else [])
+
+
+# drift over the order of the runs, beside the terms of a surface
+
+RNG = np.random.default_rng(1980)
+
+
+ORDER = RNG.permutation(15) + 1.0
+
+
+def fitted_of_drift(responses, coded=CODED, **options):
+    return fit_surfaces(
+        coded, responses, units="coded", factor_names=["f", "T", "a"],
+        response_names=[f"y{i}" for i in range(len(responses))], low=[0] * 3, high=[1] * 3,
+        **options,
+    )  # fmt: skip
+
+
+def test_slope_error_and_p_are_those_of_statsmodels():
+    responses = RNG.normal(0, 1, (3, 15)) + 0.1 * ORDER
+    found = drift_over_order(fitted_of_drift(responses), ORDER)
+    matrix = np.column_stack([model_matrix(CODED, quadratic_exponents(3)), ORDER])
+    for index, values in enumerate(responses):
+        other = sm.OLS(values, matrix).fit()
+        assert found.slope[index] == pytest.approx(other.params[-1], rel=1e-9)
+        assert found.standard_uncertainty[index] == pytest.approx(other.bse[-1], rel=1e-9)
+        assert found.p_value[index] == pytest.approx(other.pvalues[-1], rel=1e-9)
+
+
+def test_blocks_keep_means_of_their_own():
+    coded, order = np.tile(CODED, (2, 1)), np.tile(ORDER, 2)
+    step = np.repeat([0.0, 40.0], 15)
+    responses = RNG.normal(0, 1e-3, (1, 30)) + step + 0.5 * order
+    labels = ["a"] * 15 + ["b"] * 15
+    names = [str(i) for i in range(30)]
+    found = drift_over_order(
+        fitted_of_drift(responses, coded, blocks=labels, run_names=names), order
+    )
+    assert found.slope[0] == pytest.approx(0.5, abs=5e-4)
+
+
+def test_a_false_alarm_is_as_rare_as_its_level():
+    noise = RNG.normal(0, 1, (20_000, 15))
+    p_value = drift_over_order(fitted_of_drift(noise, with_tests=False), ORDER).p_value
+    assert np.mean(p_value < 0.05) == pytest.approx(0.05, abs=0.006)
+
+
+def test_an_order_that_is_a_factor_or_not_known_gives_nothing():
+    responses = RNG.normal(0, 1, (1, 15))
+    assert np.isnan(drift_over_order(fitted_of_drift(responses), CODED[:, 0] * 5 + 6).p_value).all()
+    assert np.isnan(drift_over_order(fitted_of_drift(responses), np.full(15, np.nan))).all()
+
+
+def test_a_run_without_a_place_is_left_out_of_the_drift_alone():
+    responses = 0.3 * ORDER[None] + RNG.normal(0, 1e-6, 15)
+    order = np.where(np.arange(15) == 4, np.nan, ORDER)
+    assert drift_over_order(fitted_of_drift(responses), order).slope[0] == pytest.approx(
+        0.3, rel=1e-4
+    )
+
+
+# A run far off the surface of all others is named, and sound runs are not
+
+RNG_OF_OUTLIERS = np.random.default_rng(13)
+
+
+LOW, HIGH = np.array([0.1, 15.0, 4.0]), np.array([0.5, 40.0, 12.0])
+
+
+def fitted_of_outliers(runs, transform="none", name="K"):
+    return fit_surfaces(
+        CODED, [runs], factor_names=["f", "m", "a"], response_names=[name], low=LOW, high=HIGH,
+        run_names=[f"R{run}" for run in range(1, 16)], units="coded", transforms=transform,
+    )  # fmt: skip
+
+
+def stiffness(scatter):
+    """A power law of frequency, mean load and amplitude [kN]."""
+    levels = (LOW + HIGH) / 2 + CODED * (HIGH - LOW) / 2
+    law = 1200 * np.prod((levels / [0.3, 27.5, 8.0]) ** [0.05, 0.45, -0.12], axis=1)
+    return law * (1 + scatter * RNG_OF_OUTLIERS.normal(size=15))
+
+
+@pytest.mark.parametrize("transform", ["none", "log"])
+def test_a_centre_run_with_a_wrong_load_is_named_with_what_it_is_off(transform):
+    runs = stiffness(0.003)
+    runs[13] *= 0.8
+    (stray,) = outlying_runs(fitted_of_outliers(runs, transform))
+    said = r"run R14 \(-(20|21) %\) is off the surface of the other runs in K \(p "
+    assert re.match(said, str(stray))
+    assert stray.severity == "warning" and "which of" not in str(stray)
+
+
+def test_of_two_runs_opposite_through_the_centre_the_residuals_do_not_tell_which():
+    """R5 is (-1, 0, -1) and R8 is (1, 0, 1); the others know of their difference alone."""
+    runs = stiffness(0.0005)
+    runs[4] *= 1.2
+    (stray,) = outlying_runs(fitted_of_outliers(runs))
+    assert str(stray).startswith("run R5 (+20 %) or R8 (-17 %) is off the surface of the other")
+    assert str(stray).endswith("the residuals do not show which of the 2 is wrong")
+
+
+def test_sound_runs_are_not_named():
+    """Of a law that is no quadratic, with scatter of 3 % and with next to none."""
+    for scatter in [0.03] * 40 + [1e-4] * 40:
+        assert outlying_runs(fitted_of_outliers(stiffness(scatter))) == ()
+
+
+def test_drift_is_given_as_a_share_of_the_response():
+    order = np.random.default_rng(1).permutation(15)
+    surfaces = fitted_of_outliers(stiffness(1e-5) * (1 + 0.004 * order))
+    (drift,) = drifting_responses(surfaces, drift_over_order(surfaces, order))
+    assert ", +0.4" in str(drift) and "% of the response (p" in str(drift)
