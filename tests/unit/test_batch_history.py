@@ -1,27 +1,34 @@
 """What a specimen had seen before a test: cycles in logs, between them, and of a wagger."""
 
+import json
 from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from reduction.batch.reuse import _settings_json
 from reduction.batch.survey import SpliceSlip, Survey, _splice_slips
 from reduction.batch.test_history import (
     _across_slip,
     earlier_tests_of,
     history_of,
     history_remarks,
+    instruments_of,
 )
 from reduction.campaign.plan import TestPlan
 from reduction.pipeline.located_test import locate
 from reduction.pipeline.reduce_test import reduce_test
+from reduction.record.contributions import InstrumentErrors, StatedErrors
 from reduction.record.errors import DataError
 from reduction.record.measurement import Record, Specimen, SpliceMarks
-from reduction.record.settings import CycleSettings, ReductionSettings
+from reduction.record.settings import CycleSettings, ReductionSettings, StrainSettings
 from reduction.stages.cycles.cycle_product import Cycles
 from reduction.stages.reduced_test import TestDescription
+from reduction.stages.strain.strain_fit import fit_strain_model
 from reduction.stages.strain.strain_model import StrainModel
+from reduction.stages.strain.zero_strain import ZeroStrain
+from reduction.uncertainty.errors_of_cycles import PullOrigin
 
 
 def survey(
@@ -281,3 +288,170 @@ def test_marks_before_and_after_a_slip_that_are_used_together_are_told():
     assert told("A", "C") == [("marks-across-slip", "B")]
     # those of a test are read before its cycles
     assert told("A", "B") == told("C") == []
+
+
+# what the settings of a product hold: all that it rests on beside its own log
+
+TAPE = SpliceMarks(
+    "new", ("P", "P"), ("slack", "min"), near_toe=np.array([0.6, 0.7]),
+    far_toe=np.array([3.2, 5.2]), far_thimble=np.array([3.7, 5.9]), reading_uncertainty=0.001,
+)  # fmt: skip
+
+
+MODEL = StrainModel(
+    "new", "tension-driven", {"relaxed_free_length": 2.6}, mark_test=("P", "P"),
+    mark_hold=("slack", "min"), mark_position=TAPE.far_thimble,
+    mark_tension=np.array([np.nan, 380.0]), mark_load_cell=("A", "A"),
+)  # fmt: skip
+
+
+def settings(*, tape=TAPE, model=MODEL, of_pull=MODEL, load_cell="A"):
+    plan = TestPlan(
+        id="R", kind="cyclic", files=(("R.csv", "logger"),), specimens=("new",), order=None,
+        control="position", waveform="triangular", target_strain=(),
+        attributes={"load_cell": load_cell}, settings=ReductionSettings(), log="R", step_place=0,
+    )  # fmt: skip
+    campaign = SimpleNamespace(
+        id="c", attributes={}, uncertainty=StatedErrors(tension_gain=0.01), marks={"new": tape},
+        layouts={"logger": SimpleNamespace(model_dump=lambda **_: {})},
+        specimens={"new": Specimen("new")},
+        experiments={"e": SimpleNamespace(runs={"R": ()}, quasi_static={"new": "P"})},
+    )  # fmt: skip
+    pull = SimpleNamespace(
+        curve_coefficient=np.zeros(4),
+        strain_coefficient=np.zeros(4),
+        tension_low=1.0,
+        tension_high=2.0,
+    )
+    origin = PullOrigin(InstrumentErrors("new"), of_pull)
+    return _settings_json(campaign, Survey(plan), [model], None, [pull], [origin])
+
+
+CELLS = replace(MODEL, mark_load_cell=("A", "B"))
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"tape": replace(TAPE, reading_uncertainty=0.002)},
+        {"tape": replace(TAPE, splice_creep=0.08)},
+        {"tape": replace(TAPE, near_toe=np.array([0.6, 0.71]))},
+        {"model": CELLS},
+        {"model": replace(MODEL, by_marks=replace(MODEL, method="mixed"))},
+        {"of_pull": CELLS},
+        {"load_cell": "C"},
+    ],
+)
+def test_what_moves_the_uncertainty_of_a_number_is_in_the_settings(change):
+    assert settings(**change) != settings()
+
+
+def test_settings_have_every_reading_as_it_was_made_and_no_digit_that_was_computed_of_them():
+    found = json.loads(settings())
+    strain = found["strain"]["new"]
+    assert strain["tape"] == {
+        "standard_uncertainty": 0.001,
+        "splice_creep": 0.02,
+        "readings": [["P", "slack", 0.6, 3.2, 3.7], ["P", "min", 0.7, 5.2, 5.9]],
+    }
+    assert strain["marks"] == [["P", "slack", 3.7, None, "A"], ["P", "min", 5.9, 380.0, "A"]]
+    assert found["quasi_static"]["new"]["strain"] == strain
+    assert found["instruments"] == {
+        "new": {
+            "splice_friction": 0.0,
+            "tension": "A, channel 1",
+            "crosshead_position": "crosshead",
+        }
+    }
+
+
+def test_a_model_without_marks_rests_on_no_tape():
+    length = StrainModel("new", "gauge-length", {"gauge_length": 2.6})
+    assert "tape" not in json.loads(settings(model=length))["strain"]["new"]
+
+
+# by what names tests share the errors of their strain models
+
+# lengths of WHOI-2005-10, Table 3, new tether, in feet; the slack row of T-2 reads otherwise
+MARKS = SpliceMarks(
+    "new", ("T-1", "T-1", "T-1", "T-2"), ("slack", "min", "max", "slack"),
+    near_toe=np.array([2.06, 2.42, 2.69, 2.06]), far_toe=np.array([10.44, 17.22, 21.72, 10.48]),
+    far_thimble=np.array([12.26, 19.37, 24.12, 12.26]),
+)  # fmt: skip
+
+
+METHODS = ("tension-driven", "marks", "strain-ratio", "constant-fraction", "gauge-length")
+
+
+CAMPAIGN = SimpleNamespace(
+    uncertainty=StatedErrors(), specimens={"new": Specimen("new", gauge_length=8.4)}
+)
+
+
+def model_of(log, method):
+    return fit_strain_model(
+        CAMPAIGN.specimens["new"], test_id=log, marks=MARKS,
+        mark_tension=np.array([0.0, 380.0, 600.0, 0.0]), settings=StrainSettings(method=method),
+        zero=ZeroStrain(0.0),
+    )  # fmt: skip
+
+
+def instruments_by(log, model, **found):
+    plan = TestPlan(
+        id=log, kind="cyclic", files=((f"{log}.csv", "logger"),), specimens=("new",), order=None,
+        control="position", waveform="triangular", target_strain=(), attributes={},
+        settings=ReductionSettings(), log=log, step_place=0,
+    )  # fmt: skip
+    return instruments_of(CAMPAIGN, Survey(plan, **found), [model])[0]
+
+
+def name_of(log, model):
+    return instruments_by(log, model).strain_model
+
+
+def test_models_of_one_name_have_the_same_coefficients():
+    """Three tests: one with marks of its own, one with a slack row alone, two without any."""
+    coefficients = {}
+    for log in ("T-1", "T-2", "T-3", "T-4"):
+        for method in METHODS:
+            model = model_of(log, method)
+            name = name_of(log, model)
+            assert coefficients.setdefault(name, model.coefficients) == model.coefficients
+            assert name.startswith(f"new, {method}")
+    assert len(coefficients) > len(METHODS)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_tests_without_marks_of_their_own_share_what_is_pooled(method):
+    names = {name_of(log, model_of(log, method)) for log in ("T-3", "T-4")}
+    assert names == {f"new, {method}"}
+
+
+@pytest.mark.parametrize(
+    ("log", "method", "name"),
+    [
+        ("T-1", "tension-driven", "new, tension-driven"),
+        ("T-1", "marks", "new, marks, marks of T-1"),
+        ("T-2", "marks", "new, marks"),
+        ("T-2", "constant-fraction", "new, constant-fraction, marks of T-2"),
+    ],
+)
+def test_a_name_says_specimen_method_and_the_test_whose_marks_they_are(log, method, name):
+    assert name_of(log, model_of(log, method)) == name
+
+
+@pytest.mark.parametrize(("length", "zero"), [(None, 0.0), (3.7, 3.7)])
+def test_the_scale_of_a_displacement_reads_zero_at_its_reference_length(length, zero):
+    errors = instruments_by("T-1", model_of("T-1", "gauge-length"), reference_length=length)
+    assert errors.position_of_scale_zero == zero
+
+
+@pytest.mark.parametrize(("diameter", "error"), [((), 0.0), ((0.026,), 5e-5)])
+def test_a_stated_error_of_diameters_is_one_of_specimens_that_have_a_diameter(
+    monkeypatch, diameter, error
+):
+    """A rope without one, in a campaign with tethers, has no stress for it to change."""
+    new = Specimen("new", gauge_length=8.4, diameter=diameter)
+    monkeypatch.setattr(CAMPAIGN, "specimens", {"new": new})
+    monkeypatch.setattr(CAMPAIGN, "uncertainty", StatedErrors(diameter=5e-5))
+    assert instruments_by("T-1", model_of("T-1", "gauge-length")).diameter == error

@@ -1,23 +1,33 @@
 """The two passes over a campaign: which records are kept, and what becomes of lost tests."""
 
 from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 from manytests import write_many
 
 from reduction.batch import reduce_tests as secondpass
 from reduction.batch import slow_pulls as pulls_module
 from reduction.batch import survey as firstpass
-from reduction.batch.campaign_status import Silent
+from reduction.batch.campaign_status import Silent, TestStatus
+from reduction.batch.experiment_product import _same_logs, experiments_found
 from reduction.batch.reduce_tests import reduce_campaign
 from reduction.batch.reuse import Basis
+from reduction.batch.run_campaign import run_campaign
 from reduction.batch.run_lock import RunLock, run_lock
-from reduction.batch.slow_pulls import fit_pulls
-from reduction.batch.survey import FirstPass, survey_campaign, with_record
+from reduction.batch.slow_pulls import fit_pulls, pull_tests
+from reduction.batch.survey import FirstPass, survey_campaign, survey_log, with_record
 from reduction.batch.test_history import fit_strain_models
 from reduction.batch.workers import _Ended, local_workers
 from reduction.campaign.load import load_campaign
+from reduction.campaign.plan import Campaign, ExperimentPlan, TestPlan
+from reduction.experiments.designs import FactorLevels
+from reduction.readers.layout import Layout
 from reduction.record.errors import ArchiveError, WorkerError
+from reduction.record.measurement import Specimen
+from reduction.record.settings import ReductionSettings
 
 
 @pytest.fixture(scope="module")
@@ -210,3 +220,178 @@ def test_a_log_with_a_name_that_no_disk_can_have_is_one_failed_test(campaign):
     found = {one.plan.id: one for one in survey_campaign(replace(campaign, tests=tests)).surveys}
     assert "the file cannot be read; found File name too long" in str(found["T04"].error)
     assert found["T01"].error is None
+
+
+# A run of which no test could be reduced has a page all the same: it says so, and why
+
+
+def run(campaign, folder):
+    return run_campaign(
+        load_campaign(campaign), processed=folder / "p", reports=folder / "r",
+        clock=lambda: 0.0, command="reduction run campaign.toml",
+    )  # fmt: skip
+
+
+def test_where_every_test_failed_the_page_says_that_and_why(tmp_path):
+    campaign = write_many(tmp_path / "raw", 1)
+    (campaign.parent / "T01.csv").write_text("time_s,crosshead_ft,load_lb\n0,no number,1\n")
+    page = tmp_path / "r" / "many" / "index.html"
+    page.parent.mkdir(parents=True)
+    page.write_text("of a run whose archives were taken away")
+    found = run(campaign, tmp_path)
+    assert found.exit_status == 3
+    assert found.report == page
+    text = page.read_text(encoding="utf-8")
+    assert "T01" in text and "no number" in text and "Failures" in text
+    # it had an empty table, "0 specimens", and spoke of sections that are not there
+    assert "No test could be reduced, so there are no results." in text
+    assert "in its section" not in text and "specimens</a>" not in text
+    assert "Specimens before their first test" not in text
+    assert found.tables == ()
+
+
+# A pull whose machine set the displacement to zero under a preload (synthetic)
+
+CAMPAIGN = """
+[campaign]
+id = "preload"
+title = "Preload (synthetic)"
+source = "synthetic"
+[specimens.bar]
+kind = "other"
+area = "20 mm2"
+gauge_length = "25 mm"
+[layouts.log]
+format = "delimited"
+[layouts.log.channels]
+time = {{ column = 1, unit = "s" }}
+crosshead_position = {{ column = 2, unit = "mm", datum = "displacement", reference_length = "25 mm"{at} }}
+tension.1 = {{ column = 3, unit = "N" }}
+{strain}
+[tests.T-1]
+file = "log.csv"
+layout = "log"
+kind = "tensile"
+specimens = ["bar"]
+"""
+
+
+def loads_told(tmp_path, tension, at="", strain=""):
+    """What is said of the tension at displacement zero of a pull with that log."""
+    travel = 0.01 * np.arange(tension.size)
+    rows = np.column_stack([10 * travel, travel, tension, 100 * travel / 25])
+    np.savetxt(tmp_path / "log.csv", rows, "%.5f", ",", header="t,x,F,e", comments="")
+    (tmp_path / "campaign.toml").write_text(CAMPAIGN.format(at=at, strain=strain))
+    (survey,) = survey_log(load_campaign(tmp_path / "campaign.toml"), "T-1")
+    return [str(one) for one in survey.located.record.notes if "displacement is first" in str(one)]
+
+
+@pytest.mark.parametrize(
+    ("at", "strain", "is_told"),
+    [
+        ("", "", True),
+        (', reference_tension = "150 N"', "", False),
+        ("", 'strain.1 = { column = 4, unit = "%" }', False),  # no strain rests on the length
+    ],
+)
+def test_a_zero_under_preload_is_told_where_strain_rests_on_it(tmp_path, at, strain, is_told):
+    told = loads_told(tmp_path, 150.0 + 30 * np.arange(60), at, strain)
+    assert bool(told) == is_told
+    assert all('state reference_tension = "150 N"' in one for one in told)
+
+
+def test_one_noisy_reading_is_no_preload(tmp_path):
+    """The first reading of a weak strip is 6 % of its greatest load, and within its noise."""
+    noise = 1.5 * np.random.default_rng(1).standard_normal(400)
+    assert loads_told(tmp_path, np.linspace(0, 50, 400) + noise - noise[0] + 3.0) == []
+    (told,) = loads_told(tmp_path, np.linspace(0, 50, 400) - 15)  # a zero of the load cell
+    assert "preload" not in told
+
+
+# what a check says of an experiment: minimum tensions by hand, logs that are copies
+
+MEAN = FactorLevels("mean_tension", 0.10, 0.30, "rated_break_strength")
+
+
+AMPLITUDE = FactorLevels("tension_amplitude", 0.05, 0.15, "rated_break_strength")
+
+
+def plan(factors=(MEAN, AMPLITUDE), pulls=None, **runs):
+    return ExperimentPlan(
+        name="lines", kind="box-behnken", factors=factors, runs=runs, quasi_static=pulls or {},
+        responses=("apparent_spring_constant",), transform={}, specimens_as="blocks",
+    )  # fmt: skip
+
+
+def campaign_of_planned(experiment, **specimens):
+    tests = {
+        run: TestPlan(
+            id=run, kind="cyclic", files=(), specimens=pulled, order=None, control="load",
+            waveform="sinusoidal", target_strain=(), attributes={}, settings=ReductionSettings(),
+        )
+        for run, pulled in specimens.items()
+    }  # fmt: skip
+    sheets = {
+        "weak": Specimen("weak", kind="rope", rated_break_strength=1000.0),
+        "strong": Specimen("strong", kind="rope", rated_break_strength=4000.0),
+    }
+    return Campaign(
+        Path("campaign.toml"), "c", {}, sheets, {}, tests, {}, experiments={"lines": experiment}
+    )
+
+
+def status(test, failed=False):
+    return TestStatus(test, "failed" if failed else "no_work", 0, "", 1, 1, f"sum of {test}", 0.0)
+
+
+def test_a_run_of_two_lines_has_a_minimum_of_each():
+    # 10 % less 15 %, of 1000 N and of 4000 N; 10 % less 10 % is zero though its last bit is not
+    planned = plan(A=(-1.0, 1.0), B=(-1.0, 0.0), C=(1.0, 1.0))
+    whole = campaign_of_planned(planned, A=("weak", "strong"), B=("weak",), C=("weak",))
+    (found,) = experiments_found(whole, [status("A"), status("B", failed=True)])
+    least = {
+        (row["run"], row["specimen"]): row["planned_minimum_tension"]["value"]
+        for row in found["slack_runs"]
+    }
+    assert least == {
+        ("A", "weak"): pytest.approx(-50.0),
+        ("A", "strong"): pytest.approx(-200.0),
+        ("B", "weak"): 0.0,
+    }
+    # C was not asked for: neither found nor failed
+    assert (found["runs_found"], found["runs_failed"]) == (["A"], ["B"])
+    assert found["notes"] == ["no slow pull of weak, strong: K_0, K_1 and tau are not given"]
+
+
+def test_without_both_loads_nothing_is_said_of_slack():
+    planned = plan(factors=(MEAN,), A=(-1.0,))
+    assert experiments_found(campaign_of_planned(planned, A=("weak",)), [])[0]["slack_runs"] == []
+
+
+def test_pulls_are_those_of_the_experiments_that_a_run_is_in():
+    planned = plan(pulls={"weak": "Q"}, A=(0.0, 0.0))
+    whole = campaign_of_planned(planned, A=("weak",))
+    assert pull_tests(whole, "A") == {"weak": "Q"}
+    assert pull_tests(whole, "B") == {}
+
+
+def test_steps_of_one_log_are_no_copies():
+    level = (0.0, 0.0)
+    planned = plan(**{"P-7.one": level, "P-7.two": level, "P-8.one": level, "R": level, "S": level})
+    sums = {"P-7.one": "a", "P-7.two": "a", "P-8.one": "b", "R": "b", "S": ""}
+    channels = {"tension.1": {"column": "Force", "unit": "N"}}
+    layouts = {
+        name: Layout(format="spreadsheet", sheet=name, channels=channels) for name in ("I", "II")
+    }
+
+    def notes(sheet_of_r):
+        sheets = {"P-7": "I", "P-8": "I", "R": sheet_of_r, "S": "I"}
+        tests = {
+            log: SimpleNamespace(log=log, files=(("logs.xlsx", sheet),))
+            for log, sheet in sheets.items()
+        }
+        return _same_logs(SimpleNamespace(tests=tests, layouts=layouts), planned, sums)
+
+    (note,) = map(str, notes("I"))
+    assert note.startswith("P-8 and R have the same log, byte for byte")
+    assert notes("II") == []  # two sheets of one workbook

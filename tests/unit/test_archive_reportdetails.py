@@ -1,4 +1,4 @@
-"""``[report]``: what is stated as it was written, limits in SI, and every way to get it wrong."""
+"""Details of the laboratory for the client report."""
 
 import datetime
 from pathlib import Path
@@ -6,19 +6,37 @@ from types import SimpleNamespace
 
 import pytest
 
-from reduction.archive.report_details import Instrument, ReportItem
+from reduction.archive.report_details import (
+    FILE_NAME,
+    Client,
+    Instrument,
+    Laboratory,
+    ReportDetails,
+    ReportItem,
+    ReportLimit,
+    keep_details,
+    read_details,
+)
 from reduction.campaign.model import _ReportSection, report_details
-from reduction.record.errors import SettingsError
+from reduction.record.errors import ArchiveError, SettingsError
 
 PATH = Path("campaign.toml")
+
+
 PSI = 6894.757293168361
+
+
 STEP = SimpleNamespace(
     name="slow pull", kind="quasi-static", product=lambda test: f"{test}.slow-pull"
 )
+
+
 TESTS = {
     "T-1": SimpleNamespace(id="T-1", kind="cyclic", steps=()),
     "P-1": SimpleNamespace(id="P-1", kind="cyclic", steps=(STEP,)),
 }
+
+
 LIMIT = {"quantity": "tangent_modulus", "test": "T-1", "upper": "1 MPa"}
 
 
@@ -112,3 +130,37 @@ def test_an_item_that_is_no_specimen_is_refused():
 def test_limits_without_a_rule_are_refused():
     with pytest.raises(SettingsError, match="no decision rule for conformity"):
         limits(LIMIT, rule=None)
+
+
+# ``report.json``: what the laboratory states, beside the archives
+
+EVERYTHING = ReportDetails(
+    number="17 <b>", revision=1, laboratory=Laboratory(name="Läb", location="there"),
+    client=Client(name="C"), items={"new": ReportItem(condition='"dry"')},
+    instruments=(Instrument(name="cell"),), decision_rule="guard band", paper="Letter",
+    limits=(
+        ReportLimit(quantity="tangent_modulus", test="T-1", at={"strain": "1.25"}, lower=0.1 + 0.2),
+    ),
+)  # fmt: skip
+
+
+def test_what_is_kept_comes_back_to_the_last_bit(tmp_path):
+    keep_details(tmp_path, EVERYTHING)
+    assert read_details(tmp_path) == EVERYTHING
+
+
+def test_it_is_taken_away_where_the_campaign_states_nothing_any_more(tmp_path):
+    keep_details(tmp_path, EVERYTHING)
+    keep_details(tmp_path, None)
+    assert not (tmp_path / FILE_NAME).exists()
+    assert read_details(tmp_path) is None
+    keep_details(tmp_path, None)
+
+
+@pytest.mark.parametrize("text", ["", "{", "[]", '{"revision": "x"}', '{"paper": "A0"}', "\xff"])
+def test_a_file_of_another_form_is_refused(tmp_path, text):
+    (tmp_path / FILE_NAME).write_text(text, encoding="latin-1")
+    with pytest.raises(
+        ArchiveError, match=r"report\.json cannot be read; found .*Run the campaign"
+    ):
+        read_details(tmp_path)
