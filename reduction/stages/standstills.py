@@ -539,7 +539,13 @@ _FROM_NOISE = 0.25  # of the range of the noise: three of its deviations
 
 
 def _held_intervals(
-    time: Floats, values: Floats, *, tolerance: float, noise: float, minimum_duration: float
+    time: Floats,
+    values: Floats,
+    *,
+    tolerance: float,
+    noise: float,
+    minimum_duration: float,
+    hunts: bool = False,
 ) -> tuple[Integers, Integers]:
     """First and last sample of every hold of a record that consists of ramps and holds.
 
@@ -549,7 +555,8 @@ def _held_intervals(
     searched with a tolerance of 2 % of the range of the record.  One is a hold where it
     stays within 2 % of the stroke of its own approach and, once it is slow, stays slow
     (`_stays_slow`).  The others are searched again with a quarter of the tolerance, down to that
-    of the noise.
+    of the noise.  A load controller ``hunts`` about its level during the whole hold, by more than
+    2 % of a small step and as fast as a slow ramp: its tension stays within half of the stroke.
 
     Examples
     --------
@@ -577,7 +584,7 @@ def _held_intervals(
         for first, last in zip((begin + firsts).tolist(), (begin + lasts).tolist(), strict=True):
             # the approach to a hold begins at the one before, even outside the part searched
             if width <= tolerance or any(
-                _stays_slow(clock, series, since, first, last, noise=noise)
+                _stays_slow(clock, series, since, first, last, noise=noise, hunts=hunts)
                 for since in {begin, origin}
             ):
                 found.append((first, last))
@@ -614,6 +621,8 @@ def _evenly(
     return clock, np.interp(clock, time[known], values[known]), at
 
 
+_HUNTED_SHARE = 0.5  # of the stroke of an approach
+
 _LASTS = 0.3  # of the time of an approach
 
 _FINEST_SHARE = 1e-6  # of the range of the record: an exact encoder shows any drift
@@ -624,9 +633,18 @@ _STEPS_OF_SHORTEST = 8
 
 
 def _stays_slow(
-    time: Floats, values: Floats, begin: int, first: int, last: int, *, noise: float
+    time: Floats,
+    values: Floats,
+    begin: int,
+    first: int,
+    last: int,
+    *,
+    noise: float,
+    hunts: bool,
 ) -> bool:
     """Whether an interval stays near the end of its approach and never moves fast once slow.
+
+    A channel that ``hunts`` only has to stay nearer to its level than to that it came from.
 
     The turn of a sine is also slow and near, but for less than a fifth of the time of its approach.
     """
@@ -637,6 +655,8 @@ def _stays_slow(
         return False
     held = values[approach.end : last + 1]
     low, high = finite_extremes(held)
+    if hunts:
+        return high - low <= _HUNTED_SHARE * approach.stroke
     if not high - low <= NEAR_SHARE * approach.stroke + noise:
         return False
     step = median_step(time)
@@ -787,6 +807,7 @@ def _stands(
     noise: float,
     settings: PhaseSettings,
     is_held: bool,
+    hunts: bool = False,
 ) -> tuple[Integers, Integers]:
     """First and last sample of every standstill; in a held record, from the end of its approach.
 
@@ -804,7 +825,7 @@ def _stands(
         first, last = ends[:, np.argsort(ends[0], kind="stable")]
         return first, last
     first, last = _held_intervals(
-        time, values, tolerance=tolerance, noise=noise, minimum_duration=duration
+        time, values, tolerance=tolerance, noise=noise, minimum_duration=duration, hunts=hunts
     )
     return _from_approaches(time, values, first, last, noise=noise)
 
@@ -1058,8 +1079,9 @@ def find_tension_stands(
     if settings.tension_tolerance is None:
         tolerance = noise = min(noise, _dither_range(mean))
     first, last = _stands(
-        seconds, mean, tolerance=tolerance, noise=noise, settings=settings, is_held=is_held
-    )
+        seconds, mean, tolerance=tolerance, noise=noise, settings=settings, is_held=is_held,
+        hunts=True,
+    )  # fmt: skip
     limits = {
         "position_tolerance": crosshead.position_tolerance,
         "slack_tension": crosshead.slack_tension,

@@ -41,6 +41,19 @@ def test_a_hold_has_its_samples_and_the_ramp_before_it():
     assert (one.notes, one.refusals) == ([], [])
 
 
+@pytest.mark.parametrize(("step", "is_ramp"), [(3.0, False), (12.0, True)])
+def test_a_step_within_what_counts_as_constant_tension_is_no_ramp(step, is_ramp):
+    time = np.arange(0.0, 400.0, 0.25)
+    load = np.interp(time, [0, 200, 204, 400], [300 - step, 300 - step, 300, 300])
+    stand = replace(
+        STAND, first=np.array([0, 816]), last=np.array([799, time.size - 1]),
+        start_time=np.array([0.0, 204.0]), end_time=np.array([199.75, time[-1]]),
+        mean_tension=np.array([[300.0 - step, 300.0]]), tension_tolerance=0.5,
+    )  # fmt: skip
+    ramp = select(1, time=time, position=load / 100, tension=load, stand=stand).ramp
+    assert (ramp is not None) is is_ramp
+
+
 @pytest.mark.parametrize("cycled", [False, True])
 def test_a_controller_that_overshoots_and_settles_does_not_hide_its_ramp(cycled):
     # 100 N, then in 4 s to 10 % beyond 300 N, from where it swings to it; or it cycles for long

@@ -448,6 +448,22 @@ def test_a_stated_tolerance_holds_what_a_hunting_controller_breaks():
     assert found.start_time[1:3] == pytest.approx(START_OF_HELD[1:3], abs=0.5)
 
 
+@pytest.mark.parametrize("share", [0.001, 0.003])
+def test_a_controller_that_hunts_slowly_does_not_break_a_creep_hold(share):
+    steps = [300, 330, 360]
+    knots = np.concatenate([[(40 + 310 * k, load), (340 + 310 * k, load)] for k, load in
+                            enumerate(steps)])  # fmt: skip
+    time, position, tension = creep([(0, 0), (20, 0), *knots, (970, 0), (1000, 0)], noise=0.05)
+    random = np.random.default_rng(4)
+    hunting = np.interp(time, 7 * np.arange(150), random.normal(0, share, 150))
+    found = find_tension_stands(
+        time, position, tension * (1 + hunting), settings=PhaseSettings(), is_held=True
+    )
+    assert found.is_rest.tolist() == [True, False, False, False, True]
+    assert found.start_time[1:4] == pytest.approx([40, 350, 660], abs=1)
+    assert found.end_time[1:4] == pytest.approx([340, 650, 960], abs=1)
+
+
 def test_missing_tension_does_not_end_a_hold():
     time, position, tension = creep()
     tension[(time > 200) & (time < 230)] = np.nan

@@ -38,7 +38,11 @@ from reduction.stages.holds.ramp_end import (
     ramp_end_time,
     time_to_stop,
 )
-from reduction.stages.holds.relaxation_numbers import end_mean, logarithmic_blocks
+from reduction.stages.holds.relaxation_numbers import (
+    TENSION_TOLERANCE,
+    end_mean,
+    logarithmic_blocks,
+)
 from reduction.stages.moduli.splice_slip import sample_noise
 from reduction.stages.standstills import Standstills
 
@@ -474,10 +478,15 @@ def select_hold(
     ramp = _ramp_before(*(one[begin : first + 1] for one in (time, moved, answer)), band=band)
     if ramp is not None and moved is tension and place.size:
         left = moved[begin : int(standstills.last[index - 1]) + 1 if index else begin + 1]
+        level = float(np.median(load))
         ramp = _without_settling(
             ramp, *(one[begin : first + 1] for one in (time, moved, answer)), band=band,
-            left=float(np.median(left[-_LOOKED_BACK:])), level=float(np.median(load)),
+            left=float(np.median(left[-_LOOKED_BACK:])), level=level,
         )  # fmt: skip
+        # a controller that hunts strays as far, up and down, while its tension counts as constant
+        step = abs(level - float(moved[np.searchsorted(time, ramp.start_time)]))
+        if step < 2 * TENSION_TOLERANCE * abs(level):
+            ramp = None
     earlier, on_ramp, peak = (
         (np.nan,) * 3 if ramp is None else _logged_peaks(time, tension, ramp, first, last)
     )
