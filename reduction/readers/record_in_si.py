@@ -811,29 +811,28 @@ def _datum_notes(record: Record, piece: _Piece) -> tuple[Note, ...]:
     zero = parse_quantity(channel.reference_length, "length")
     stated = parse_quantity(channel.reference_tension or "0 N", "force")
     position = record.crosshead_position
-    before = None
+    passes = []
     for part in sample_blocks(position.size, position, overlap=1):
         away = position[part] - zero
-        crossing = np.flatnonzero(away[:-1] * away[1:] <= 0)
-        if crossing.size:
-            before = part.start + int(crossing[0])
-            break
-    if before is None:
+        passes.append(part.start + np.flatnonzero(away[:-1] * away[1:] <= 0))
+    before = np.concatenate(passes)
+    if not before.size:
         return ()
-    after = before + 1
-    span = position[before] - position[after]
-    weight = (position[before] - zero) / span if span else 0.0
+    begin, span = position[before], position[before] - position[before + 1]
+    weight = np.divide(begin - zero, span, out=np.zeros_like(span), where=span != 0)
     notes = []
     for name, load in zip(record.specimens, record.tension, strict=True):
-        found = float(load[before] + weight * (load[after] - load[before]))
+        found = load[before] + weight * (load[before + 1] - load[before])
         low, high = finite_extremes(load)
-        # the noise of one reading, from the second differences around it
-        bends = np.abs(np.diff(load[max(before - _AROUND, 0) : after + _AROUND], n=2))
+        # the noise of one reading, from the second differences around the first pass
+        first = int(before[0])
+        bends = np.abs(np.diff(load[max(first - _AROUND, 0) : first + 1 + _AROUND], n=2))
         bends = bends[np.isfinite(bends)]
         noise = float(np.median(bends)) / _BEND_OF_NOISE if bends.size else 0.0
-        if abs(found - stated) > max(_DATUM_SHARE * (high - low), _CLEAR_OF_NOISE * noise):
-            code = (
-                "reference-length-under-preload" if found > stated else "reference-length-elsewhere"
-            )
-            notes.append(note(code, stated=stated, specimen=name, found=found))
+        beyond = max(_DATUM_SHARE * (high - low), _CLEAR_OF_NOISE * noise)
+        away = found - stated
+        # a damper has loads of both signs there, one on the way up and one on the way down
+        if abs(away[0]) > beyond and not (away * np.sign(away[0]) < -beyond).any():
+            code = "reference-length-under-preload" if away[0] > 0 else "reference-length-elsewhere"
+            notes.append(note(code, stated=stated, specimen=name, found=float(found[0])))
     return tuple(notes)

@@ -138,6 +138,15 @@ def test_a_reference_length_read_at_another_tension_is_noted():
     )
 
 
+def test_a_damper_that_pulls_and_pushes_at_displacement_zero_is_not_under_preload():
+    phase = TIME * 2 * np.pi / 7 + 0.3
+    stroke = {"crosshead_position": np.sin(phase), "tension.1": 30 * np.cos(phase)}
+    slack = channels(crosshead_position={"datum": "displacement", "reference_length": "12 ft"})
+    notes = map(str, convert((log(stroke | {"tension.2": LOAD}), layout(slack))).notes)
+    (found,) = [one for one in notes if one.startswith("reference_length")]
+    assert "of used is" in found
+
+
 def test_a_displacement_that_is_never_zero_cannot_be_compared():
     declared = channels(crosshead_position={"datum": "displacement", "reference_length": "12 ft"})
     assert tuple(map(str, convert((log(), layout(declared))).notes)) == ()
