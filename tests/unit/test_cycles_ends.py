@@ -105,3 +105,22 @@ def test_a_start_is_told_from_the_others_where_five_remain_beside_the_three_it_m
     wave[1] = 90
     ends = np.arange(2 * n_cycles).reshape(n_cycles, 2)
     assert _steady_span(wave, ends, ends + 1) == slice(first, n_cycles)
+
+
+@pytest.mark.parametrize(
+    ("begins", "first"),
+    [
+        ([20, -28, 42, -47, 49.5], 2),  # grows from half cycle to half cycle, from 48 % on
+        ([25, -25, 25, -50, 50], 0),  # a cycle of half the range, as a level has
+        ([50, -50, 50, -50, 50], 0),
+    ],
+)
+@pytest.mark.parametrize("is_reversed", [False, True])
+def test_cycles_that_grow_to_the_amplitude_of_the_others_are_a_start(begins, first, is_reversed):
+    wave = np.append(begins, np.tile([-50.0, 50.0], 12))
+    # valley to peak to valley, here or in the mirror image of time
+    wave = np.pad(-wave[::-1] if is_reversed else -wave, 1)
+    ends = np.arange(1, wave.size - 2).reshape(-1, 2)
+    n_cycles = len(ends)
+    steady = slice(0, n_cycles - first) if is_reversed else slice(first, n_cycles)
+    assert _steady_span(wave, ends, ends + 1) == steady

@@ -412,19 +412,25 @@ def _steady_span(values: Floats, branch_first: Indices, branch_last: Indices) ->
     # a machine that waits before it starts makes a cycle of different length
     length = end - begin
     is_long = np.abs(length / np.median(length) - 1) > _OTHER_LENGTH
-    is_off = ((worse > _STEADY) | is_long) & (better < _STARTING)
+    is_off = (worse > _STEADY) | is_long
+    # half cycles that grow up to the level, or die away from it, are no level of their own
+    step = _STEADY * np.median(rises)
+    grows, dies = np.zeros((2, n_cycles), np.bool_)
+    grows[:-1] = (falls - rises > step)[:-1] & (rises[1:] - falls[:-1] > step)
+    dies[1:] = (rises - falls > step)[1:] & (falls[:-1] - rises[1:] > step)
+    starts, stops = (is_off & ((better < _STARTING) | one) for one in (grows, dies))
     # a record may begin and end within a cycle: the branch there is no evidence
     reach = int(np.median(end - begin)) // 20
     if begin[0] <= reach:
-        is_off[0] = _STEADY < of_fall[0] < _STARTING
+        starts[0] = _STEADY < of_fall[0] < _STARTING
     if end[-1] >= values.size - 1 - reach:
-        is_off[-1] = _STEADY < of_rise[-1] < _STARTING
+        stops[-1] = _STEADY < of_rise[-1] < _STARTING
 
     def n_off(of: Bools) -> int:
         first = int(np.argmin(of))  # the first that is like the others
         return first if first <= min(_MOST_STARTING, (n_cycles - _LEFT_STEADY + 1) // 2) else 0
 
-    return slice(n_off(is_off), n_cycles - n_off(is_off[::-1]))
+    return slice(n_off(starts), n_cycles - n_off(stops[::-1]))
 
 
 _MOST_ODD = 0.1  # of the cycles, and at most this many
