@@ -175,6 +175,10 @@ def _pint_text(unit: str) -> str:
     )
 
 
+# signs that look like a degree: of a ring above, of an ordinal, of one letter with its C
+_DEGREES = str.maketrans({"\u02da": "°", "\u00ba": "°", "\u2103": "°C", "\u2109": "°F"})
+
+
 @lru_cache(maxsize=512)
 def scale_to_si(unit: str, dimension: Dimension) -> tuple[float, float]:
     """Factor and offset that convert a value in ``unit`` to SI: ``factor * value + offset``.
@@ -188,6 +192,7 @@ def scale_to_si(unit: str, dimension: Dimension) -> tuple[float, float]:
     >>> scale_to_si("%", "strain")
     (0.01, 0.0)
     """
+    unit = unit.translate(_DEGREES)
     usual = _USUAL.get((unit, dimension))
     if usual is not None:
         return usual

@@ -52,8 +52,9 @@ _LENGTH = (
 _NAMES: dict[str, tuple[Dimension, tuple[str, ...], str]] = {
     "time": (
         "time",
-        (r"^(elapsed|test|total|run|running)? ?time$", r"^(lauf|prüf|pruef|mess|versuchs)?zeit$",
-         r"^time\b", r"\b(time|zeit)$", r"\b(zeit|temps|tiempo|tempo|tijd|czas|время)\b|時間|时间|"
+        (r"^(elapsed|test|total|run|running)? ?time$",
+         r"^(gesamt|lauf|prüf|pruef|mess|versuchs)?zeit$", r"^time\b", r"\b(time|zeit)$",
+         r"\b(zeit|temps|tiempo|tempo|tijd|czas|время)\b|時間|时间|"
          r"시간|uhrzeit|time ?stamp", r"^t(out)?$", r"^wf increment$|^x value$"),
         r"cycle|date|datum|start",
     ),
@@ -80,7 +81,8 @@ _NAMES: dict[str, tuple[Dimension, tuple[str, ...], str]] = {
     ),
     "cycle_counter": (
         "number",
-        (r"^total cycles$", r"^(cycle|zyklus|zyklen|lastspiele?)( number| count(er)?)?$",
+        (r"^total cycles$|^gesamtzyklen$",
+         r"^(cycle|zyklus|zyklen|lastspiele?)( number| count(er)?)?$",
          r"^total cycle count$", r"^cycles$",
          r"^(machine )?(n|no|nr|num|number)( of)? cycles?$", r"^cycles? (no|nr|num|index|id|n)$"),
         r"elapsed|time",
@@ -433,6 +435,8 @@ def _choose_columns(
         if key in chosen:
             continue
         candidates = [c for c in _candidates(key, columns) if c[0].number not in used]
+        if key == "temperature":  # not used in any result, so not worth a question
+            candidates = [c for c in candidates if c[1] != UNKNOWN]
         why = "by its name"
         if not candidates and key in ("time", "crosshead_position", "tension"):
             free = [c for c in columns if c.number not in used]

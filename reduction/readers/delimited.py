@@ -58,7 +58,7 @@ class _Head:
     n_fields: int = 0
     """Number of fields in the first data row."""
     has_comments: bool = False
-    """Whether rows may end with a text in LabVIEW's column Comment."""
+    """Whether rows may end with a text in a last column that most rows lack."""
     is_over: bool = False
     wanted: list[tuple[DeclaredColumn, int]] = field(default_factory=list)
     """Each declared column with its index."""
@@ -196,13 +196,17 @@ def _read_head(head: _Head, text: memoryview, first_row: int, layout: Layout) ->
     return None
 
 
+_OF_TEXTS = ("Comment", "Events")
+"""Last column of LabVIEW and of TracerDAQ, which most rows lack."""
+
+
 def without_comment_name(names: Sequence[str]) -> list[str]:
-    """Column names without LabVIEW's last one, Comment, which most rows lack."""
-    return list(names[:-1] if names and names[-1].strip() == "Comment" else names)
+    """Column names without a last one that most rows lack."""
+    return list(names[:-1] if names and names[-1].strip() in _OF_TEXTS else names)
 
 
 def _without_texts(text: memoryview, first_row: int, head: _Head, layout: Layout) -> memoryview:
-    """Rows without the texts in LabVIEW's column Comment, which are kept as metadata."""
+    """Rows without the texts in a last column that most rows lack, kept as metadata."""
     if not head.has_comments:
         return text
     mark = re.escape(layout.delimiter.encode())

@@ -148,7 +148,7 @@ def _look_at_table(rows: Sequence[Sequence[str]], decimal: str) -> _TableShape |
 
 
 def _without_texts(rows: Sequence[Sequence[str]]) -> Sequence[Sequence[str]]:
-    """Rows without the texts that LabVIEW writes into a last column, Comment, of some of them."""
+    """Rows without the texts that a logger writes into a last column of some of them."""
     head = next((i for i, row in enumerate(rows) if without_comment_name(row) != list(row)), None)
     if head is None:
         return rows

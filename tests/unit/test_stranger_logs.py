@@ -92,6 +92,25 @@ TEXTS = {
         + table([TIME, TIME, np.ones(N), TRAVEL, LOAD / 1e3], digits=7, end=",\n"),
         "utf-8-sig",
     ),
+    "WaveMatrix, German": (
+        '"Gesamtzeit (s)";"Verstrichene Zykluszeit (s)";"Gesamtzyklen";"Position des Aktuators (mm)"'
+        ';"Kraft (N)";"Spannung (MPa)";"Digitale Position (mm)";"Temperatur (\u02daC)";\n'
+        + table([TIME, TIME, np.ones(N), TRAVEL, LOAD, LOAD / 20, TRAVEL, 21 + TIME / 60], ";", ",",
+                digits=7, end=";\n"),
+        "utf-8-sig",
+    ),
+    "TracerDAQ": (
+        "Header Size:  7\nVersion:  2\nSampling Interval:  0.05\nSampling Rate:  20\n"
+        "Sample Count:  241\nDevice Serial Number:  0\n"
+        "Sample Number, Date/Time, Stroke (mm), Load (N), Events\n"
+        + re.sub(
+            r"(?m)^(1|100|241)(,.*)$",
+            r"\1\2, DAQ Pause",
+            table([[str(i + 1) for i in range(N)], [f"05/13/2022 {one}" for one in clock(TIME)],
+                   TRAVEL, LOAD], ",  "),
+        ),
+        "utf-8",
+    ),
     "LabVIEW LVM": (LVM + table([TIME, TRAVEL, LOAD], "\t"), "utf-8"),
     "LabVIEW LVM, comments": (
         LVM

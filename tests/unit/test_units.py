@@ -46,8 +46,9 @@ def test_factor_to_si_is_the_defined_one(unit, dimension, factor):
     assert scale_to_si(unit, dimension) == (pytest.approx(factor, rel=1e-14), 0.0)
 
 
-def test_temperature_carries_an_offset():
-    factor, offset = scale_to_si("degC", "temperature")
+@pytest.mark.parametrize("unit", ["degC", "°C", "\u02daC", "\u00baC", "\u2103"])
+def test_temperature_carries_an_offset(unit):
+    factor, offset = scale_to_si(unit, "temperature")
     assert factor == pytest.approx(1.0) and offset == pytest.approx(273.15)
 
 
