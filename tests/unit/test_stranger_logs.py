@@ -382,6 +382,14 @@ def test_columns_without_names_that_rise_may_be_times_of_channels(tmp_path):
     assert layout["channels"]["time"]["column"] == 2
 
 
+def test_a_time_without_a_name_may_be_set_back_once(tmp_path):
+    place = np.arange(2001)
+    set_back = 0.1 * place + np.where(place < 900, 0.95, 0.0)  # synthetic
+    travel = 10 - 10 * np.cos(place / 20)
+    _, layout = draft(tmp_path, "log.csv", table([set_back, travel, 12 * travel]).encode())
+    assert layout["channels"]["time"]["column"] == 1
+
+
 @pytest.mark.parametrize("names", ["t,x,F", "Time,L,F", "tout,dist,forc", "Time,Distance,Force"])
 def test_short_names_without_units_are_read(tmp_path, names):
     log = f"{names}\n{table([TIME, TRAVEL, LOAD])}"
