@@ -113,7 +113,9 @@ def locate(
         record.crosshead_position, record.crosshead_position_quality_flag
     )
     if kind == "creep" or (settings.cycles.control == "load" and kind != "relaxation"):
-        record, standstills = _held_on_tension(record, position, settings, is_held=kind in HELD)
+        record, standstills = _held_on_tension(
+            record, position, settings, is_held=kind not in CYCLIC
+        )
         tension = _without_flagged_samples(record.tension, record.quality_flag)
     else:
         tension = _without_flagged_samples(record.tension, record.quality_flag)

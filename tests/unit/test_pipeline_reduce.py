@@ -221,6 +221,18 @@ def test_creep_and_load_control_are_held_on_tension_and_relaxation_never(kind, c
     assert (found.start_time == 40).any() == on_tension
 
 
+@pytest.mark.parametrize("kind", ["creep", "quasi-static"])
+def test_a_load_controller_that_hunts_breaks_no_hold(kind):
+    # 0.3 % of the load, about every 7 s
+    one = record()
+    hunting = np.random.default_rng(5).normal(0, 0.003, 50)
+    load = one.tension * (1 + np.interp(one.time, 7 * np.arange(50), hunting))
+    settings = ReductionSettings(cycles=CycleSettings(control="load"))
+    found = locate(replace(one, tension=load), kind=kind, settings=settings).standstills
+    assert found.start_time[1:] == pytest.approx([40], abs=1)
+    assert found.end_time[1:] == pytest.approx([299.5])
+
+
 def test_a_load_that_repeats_one_value_in_a_hold_of_it_is_no_fault():
     located = locate(record(repeats=True), kind="creep", settings=ReductionSettings())
     assert located.standstills.mean_tension[0, -1] == pytest.approx(300)
