@@ -498,10 +498,18 @@ def _read_the_same(one: TestPlan, other: TestPlan) -> bool:
     return bool(low.max() < high.min())
 
 
+def _each_way(one: TestPlan, other: TestPlan, code: str) -> Iterator[tuple[str, Note]]:
+    yield one.id, note(code, other=other.log)
+    yield other.id, note(code, other=one.log)
+
+
 def _of_pairs(
     campaign: Campaign, surveys: Sequence[Survey], models: Models
 ) -> Iterator[tuple[str, Note]]:
-    """Find tests with the same load, and tests of one specimen with different stiffness."""
+    """Find tests with the same load, and tests of one specimen with different stiffness.
+
+    Both tests of a pair, since nothing tells which of them is wrong.
+    """
     read: dict[tuple[tuple[str, ...], ...], list[TestPlan]] = {}
     by_readings: dict[tuple[bytes, ...], list[TestPlan]] = {}
     for survey in surveys:
@@ -514,14 +522,14 @@ def _of_pairs(
         twice = [one for one in before if _read_the_same(one, survey.plan)]
         before.append(survey.plan)
         if twice:
-            yield survey.plan.id, note("log-used-twice", other=twice[0].log)
+            yield from _each_way(survey.plan, twice[0], "log-used-twice")
             continue
         some = survey.extremes.all_over.values()  # at the same places of logs of the same length
         readings = tuple(one.position.tobytes() + one.tension.tobytes() for one in some)
         if readings and survey.plan.step_range is None:
             again = by_readings.setdefault(readings, [])
             if again:
-                yield survey.plan.id, note("readings-used-twice", other=again[0].log)
+                yield from _each_way(survey.plan, again[0], "readings-used-twice")
             again.append(survey.plan)
     by_specimen: dict[str, list[Survey]] = {}
     for survey in surveys:
@@ -596,7 +604,7 @@ def _strains(name: str, several: Sequence[Survey], models: Models) -> tuple[Floa
 def _of_stiffness(
     name: str, several: Sequence[Survey], models: Models, *, softens: bool
 ) -> Iterator[tuple[str, Note]]:
-    """Find tests that differ from most similar tests of the specimen; of two, the later one."""
+    """Find tests that differ from most similar tests of the specimen."""
     others: list[list[tuple[str, float, bool]]] = [[] for _ in several]
     strain, before = _strains(name, several, models)
     reached = np.fmax(strain, before)
@@ -613,10 +621,7 @@ def _of_stiffness(
             others[one].append((several[other].plan.id, 1 / ratio, is_far))
     for place, survey in enumerate(several):
         far = [(test, ratio) for test, ratio, is_far in others[place] if is_far]
-        is_earlier = len(others[place]) == 1 and not any(
-            one.plan.id == others[place][0][0] for one in several[:place]
-        )
-        if 2 * len(far) > len(others[place]) and not is_earlier:
+        if 2 * len(far) > len(others[place]):
             test, ratio = far[0]
             yield (
                 survey.plan.id,
