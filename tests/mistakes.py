@@ -525,6 +525,18 @@ add("tether-factor-tenth", T, "band",
     say(LOAD, ("factor", "gain", "unit")),
     do(also, NEW, "factor = 0.1"), do(also, USED, "factor = 0.1"))
 # five percent is less than two tethers of one batch differ by, and no statement speaks of it
+@mistake("tether-gain-range-in-the-log", T, "data", "The amplifier was switched to another range between the holds and the cycles of T-1.",
+         say(("load", "tension"), ("step", "jump"), ("range", "gain", "factor")))
+def _range_in_the_log(folder: Path) -> None:
+    def f(log: Log) -> None:
+        start = log.column("time_s").index(348.8)  # the machine waits for the cycles
+        for name in LOADS[T]:
+            name = f"{name}_lb"
+            log.put(name, [v * (1.1 if i >= start else 1) for i, v in enumerate(log.column(name))], "{:.3f}")
+
+    each(folder, f, ("T-1",))
+
+
 add("tether-gain-5-percent", T, "no",
     "The calibration of the load cell is five percent off in all tests.",
     say(LOAD, ("gain", "factor")), do(scale, ("load_new_lb", "load_used_lb"), 1.05, "{:.3f}"))

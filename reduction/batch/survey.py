@@ -28,6 +28,7 @@ from reduction.record.errors import (
     refused_by_system,
 )
 from reduction.record.measurement import Floats, Record, Source, Specimen, StepReadings
+from reduction.record.note_sentences import JERKS
 from reduction.record.notes import Note, note
 from reduction.record.row_counts import count_rows
 from reduction.record.samples import finite_extremes, step_of_codes
@@ -390,15 +391,33 @@ def _with_load_at_slack(
         )
         if not campaign.specimens[one.subject].can_push
     ]  # fmt: skip
-    jumps = _jumps_of_length(whole, campaign, plan, until=float(located.record.time[-1]))
+    until = float(located.record.time[-1])
+    jumps = _jumps_of_length(whole, campaign, plan, until=until)
     of_record = [
-        one
+        _doubt_of_step(one, plan, until=until, slack_tension=stands.slack_tension)
         for one in located.record.notes
         # with an extensometer, strain does not depend on the length
         if not (one.code.startswith("reference-length") and _is_measured(whole, campaign, plan))
     ]
     record = replace(located.record, notes=(*notes, *jumps, *earlier, *of_record))
     return replace(located, record=record, load_at_slack=tuple(found))
+
+
+def _doubt_of_step(one: Note, plan: TestPlan, *, until: float, slack_tension: float) -> Note:
+    """A step between two loads of a taut specimen is a warning; one to or from slack is told so."""
+    step = one.numbers
+    if (
+        one.code != "channel-steps"
+        or step["unit"] != "N"
+        or min(step["low"], step["high"]) <= slack_tension
+        or step["n_more"] >= JERKS
+        or step["time"] > until
+        or plan.kind == "tensile"
+        or plan.failed
+    ):
+        return one
+    names = ("channel", "low", "high", "sample", "time")
+    return note("load-steps", **{name: step[name] for name in names})
 
 
 def _is_measured(located: Located, campaign: Campaign, plan: TestPlan) -> bool:

@@ -327,9 +327,8 @@ def _find_lone_steps(
     >>> _find_lone_steps(tension, tension[np.newaxis], **given).size
     0
     """
-    seen = _sampled_windows(values)
-    low, high = np.quantile(seen[np.isfinite(seen)], _OUTER) if np.isfinite(seen).any() else (0, 0)
-    limit = max(factor * noise, _SHARE_OF_RANGE * float(high - low))
+    reach = _usual_range(values)
+    limit = max(factor * noise, _SHARE_OF_RANGE * reach)
     found = []
     for part in sample_blocks(values.size, values, overlap=1):
         some = _candidates(np.abs(np.diff(values[part])), limit) + part.start
@@ -338,8 +337,19 @@ def _find_lone_steps(
     change = take_samples(values, step + 1) - take_samples(values, step)
     step = step[_level_change(values, step) * np.sign(change) > _STAYS * np.abs(change)]
     for channel, its_noise in zip(beside, noise_beside, strict=True):
-        step = step[~_stands_out(channel, step, factor * float(its_noise))]
+        its_limit = factor * float(its_noise)
+        step = step[~_stands_out(channel, step, its_limit)]
+        # what its noise would hide does not show that it stood still
+        change = np.abs(take_samples(values, step + 1) - take_samples(values, step))
+        step = step[change * _usual_range(channel) > its_limit * reach]
     return step
+
+
+def _usual_range(values: Floats) -> float:
+    """Range of a channel without its outer values."""
+    seen = _sampled_windows(values)
+    seen = seen[np.isfinite(seen)]
+    return float(np.ptp(np.quantile(seen, _OUTER))) if seen.size else 0.0
 
 
 def _candidates(step: Floats, limit: float) -> Integers:

@@ -228,10 +228,21 @@ _OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             + (
                 ". Possible causes: a slip, a break, a re-zeroed channel, or a change of unit;"
                 " results across the step mix both states"
-                if n_more < _JERKS
+                if n_more < JERKS
                 else ". So many are no slips: the channel moves in jerks, as with stick-slip or a"
                 " stepping motor; they act as noise"
             )
+        ),
+    ),
+    "load-steps": (
+        "warning",
+        lambda channel, low, high, sample, time: (
+            f"{channel} steps from {low:.4g} to {high:.4g} N between sample {sample} ({time:.6g} s)"
+            " and the next, and the position does not: the range, gain, unit or zero of the load"
+            " changed"
+            + (", since no slip raises a load" if high > low else ", or the specimen slipped")
+            + ". Results mix the loads before and after it: correct the log, or state each part as"
+            " a step of its own"
         ),
     ),
     "rows-flagged": (
@@ -2097,7 +2108,7 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
 }  # fmt: skip
 
-_JERKS = 20  # lone steps of a channel: more are its way of moving
+JERKS = 20  # lone steps of a channel: more are its way of moving
 
 SENTENCES: Mapping[str, tuple[Severity, str | Callable[..., str]]] = {
     **_OF_READING, **_OF_STRAIN, **_OF_CYCLES, **_OF_MODULI, **_OF_HOLDS, **_OF_LINE,
@@ -2111,7 +2122,7 @@ CAUSES = (
     "column-of-another", "diameter-readings-apart", "stretched-diameters-apart",
     "cycles-in-other-kind", "cycles-unlike", "rate-not-as-stated", "level-not-as-stated",
     "load-never-falls", "load-zero-drifts", "load-zero-wrong", "load-negative",
-    "load-falls-with-stretch", "pushed-in-cycles", "reference-length-under-preload",
+    "load-steps", "load-falls-with-stretch", "pushed-in-cycles", "reference-length-under-preload",
     "reference-length-elsewhere", "tension-far-below-strength", "extensometer-late",
     "extensometer-ends", "position-ends", "load-in-steps",
     "tape-off-crosshead", "marks-alike", "loops-run-backward",

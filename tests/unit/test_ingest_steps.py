@@ -54,6 +54,13 @@ def test_a_step_that_the_other_channel_makes_as_well_is_the_test():
     assert steps(tension, position) == []
 
 
+def test_a_step_whose_motion_the_noise_of_the_position_hides_is_none():
+    tension = TENSION.copy()
+    tension[912:] += 80.0
+    # of a stiff wire: 80 N are a tenth of what the position can show
+    assert steps(tension, 6.0 + (POSITION - 6.0) / 1e3, noise=TENSION_NOISE) == []
+
+
 def test_what_comes_back_at_once_is_no_step_that_stays():
     tension = TENSION.copy()
     tension[912] += 80.0
