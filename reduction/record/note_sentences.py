@@ -359,6 +359,12 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             " mean slack length, and the intervals are wider by what the rows differ"
         ),
     ),
+    "splices-unlike": (
+        "warning",
+        "by the marks, the near splice stretches by {near:.0%} and the far one by {far:.0%}, though"
+        " both carry one load. Check near_toe, far_toe and far_thimble, first of the slack rows:"
+        " all strain refers to them",
+    ),
     "marks-of-failed-tests": (
         "note",
         "{n_marks} of {n_stretched} stretched marks belong to tests that failed ({tests}), so"
@@ -2125,7 +2131,7 @@ CAUSES = (
     "load-steps", "load-falls-with-stretch", "pushed-in-cycles", "reference-length-under-preload",
     "reference-length-elsewhere", "tension-far-below-strength", "extensometer-late",
     "extensometer-ends", "position-ends", "load-in-steps",
-    "tape-off-crosshead", "marks-alike", "loops-run-backward",
+    "tape-off-crosshead", "marks-alike", "splices-unlike", "loops-run-backward",
     "extensometer-against-stroke", "gauge-against-length",
     "modulus-outside-band", "strength-outside-band", "tension-above-strength", "stiffness-jumps",
     "stiffness-off-others", "peak-off-others", "run-off-plan", "mean-tension-ramps",

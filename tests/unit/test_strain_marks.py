@@ -8,6 +8,7 @@ from scipy import stats
 
 from reduction.record.errors import DataError
 from reduction.record.measurement import Specimen, SpliceMarks
+from reduction.record.settings import StrainSettings
 from reduction.stages.standstills import Standstills
 from reduction.stages.strain.mark_readings import (
     LEVEL,
@@ -185,6 +186,43 @@ def test_a_slack_row_that_is_misread_is_named():
 
 def test_slack_rows_that_differ_by_the_error_of_the_tape_are_sound():
     assert "slack-rows-differ" not in of_slack_rows(3.120, 3.122, 3.117)
+
+
+BY_MARKS = StrainSettings(method="marks")
+
+# WHOI-2005-10, Table 3, T-1 new: slack, 75, 100 and 125 % [ft]
+PRINTED = np.array([
+    (2.06, 10.44, 12.26), (2.42, 17.22, 19.37), (2.53, 19.48, 21.75), (2.69, 21.72, 24.12),
+]).T  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("column", "misread", "is_told"),
+    [
+        (1, 10.44, False),  # as printed: 24 and 25 %
+        (1, 10.49, False),  # 15 mm
+        (1, 10.84, True),  # digits of 10.48 swapped: the far splice stretches by 60 %
+        (0, 2.60, True),
+        (2, 12.62, True),
+    ],
+)
+def test_two_splices_of_one_tether_stretch_alike(column, misread, is_told):
+    readings = PRINTED.copy()
+    readings[column, 0] = misread
+    near, far, thimble = 0.3048 * readings
+    hold = ("slack", "min", "centre", "max")
+    rows = SpliceMarks("new", ("T-1",) * 4, hold, near, far, thimble, reading_uncertainty=1e-3)
+    found = fit_strain_model(Specimen("new"), test_id="T-1", marks=rows, settings=BY_MARKS)
+    assert ("splices-unlike" in {one.code for one in found.notes}) == is_told
+
+
+def test_a_grip_in_place_of_a_splice_does_not_stretch():
+    readings = PRINTED.copy()
+    readings[0] = 0.1
+    near, far, thimble = 0.3048 * readings
+    rows = SpliceMarks("new", ("T-1",) * 4, ("slack", "min", "centre", "max"), near, far, thimble)
+    found = fit_strain_model(Specimen("new"), test_id="T-1", marks=rows, settings=BY_MARKS)
+    assert "splices-unlike" not in {one.code for one in found.notes}
 
 
 def test_splices_that_shrink_under_more_stretch_are_refused():

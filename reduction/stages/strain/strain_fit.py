@@ -731,6 +731,29 @@ def _on_slack(marks: SpliceMarks) -> tuple[Note, ...]:
     )
 
 
+def _on_unlike_splices(marks: SpliceMarks) -> tuple[Note, ...]:
+    """Say where one splice stretches much more than the other, though both carry one load.
+
+    No splice law is fitted to the slack rows: nothing else shows a toe that is misread there.
+    """
+    if not 0 < np.count_nonzero(marks.is_slack) < marks.is_slack.size:
+        return ()
+    lengths = np.stack([marks.near_toe, marks.far_thimble - marks.far_toe])
+    relaxed = lengths[:, marks.is_slack].mean(axis=1)
+    grown = lengths[:, ~marks.is_slack].mean(axis=1) - relaxed
+    little, much = np.sort(grown / relaxed)
+    # a grip in place of a splice does not stretch
+    reading = max(marks.reading_uncertainty, TAPE_UNCERTAINTY)
+    if _UNLIKE * little >= much or np.abs(grown).min() <= _OUTLIER_NOTICE * reading:
+        return ()
+    return (note("splices-unlike", marks.specimen, near=grown[0] / relaxed[0],
+                 far=grown[1] / relaxed[1]),)  # fmt: skip
+
+
+# ratio of the extensions of two splices; those of WHOI-2005-10, Table 3, differ by a factor of 1.07
+_UNLIKE = 1.5
+
+
 def _on_reading_time(
     model: StrainModel, is_stretched: Bools, at_start: StrainModel
 ) -> tuple[str, ...]:
@@ -807,6 +830,7 @@ def _remarks_on(
         *_on_constant_fraction(model, is_stretched),
         *_on_scatter(model, is_stretched, expected),
         *_on_slack(marks),
+        *_on_unlike_splices(marks),
     )
 
 
