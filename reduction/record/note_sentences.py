@@ -374,6 +374,13 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "note",
         "{n_marks} of {n_stretched} stretched marks match no hold in the logs and are not used",
     ),
+    "marks-without-tension": (
+        "warning",
+        "none of its {n_marks} stretched marks matches a hold in the logs, so their tension is not"
+        " known and the strain of the splices follows that of the free length alone. In cycles the"
+        " rubber pulls less than at the marks: strain amplitudes may be some percent too large and"
+        " EA too small, by more than their intervals. Use logs that begin before the tape is read",
+    ),
     "load-zero-wrong": (
         "warning",
         lambda load, n_rests, zero, effect: (

@@ -216,6 +216,20 @@ def test_two_splices_of_one_tether_stretch_alike(column, misread, is_told):
     assert ("splices-unlike" in {one.code for one in found.notes}) == is_told
 
 
+@pytest.mark.parametrize(("of_stretched", "is_told"), [(np.nan, True), (400.0, False)])
+def test_marks_without_a_hold_in_any_log_are_told(of_stretched, is_told):
+    near, far, thimble = 0.3048 * PRINTED
+    rows = SpliceMarks("new", ("T-1",) * 4, ("slack", "min", "centre", "max"), near, far, thimble)
+    force = of_stretched * np.array([0.0, 0.8, 1.0, 1.2])
+    force[0] = 0.0  # the rest is in the log
+    found = fit_strain_model(Specimen("new"), test_id="T-1", marks=rows, mark_tension=force)
+    told = {one.code: one for one in found.notes}
+    assert ("marks-without-tension" in told) == is_told
+    if is_told:
+        assert told["marks-without-tension"].numbers["n_marks"] == 3
+        assert "marks-without-hold" not in told
+
+
 def test_a_grip_in_place_of_a_splice_does_not_stretch():
     readings = PRINTED.copy()
     readings[0] = 0.1

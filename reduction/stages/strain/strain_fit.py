@@ -778,7 +778,7 @@ def _on_reading_time(
 
 
 def _on_left_out(
-    model: StrainModel, marks: SpliceMarks, n_used: int, failed_tests: Sequence[str]
+    model: StrainModel, marks: SpliceMarks, is_stretched: Bools, failed_tests: Sequence[str]
 ) -> tuple[Note, ...]:
     """Stretched marks without a tension for the law: their log failed, or shows no hold."""
     rows = np.flatnonzero(~marks.is_slack & ~marks.is_unloading)
@@ -794,8 +794,11 @@ def _on_left_out(
                 tests=", ".join(dict.fromkeys(tests)),
             )
         )
+    n_used = int(is_stretched.sum())
     without_hold = rows.size - n_used - len(tests)
-    if model.method in ("tension-driven", "mixed") and without_hold > 0:
+    if model.method == "mixed" and not np.isfinite(model.mark_tension[is_stretched]).any():
+        notes.append(note("marks-without-tension", model.specimen, n_marks=n_used))
+    elif model.method in ("tension-driven", "mixed") and without_hold > 0:
         notes.append(
             note("marks-without-hold", model.specimen, n_marks=without_hold, n_stretched=rows.size)
         )
@@ -826,7 +829,7 @@ def _remarks_on(
     """
     expected = sqrt(3) * marks.reading_uncertainty / model.coefficients["relaxed_free_length"]
     return (
-        *_on_left_out(model, marks, int(is_stretched.sum()), failed_tests),
+        *_on_left_out(model, marks, is_stretched, failed_tests),
         *_on_constant_fraction(model, is_stretched),
         *_on_scatter(model, is_stretched, expected),
         *_on_slack(marks),
