@@ -268,16 +268,6 @@ def test_archives_without_the_specimen_are_passed_over():
     assert found.notes == ("of other specimens: c/T-2",)
 
 
-def test_one_test_twice_is_refused():
-    with pytest.raises(SettingsError, match="test c/T-1 is listed twice"):
-        source_of_tests([cyclic(), cyclic()], "new", branch="mean")
-
-
-def test_specimens_of_one_name_and_two_diameters_are_refused():
-    with pytest.raises(SettingsError, match="another diameter of 'new'; found 0.02 in c/T-1, 0.03"):
-        source_of_tests([cyclic(), cyclic("T-2", 2, diameter=0.03)], "new", branch="mean")
-
-
 def stated(dataset, **words):
     return dataset.assign({f"specimen_{name}": ("specimen", [one]) for name, one in words.items()})
 
@@ -309,11 +299,6 @@ def test_mass_a_length_is_that_of_all_its_tests():
         source_of_tests(tests, "new", branch="mean")
 
 
-def test_tests_without_a_curve_are_refused():
-    with pytest.raises(DataError, match="no test of 'new' gives a mean curve.*held .relaxation"):
-        source_of_tests([hold()], "new", branch="mean")
-
-
 def test_only_tests_with_a_piece_in_the_curve_are_its_sources():
     cycles = cyclic("T-2", 3)
     found = source_of_tests([pull(), cyclic(), cycles], "new", branch="mean")
@@ -341,3 +326,29 @@ def test_why_a_test_has_the_status_check_goes_on_with_its_curve():
     assert said == ["DOUBTFUL: T-1 has the status check: old: its zero drifts"]
     assert check_words(doubted("a hint", severity="note"), "new") == ()
     assert check_words(cyclic(), "new") == ()
+
+
+REFUSED = {
+    "one test twice is refused": (
+        lambda: source_of_tests([cyclic(), cyclic()], "new", branch="mean"),
+        SettingsError,
+        "test c/T-1 is listed twice",
+    ),
+    "specimens of one name and two diameters are refused": (
+        lambda: source_of_tests([cyclic(), cyclic("T-2", 2, diameter=0.03)], "new", branch="mean"),
+        SettingsError,
+        "another diameter of 'new'; found 0.02 in c/T-1, 0.03",
+    ),
+    "tests without a curve are refused": (
+        lambda: source_of_tests([hold()], "new", branch="mean"),
+        DataError,
+        "no test of 'new' gives a mean curve.*held .relaxation",
+    ),
+}
+
+
+@pytest.mark.parametrize("what", REFUSED)
+def test_refusals(what):
+    call, error, message = REFUSED[what]
+    with pytest.raises(error, match=message):
+        call()

@@ -21,22 +21,14 @@ from reduction.campaign.model import _ReportSection, report_details
 from reduction.record.errors import ArchiveError, SettingsError
 
 PATH = Path("campaign.toml")
-
-
 PSI = 6894.757293168361
-
-
 STEP = SimpleNamespace(
     name="slow pull", kind="quasi-static", product=lambda test: f"{test}.slow-pull"
 )
-
-
 TESTS = {
     "T-1": SimpleNamespace(id="T-1", kind="cyclic", steps=()),
     "P-1": SimpleNamespace(id="P-1", kind="cyclic", steps=(STEP,)),
 }
-
-
 LIMIT = {"quantity": "tangent_modulus", "test": "T-1", "upper": "1 MPa"}
 
 

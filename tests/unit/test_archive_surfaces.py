@@ -47,14 +47,8 @@ from reduction.report.experiment_tables import _expanded_of_coefficients, _inter
 from reduction.report.product_views import ExperimentView
 
 ONE = surface_experiment()
-
-
 SHORT = surface_experiment("short", seed=4, names=RESPONSES[:1], missing=(3,))
-
-
 LINES = surface_experiment("lines", seed=5, names=RESPONSES[:2], specimens=("a", "b"))
-
-
 SCREENING = screening_experiment()
 
 
@@ -370,8 +364,6 @@ RESULTS = (
                        treatment="random", missing=(0, 1)),
     screening_experiment(),
 )  # fmt: skip
-
-
 SURFACES = [result for result in RESULTS if result.surfaces is not None]
 
 
@@ -501,17 +493,11 @@ def test_a_response_that_cannot_be_fitted_comes_back_with_its_reason():
 # surfaces at named points stand in the archive as they are elsewhere
 
 SHARED = surface_experiment()
-
-
 # of scatter alone: nothing is known that the runs share
 ONE_OF_POINTS = replace(SHARED, shared=None)
-
-
 SHORT_OF_POINTS = replace(
     surface_experiment("short", seed=4, names=RESPONSES[:1], missing=(3,)), shared=None
 )
-
-
 RANDOM = replace(
     surface_experiment(
         "random", seed=6, names=RESPONSES[:2], specimens=("a", "b", "c"), treatment="random"

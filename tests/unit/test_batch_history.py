@@ -296,8 +296,6 @@ TAPE = SpliceMarks(
     "new", ("P", "P"), ("slack", "min"), near_toe=np.array([0.6, 0.7]),
     far_toe=np.array([3.2, 5.2]), far_thimble=np.array([3.7, 5.9]), reading_uncertainty=0.001,
 )  # fmt: skip
-
-
 MODEL = StrainModel(
     "new", "tension-driven", {"relaxed_free_length": 2.6}, mark_test=("P", "P"),
     mark_hold=("slack", "min"), mark_position=TAPE.far_thimble,
@@ -378,11 +376,7 @@ MARKS = SpliceMarks(
     near_toe=np.array([2.06, 2.42, 2.69, 2.06]), far_toe=np.array([10.44, 17.22, 21.72, 10.48]),
     far_thimble=np.array([12.26, 19.37, 24.12, 12.26]),
 )  # fmt: skip
-
-
 METHODS = ("tension-driven", "marks", "strain-ratio", "constant-fraction", "gauge-length")
-
-
 CAMPAIGN = SimpleNamespace(
     uncertainty=StatedErrors(), specimens={"new": Specimen("new", gauge_length=8.4)}
 )

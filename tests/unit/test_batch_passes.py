@@ -311,8 +311,6 @@ def test_one_noisy_reading_is_no_preload(tmp_path):
 # what a check says of an experiment: minimum tensions by hand, logs that are copies
 
 MEAN = FactorLevels("mean_tension", 0.10, 0.30, "rated_break_strength")
-
-
 AMPLITUDE = FactorLevels("tension_amplitude", 0.05, 0.15, "rated_break_strength")
 
 

@@ -22,8 +22,6 @@ from reduction.record.measurement import Specimen
 from reduction.record.settings import ReductionSettings
 
 CAMPAIGN = Path(__file__).parents[2] / "raw" / "nylon-synthetic" / "campaign.toml"
-
-
 LOADS = {"mean_tension": ("12 %RBS", "30 %RBS"), "tension_amplitude": ("5 %RBS", "12 %RBS")}
 
 
@@ -39,8 +37,6 @@ STEPS = (
     StepPlan("dynamic 1", "cyclic", (0.0, 1.0), None, None),
     StepPlan("pull", "quasi-static", (1.0, 2.0), None, None),
 )
-
-
 TESTS = {
     "R1": plan_of("R1"),
     "R2": plan_of("R2"),
@@ -48,8 +44,6 @@ TESTS = {
     "P-7": plan_of("P-7", steps=STEPS),
     "H": plan_of("H", "relaxation"),
 }
-
-
 SPECIMENS = {
     "line": Specimen("line", kind="rope", rated_break_strength=1000.0),
     "bare": Specimen("bare", kind="rope"),
@@ -301,8 +295,6 @@ tension_amplitude = ["20 % of mean", "60 % of mean"]
 [responses]
 hysteresis_energy = { unit = "lbf" }
 """
-
-
 STRENGTH = '[experiment]\nrated_break_strength = "1000 lbf"\n'
 
 

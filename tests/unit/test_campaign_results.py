@@ -98,8 +98,6 @@ def test_blank_lines_are_counted_and_left_out(tmp_path):
 
 
 GOOD = "B-1,tensile_strength,PD,new,0,6400,lbf,free,yes,no,"
-
-
 BAD = {
     "quantity": ("B-1,strength,,,,1,N,,,,", r":2 \[quantity\]: a quantity has no known name; found "
                  "'strength'; needed tensile_strength, strain_at_failure"),
@@ -198,8 +196,6 @@ ROWS = (
     "B-1,tensile_strength,N-1,PD,,6400,\n"
     "B-2,tensile_strength,,PD,worn,4672,\n"
 )
-
-
 SHEET = """
 [specimens.N-1]
 kind = "rope"
@@ -207,14 +203,8 @@ material = "nylon"
 condition = "new"
 diameter = "0.5 in"
 """
-
-
 CAMPAIGN = '[campaign]\nid = "c"\ntitle = "t"\n'
-
-
 NAMED = CAMPAIGN + 'results = "results.csv"\n'
-
-
 TEST = """
 [specimens.a]
 kind = "rope"

@@ -401,8 +401,6 @@ def test_the_end_of_a_curve_is_half_a_bin_beyond_its_last_samples_with_the_noise
 # measured fill pressure against the prediction, of hoses whose pressure is known
 
 UNCERTAIN = {"wrap_angle": np.radians(0.3), "cord_load_scale": 0.03}
-
-
 GAUGE, STRAIN_GAIN = 5e3, 0.003
 
 

@@ -275,8 +275,6 @@ def test_a_mean_tension_is_needed():
 # intervals of K_1 and tau of an exported line against the line of scaled and shifted surfaces
 
 CELL, CLOCK = Component("tension_gain", "cell"), Component("lag", "clock")
-
-
 NAMES = ("quasi_static_spring_constant", "apparent_spring_constant", "hysteresis_energy")
 
 

@@ -37,8 +37,6 @@ from reduction.record.contributions import Component
 from reduction.record.errors import ArchiveError, DataError, SettingsError
 
 STRAIN = np.linspace(0.1, 1.0, 10)
-
-
 UP, DOWN = 500 * STRAIN, 500 * STRAIN - 40 * STRAIN * (1 - STRAIN)
 
 
@@ -404,8 +402,6 @@ SOURCE = PieceSource(
     "tether", "mean", (piece("T-1", 0.5, 1.0), piece("T-2", 0.8, 1.2), piece("T-3", 1.4, 2.0)),
     diameter=0.02, sources=("archive a",), notes=("held is left out",), is_synthetic=True,
 )  # fmt: skip
-
-
 CURVE = compose(SOURCE, CompositeRule())
 
 
@@ -477,11 +473,7 @@ def test_the_header_of_a_table_that_ends_below_the_loads_of_a_test():
 # uncertainty of an exported curve: both parts, and the errors it shares with other curves
 
 STRAIN_OF_SPREAD = np.array([0.1, 0.2, 0.3])
-
-
 UP_OF_SPREAD, DOWN_OF_SPREAD = 500 * STRAIN_OF_SPREAD, 480 * STRAIN_OF_SPREAD
-
-
 CELL, TAPE = Component("tension_gain", "cell"), Component("strain_calibration", "new", 2)
 
 

@@ -135,11 +135,7 @@ def test_a_column_of_words_is_words_everywhere(tmp_path):
 # tables of design values: what stands in them, and that each format gives it back
 
 LBF = 4.4482216152605
-
-
 NAME = "polyester-double-braid-0.5in"
-
-
 LEVELS = {
     "frequency": np.array([0.1, 0.3, 0.5]),
     "mean_tension": np.array([4000.0, 6000.0, 8400.0]),

@@ -93,8 +93,6 @@ def test_every_deck_of_a_folder_has_a_table_of_its_own(tmp_path):
 
 
 K, LOSS = 100.0, 0.3  # a spring [N], and the loss factor of the dashpot beside it
-
-
 REACH = K * math.hypot(1, LOSS) / 2  # half the range of tension in a sine of strain 1 +- 0.5
 
 
@@ -185,11 +183,6 @@ def test_nominal_stress_stands_first_and_the_origin_is_there():
 
 def test_a_label_begins_with_a_letter():
     assert "*MATERIAL, NAME=M_64_hose\n" in _abaqus_text(line(name="64-hose"))
-
-
-def test_a_line_without_diameter_has_no_stress():
-    with pytest.raises(SettingsError, match="diameter"):
-        _abaqus_text(line(diameter=math.nan))
 
 
 @pytest.mark.parametrize("to", [to for to in FORMS if to != "raft"])
@@ -283,11 +276,6 @@ def test_every_number_is_a_number_of_yaml():
     assert isinstance(found["MassPerUnitLength"], float)
 
 
-def test_a_line_without_mass_is_refused():
-    with pytest.raises(SettingsError, match="linear density"):
-        _orcaflex_text(line(linear_density=math.nan))
-
-
 @pytest.mark.parametrize("name", ["12.5", "1", "no", "null", "1e3"])
 def test_a_name_that_yaml_takes_for_something_else_stays_text(name):
     found = yaml.safe_load(_orcaflex_text(line(name=name)))
@@ -335,11 +323,6 @@ def test_the_error_is_the_greatest_anywhere():
     assert off.max() <= found.error + 2e-6
     assert off.max() == pytest.approx(found.error, rel=0.01)
     assert found.share < 0.003
-
-
-def test_a_loop_is_refused():
-    with pytest.raises(DataError, match="a loop cannot be exported"):
-        _fit_smooth_curve(np.array([0.0, 1.0, 0.5]), np.array([0.0, 1.0, 0.2]))
 
 
 def test_the_three_expressions_are_the_curve_and_its_derivatives():
@@ -444,6 +427,32 @@ def test_weight_in_water_is_newton_a_metre():
     assert material["yield"] == "3000.0"
 
 
-def test_a_line_without_mass_is_refused_in_whoi_cable():
-    with pytest.raises(SettingsError, match="linear density"):
-        _whoicable_text(line(linear_density=math.nan))
+REFUSED = {
+    "a line without diameter has no stress": (
+        lambda: _abaqus_text(line(diameter=math.nan)),
+        SettingsError,
+        "diameter",
+    ),
+    "a line without mass is refused": (
+        lambda: _orcaflex_text(line(linear_density=math.nan)),
+        SettingsError,
+        "linear density",
+    ),
+    "a loop is refused": (
+        lambda: _fit_smooth_curve(np.array([0.0, 1.0, 0.5]), np.array([0.0, 1.0, 0.2])),
+        DataError,
+        "a loop cannot be exported",
+    ),
+    "a line without mass is refused in whoi cable": (
+        lambda: _whoicable_text(line(linear_density=math.nan)),
+        SettingsError,
+        "linear density",
+    ),
+}
+
+
+@pytest.mark.parametrize("what", REFUSED)
+def test_refusals(what):
+    call, error, message = REFUSED[what]
+    with pytest.raises(error, match=message):
+        call()

@@ -13,8 +13,6 @@ from reduction.stages.holds.prony_series import (
 from reduction.stages.holds.relaxation_numbers import logarithmic_blocks
 
 RAMP = 4.0
-
-
 TERMS = {
     1: ([60.0], [30.0]),
     2: ([40.0, 35.0], [5.0, 70.0]),
@@ -106,16 +104,6 @@ def test_a_short_series_is_refused_where_the_record_shows_that_it_is_wrong():
         fit(elapsed, series + noise)
 
 
-def test_no_terms_are_refused():
-    with pytest.raises(DataError, match="a series needs a term; found 0"):
-        fit_prony([1.0, 2.0], [1.0, 1.0], maximum_terms=0)
-
-
-def test_series_that_do_not_pair_up_are_refused():
-    with pytest.raises(DataError, match="series do not pair up"):
-        fit_prony([1.0, 2.0], [1.0])
-
-
 @pytest.mark.parametrize("duration", [45.0, 120.0, 400.0])
 def test_the_long_time_tension_carries_what_a_hold_is_too_short_to_show(duration):
     # two terms fit each hold; a third is still relaxing at the end of it
@@ -171,11 +159,32 @@ def test_columns_are_one_at_time_zero():
     np.testing.assert_array_equal(_exponentials(np.zeros(3), np.array([1.0, 2.0])), 1.0)
 
 
-def test_a_negative_ramp_is_refused():
-    with pytest.raises(DataError, match="negative duration; found -1 s"):
-        _ramp_factor([1.0], ramp_duration=-1.0)
+REFUSED = {
+    "no terms are refused": (
+        lambda: fit_prony([1.0, 2.0], [1.0, 1.0], maximum_terms=0),
+        DataError,
+        "a series needs a term; found 0",
+    ),
+    "series that do not pair up are refused": (
+        lambda: fit_prony([1.0, 2.0], [1.0]),
+        DataError,
+        "series do not pair up",
+    ),
+    "a negative ramp is refused": (
+        lambda: _ramp_factor([1.0], ramp_duration=-1.0),
+        DataError,
+        "negative duration; found -1 s",
+    ),
+    "a time of zero is refused": (
+        lambda: prony_tension([0.0], tension=[1.0], relaxation_time=[0.0], long_time_tension=0.0),
+        DataError,
+        "relaxation_time are not positive",
+    ),
+}
 
 
-def test_a_time_of_zero_is_refused():
-    with pytest.raises(DataError, match="relaxation_time are not positive"):
-        prony_tension([0.0], tension=[1.0], relaxation_time=[0.0], long_time_tension=0.0)
+@pytest.mark.parametrize("what", REFUSED)
+def test_refusals(what):
+    call, error, message = REFUSED[what]
+    with pytest.raises(error, match=message):
+        call()

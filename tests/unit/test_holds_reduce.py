@@ -21,8 +21,6 @@ from reduction.stages.holds.relaxation_numbers import value_at_times
 from reduction.stages.standstills import Standstills
 
 STEP = 0.1
-
-
 TERMS = {"tension": np.array([40.0, 35.0]), "relaxation_time": np.array([5.0, 60.0])}
 
 
@@ -634,11 +632,7 @@ def test_a_long_ramp_does_not_hide_a_term_of_seconds_from_the_drop(fast):
 # what speaks against numbers from a hold: each reason alone
 
 TIME = np.arange(0.0, 180.0, 0.1)
-
-
 RELAXING = 350 + 50 * np.exp(-TIME / 40)
-
-
 RAMP = _Ramp(start_time=-5.0, end_time=0.0, centre_time=-2.5, duration=5.0, stiffness=100.0)
 
 

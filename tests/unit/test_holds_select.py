@@ -11,15 +11,9 @@ from reduction.stages.holds.hold_selection import _find_ramp, select_hold
 from reduction.stages.standstills import Standstills
 
 TIME = np.arange(0.0, 100.0, 0.5)
-
-
 # 2 m/s up to 4 m, a hold to 40 s, on to 6 m, a hold to the end
 POSITION = np.interp(TIME, [0, 10, 12, 40, 41, 100], [0, 0, 4, 4, 6, 6])
-
-
 TENSION = 100 * POSITION
-
-
 STAND = Standstills(
     first=np.array([24, 82]), last=np.array([79, 199]), start_time=np.array([12.0, 41.0]),
     end_time=np.array([39.5, 99.5]), mean_position=np.array([4.0, 6.0]),

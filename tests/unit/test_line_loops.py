@@ -23,15 +23,11 @@ from reduction.stages.three_parameter_line.loop_midline import (
 )
 
 REST, SPRING, TIME, FREQUENCY = 1.2e4, 1.8e4, 2.0, 0.3
-
-
 LINE = {
     "quasi_static_spring_constant": REST,
     "dissipation_spring_constant": SPRING,
     "relaxation_time": TIME,
 }
-
-
 NAMES = (
     "storage_spring_constant", "loss_spring_constant", "dissipation_spring_constant",
     "relaxation_time", "dashpot_coefficient",
@@ -322,11 +318,7 @@ def test_the_interval_of_a_frequency_includes_that_to_which_a_searching_machine_
 # the midline of a loop at its mean strain, of loops whose spring is known
 
 N, CYCLES = 60, 8
-
-
 PHASE = np.arange(N * CYCLES + 1) * 2 * np.pi / N
-
-
 FIRST = np.arange(CYCLES) * N
 
 

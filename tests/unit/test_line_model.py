@@ -112,8 +112,6 @@ LOOP = {
     "frequency": 0.3,
     "quasi_static_spring_constant": 2.014e4,
 }
-
-
 UNCERTAINTY = {
     "apparent_spring_constant": 6.317e4 * 0.003,
     "hysteresis_energy": 1.392 * 0.02,
@@ -121,8 +119,6 @@ UNCERTAINTY = {
     "frequency": 0.3 * 0.001,
     "quasi_static_spring_constant": 2.014e4 * 0.02,
 }
-
-
 NAMES = (
     "storage_spring_constant", "loss_spring_constant", "dissipation_spring_constant",
     "relaxation_time", "dashpot_coefficient",
@@ -299,11 +295,6 @@ def test_shapes_that_do_not_fit_are_refused():
         identify_by_amplitude(**{**LOOP, "frequency": [0.1, 0.2], "hysteresis_energy": [1, 2, 3]})
 
 
-def test_an_uncertainty_of_nothing_is_refused():
-    with pytest.raises(DataError, match="the line has no input 'strain'; needed one of apparent"):
-        identify_by_amplitude(**LOOP, standard_uncertainty={"strain": 0.1})
-
-
 def test_arrays_cannot_be_changed():
     with pytest.raises(ValueError, match="read-only"):
         identify_by_amplitude(**LOOP).relaxation_time[...] = 0
@@ -369,11 +360,6 @@ def test_sensitivities_of_x_are_the_printed_formulas():
 def test_shapes_follow_the_lines():
     assert line_sensitivities(*np.full((3, 2, 4), 1.0)).shape == (5, len(FUNDAMENTAL_INPUTS), 2, 4)
     assert amplitude_sensitivities(*np.full((3, 7), 1.0)).shape == (5, len(AMPLITUDE_INPUTS), 7)
-
-
-def test_shapes_that_differ_are_refused():
-    with pytest.raises(DataError, match="series do not pair up"):
-        line_sensitivities([1.0, 2.0], 1.0, 0.5)
 
 
 FREQUENCY = np.array([0.1, 0.1, 0.3, 0.3, 0.5, 0.5])
@@ -513,13 +499,34 @@ def test_a_line_without_any_time_decides_nothing():
     assert check.verdict.tolist() == [4, 4]
 
 
-def test_a_frequency_is_positive():
-    with pytest.raises(DataError, match="frequency are not positive"):
-        _power_of_frequency([0.1, -0.2], [1.0, 2.0])
-
-
 def test_the_tolerance_is_what_a_line_may_miss():
     wobble = np.exp(0.002 * np.array([1, -1, -1, 1, 1, -1]))
     times = FREQUENCY**-0.95 * wobble
     assert check_single_time(FREQUENCY, times, wobble).verdict == 2
     assert check_single_time(FREQUENCY, FREQUENCY**-0.85 * wobble, wobble).verdict == 3
+
+
+REFUSED = {
+    "an uncertainty of nothing is refused": (
+        lambda: identify_by_amplitude(**LOOP, standard_uncertainty={"strain": 0.1}),
+        DataError,
+        "the line has no input 'strain'; needed one of apparent",
+    ),
+    "shapes that differ are refused": (
+        lambda: line_sensitivities([1.0, 2.0], 1.0, 0.5),
+        DataError,
+        "series do not pair up",
+    ),
+    "a frequency is positive": (
+        lambda: _power_of_frequency([0.1, -0.2], [1.0, 2.0]),
+        DataError,
+        "frequency are not positive",
+    ),
+}
+
+
+@pytest.mark.parametrize("what", REFUSED)
+def test_refusals(what):
+    call, error, message = REFUSED[what]
+    with pytest.raises(error, match=message):
+        call()

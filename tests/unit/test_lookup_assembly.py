@@ -157,11 +157,6 @@ def test_numbers_that_no_splice_has_are_refused(keys, told):
         StatedSplices(**keys)
 
 
-def test_a_tether_has_a_length():
-    with pytest.raises(DataError, match="free_length"):
-        stated_model(StatedSplices(1.0), 0.0, name="T")
-
-
 def test_a_displacement_becomes_a_length_where_there_are_no_splices():
     tested = StrainModel("T", "gauge-length", {"reference_position": 0.3, "gauge_length": 2.0})
     for free, expected in ((None, 4.0), (5.0, 10.0)):
@@ -174,11 +169,6 @@ def test_a_tested_tether_is_deployed_as_it_was_tested():
     assert _deployed_model(tested, None) is tested
     with pytest.raises(DataError, match="holds for the length that was tested"):
         _deployed_model(tested, 5.0)
-
-
-def test_an_extensometer_knows_no_splices():
-    with pytest.raises(DataError, match="extensometer, which does not include splices"):
-        _deployed_model(StrainModel("T", "extensometer"), np.float64(5.0))
 
 
 def test_springs_have_the_length_and_the_loads_of_hooke_at_every_amplitude():
@@ -231,11 +221,6 @@ def test_the_longest_tether_goes_slack_while_the_assembly_is_taut():
     assert found.minimum_tether_tension[1] == pytest.approx(100 * (length / 1.2 - 1))
 
 
-def test_a_peak_beyond_the_curves_is_an_error():
-    with pytest.raises(DataError, match="beyond the curves of the assembly"):
-        _working_point(_assemble([spring()]), 200.0, 60.0)
-
-
 def test_one_short_tether_of_four_takes_the_tension_that_springs_say():
     """F = 100 (L / l - 1): the length follows from the sum, the loads from the length."""
     found = _worst_sharing(spring(), 4, 400.0, free_length=1.0, tolerance=0.05)
@@ -272,3 +257,29 @@ def test_sharing_that_makes_no_sense_is_refused():
         _worst_sharing(spring(), 2, [100.0, 0.0], **given)
     with pytest.raises(DataError, match="beyond the curves of the assembly"):
         _worst_sharing(spring(), 2, 1000.0, **given)
+
+
+REFUSED = {
+    "a tether has a length": (
+        lambda: stated_model(StatedSplices(1.0), 0.0, name="T"),
+        DataError,
+        "free_length",
+    ),
+    "an extensometer knows no splices": (
+        lambda: _deployed_model(StrainModel("T", "extensometer"), np.float64(5.0)),
+        DataError,
+        "extensometer, which does not include splices",
+    ),
+    "a peak beyond the curves is an error": (
+        lambda: _working_point(_assemble([spring()]), 200.0, 60.0),
+        DataError,
+        "beyond the curves of the assembly",
+    ),
+}
+
+
+@pytest.mark.parametrize("what", REFUSED)
+def test_refusals(what):
+    call, error, message = REFUSED[what]
+    with pytest.raises(error, match=message):
+        call()

@@ -213,11 +213,6 @@ def test_rises_from_slack_that_differ_leave_the_cycles_as_certain_as_they_were()
     assert any("first-loading pieces differ by 70.7 %" in note for note in both.notes)
 
 
-def test_a_kind_that_stands_twice_is_refused():
-    with pytest.raises(SettingsError, match="names a kind twice"):
-        CompositeRule(precedence=("cyclic", "cyclic"))
-
-
 def test_stiff_loops_along_a_soft_pull_are_told_to_be_no_pieces_of_one_curve():
     """Loops of 500 N per unit strain about a pull of 100, each pair of loops alike to 2 %."""
     at = np.linspace(0.05, 1.0, 60)
@@ -297,11 +292,7 @@ def test_tests_of_one_kind_are_not_told_to_be_of_several():
 # errors that pieces share go through a composite by their sign, and weigh nothing between them
 
 CELL, OTHER = Component("tension_gain", "A"), Component("tension_gain", "B")
-
-
 ZERO = Component("tension_offset", "A")
-
-
 MODEL = StrainModel("T", "gauge-length", {"reference_position": 1.0, "gauge_length": 1.0})
 
 
@@ -440,8 +431,6 @@ def test_a_soft_part_in_line_takes_its_share_of_a_wrong_cell():
 
 
 TABLE_4 = Path(__file__).parents[1] / "golden" / "whoi_2005_10_table_4.csv"
-
-
 INCH, LBF = 0.0254, 4.4482216152605
 
 
@@ -493,11 +482,6 @@ def test_the_mean_of_both_branches_stands_where_both_do():
     (found,) = pieces([10, 20, 30], [np.nan, 16, 28])
     assert found.tension.tolist() == [18, 29]
     assert found.random_standard_uncertainty == pytest.approx(np.sqrt(2) / 2)
-
-
-def test_a_first_rise_has_one_branch():
-    with pytest.raises(SettingsError, match="a first rise only rises"):
-        pieces([1, 2], [1, 2], kind="first-loading")
 
 
 @pytest.mark.parametrize(
@@ -621,23 +605,44 @@ def test_a_cell_that_reads_high_makes_a_pull_stretch_too_little_and_its_tension_
     assert found.contribution == pytest.approx(0.01 * load[None])
 
 
-def test_branches_that_do_not_overlap_have_no_mean():
-    with pytest.raises(DataError, match="the branches of T do not overlap; found 0.5 to 1 and 1.2"):
-        mean_piece(branch("ascending", 0.5, 1.0, 110), branch("descending", 1.2, 2.0, 90))
-
-
 def test_a_pull_ends_where_its_cubic_turns_back():
     load = np.array([0.0, 100.0, 200.0, 300.0, 400.0])
     found = piece_of_pull([0.0, 0.01, 0.02, 0.019, 0.03], load, np.full(5, 1e-4), name="Q")
     assert found.tension == pytest.approx([100, 200])
 
 
-def test_a_pull_of_one_point_is_no_curve():
-    with pytest.raises(DataError, match="Q is not a curve; found 1 points"):
-        piece_of_pull([0.01, np.nan], [100.0, 200.0], [1e-4, 1e-4], name="Q")
-
-
 def test_a_fit_that_begins_below_zero_strain_begins_where_it_is_above():
     load = np.array([50.0, 100.0, 200.0])
     found = piece_of_pull([-0.001, 0.01, 0.02], load, np.full(3, 1e-4), name="Q")
     assert found.strain == pytest.approx([0.01, 0.02])
+
+
+REFUSED = {
+    "a kind that stands twice is refused": (
+        lambda: CompositeRule(precedence=("cyclic", "cyclic")),
+        SettingsError,
+        "names a kind twice",
+    ),
+    "a first rise has one branch": (
+        lambda: pieces([1, 2], [1, 2], kind="first-loading"),
+        SettingsError,
+        "a first rise only rises",
+    ),
+    "branches that do not overlap have no mean": (
+        lambda: mean_piece(branch("ascending", 0.5, 1.0, 110), branch("descending", 1.2, 2.0, 90)),
+        DataError,
+        "the branches of T do not overlap; found 0.5 to 1 and 1.2",
+    ),
+    "a pull of one point is no curve": (
+        lambda: piece_of_pull([0.01, np.nan], [100.0, 200.0], [1e-4, 1e-4], name="Q"),
+        DataError,
+        "Q is not a curve; found 1 points",
+    ),
+}
+
+
+@pytest.mark.parametrize("what", REFUSED)
+def test_refusals(what):
+    call, error, message = REFUSED[what]
+    with pytest.raises(error, match=message):
+        call()

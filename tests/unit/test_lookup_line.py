@@ -32,26 +32,14 @@ from reduction.record.contributions import Component
 from reduction.record.errors import DataError, SettingsError
 
 LOW, HIGH = np.array([0.1, 100.0, 50.0]), np.array([0.5, 300.0, 150.0])
-
-
 B = np.array([1e4, 100.0, -200.0, 50.0, 300.0, 2000.0, -400.0, 20.0, -10.0, 60.0])
-
-
 EXPONENTS = quadratic_exponents(3)
-
-
 DESIGN = box_behnken(3).coded
-
-
 INVERSE = np.linalg.inv(model_matrix(DESIGN, EXPONENTS).T @ model_matrix(DESIGN, EXPONENTS))
-
-
 SURFACE = LineSurface(
     "apparent_spring_constant", B, EXPONENTS, LOW, HIGH, INVERSE, 150.0, 5.0, 0.75,
     errata=("X-1",), notes=("r2 is 0.98",),
 )  # fmt: skip
-
-
 LINE = LineSource(
     "rope", "a report", "nylon", "braid", "new", 0.0127, 1000.0,
     factor_names=("frequency", "mean_tension", "tension_amplitude"),
@@ -69,8 +57,6 @@ LINE = LineSource(
     ),
     absent={"relaxation_time": "the column is lost"},
 )  # fmt: skip
-
-
 CENTRE = {"frequency": 0.3, "mean_tension": 200.0, "tension_amplitude": 100.0}
 
 
@@ -335,8 +321,6 @@ def test_a_damping_has_no_branch():
 # ends of a cycle with every look-up, the rule of ropes, and the tether that must not go slack
 
 LBF = 4.4482216152605
-
-
 POINTS = np.array([0.2, 1.0, 2.0])
 
 
@@ -348,8 +332,6 @@ SURFACE_OF_LOADS = LineSurface(
     "apparent_spring_constant", np.array([1e3]), np.array([[0, 0, 0]]), np.array([0.1, 10.0, 5.0]),
     np.array([0.5, 100.0, 100.0]), np.eye(1) / 15, 0.1, 14.0, 1.0,
 )  # fmt: skip
-
-
 TETHER = LineSource(
     "made tether", "synthetic", "Natsyn rubber (synthetic)", "", "new", 0.026, 1000.0,
     factor_names=("frequency", "mean_tension", "tension_amplitude"),
@@ -362,8 +344,6 @@ TETHER = LineSource(
     ),
     kind="rubber tether",
 )  # fmt: skip
-
-
 ROPE = LineSource(
     "made rope", "synthetic", "nylon", "", "new", 0.026, 1000.0, curves=TETHER.curves[2:],
     kind="rope",
@@ -545,14 +525,8 @@ def test_amplitudes_of_runs_that_are_shares_of_their_mean_are_known_as_such():
 # what look-ups of two quantities share is put together by its sign before it is squared
 
 DESIGN_OF_PARTS = model_matrix(box_behnken(3).coded, EXPONENTS)
-
-
 INVERSE_OF_PARTS = np.linalg.inv(DESIGN_OF_PARTS.T @ DESIGN_OF_PARTS)
-
-
 CELL, CLOCK = Component("tension_gain", "cell"), Component("lag", "clock")
-
-
 AT = {"frequency": [0.2, 0.4], "mean_tension": 150.0, "tension_amplitude": 70.0}
 
 
@@ -665,8 +639,6 @@ def test_contributions_without_their_errors_are_refused():
 # intervals of the kind and of another specimen: by hand, and against lines that were drawn
 
 K_AP = "apparent_spring_constant"
-
-
 T_5 = 2.570582  # 95 %, two-sided, 5 degrees of freedom
 
 

@@ -15,11 +15,7 @@ from reduction.record.contributions import Component
 from reduction.record.errors import DataError, SettingsError
 
 INCH = 0.0254
-
-
 NAN = float("nan")
-
-
 LINES = [
     LineSource("a", "r", "Nylon 6", "8-strand plaited", "new", 0.5 * INCH, 28e3),
     LineSource("b", "r", "nylon", "double braid", "4 years", 0.5 * INCH, 28e3),
@@ -113,11 +109,7 @@ def test_sizes_that_are_none_are_refused(asked, message):
 
 
 LBF = 4.4482216152605
-
-
 BRAID, PLAIT = "double-braid-0.5in", "8-strand-plaited-0.5in"
-
-
 CENTRE = (0.3, 0.21, 0.085)
 
 
@@ -448,8 +440,6 @@ def test_surfaces_of_one_campaign_lose_what_both_share(lines):
 # two published tethers out of one table, with strain by the marks
 
 PSI = 6894.757293168
-
-
 NEW, USED = "rubber-tether-new-T-1", "rubber-tether-used-T-1"
 
 

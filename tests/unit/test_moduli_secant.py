@@ -37,11 +37,6 @@ def test_chord_does_not_ask_which_point_comes_first():
     assert one == chord_modulus(2.0, 1.0, 300.0, 100.0, area=1e-3) == pytest.approx(2e5)
 
 
-def test_chord_of_one_strain_is_refused():
-    with pytest.raises(DataError, match="chord needs two strains; found 1 of 2 pairs"):
-        chord_modulus([1.0, 1.0], [2.0, 1.0], [0.0, 0.0], [1.0, 1.0], area=1.0)
-
-
 @pytest.mark.parametrize("area", [0.0, -1.0])
 def test_area_that_is_not_positive_is_refused(area):
     with pytest.raises(DataError, match="area are not positive"):
@@ -138,11 +133,6 @@ def test_only_as_much_is_alike_as_both_channels_miss():
     assert summary.uncertainty["apparent_spring_constant"] == pytest.approx([100.0])
 
 
-def test_break_in_of_every_cycle_is_refused():
-    with pytest.raises(DataError, match="no cycle is left after break-in; found 3 cycles"):
-        summarise_amplitude(loops_of(np.ones((2, 3))), area=AREA, break_in_cycles=3)
-
-
 def test_readings_of_the_slope_of_the_loop_spread_with_the_loss_angle():
     # at 13 degrees 1/cos - cos = 0.0519; its slope on tan by a difference
     tangent = np.tan(np.radians(13.0))
@@ -181,8 +171,6 @@ def test_a_test_that_softens_has_the_mean_of_its_cycles_and_no_trend_in_its_inte
 # comparisons: ratio and interval, grids that differ, cycles
 
 NAMES = {"numerator_name": "new", "denominator_name": "used"}
-
-
 FIRST = {"numerator_specimen": 0, "denominator_specimen": 0}
 
 
@@ -441,11 +429,32 @@ def test_a_specimen_without_diameter_has_no_modulus():
     assert np.isnan(trend.dynamic_modulus_per_decade).all()
 
 
-def test_a_negative_area_is_refused():
-    with pytest.raises(DataError, match="area are not positive"):
-        fit_peak_trend(loops_of_trend(np.ones((1, 20))), area=[-1.0])
+REFUSED = {
+    "chord of one strain is refused": (
+        lambda: chord_modulus([1.0, 1.0], [2.0, 1.0], [0.0, 0.0], [1.0, 1.0], area=1.0),
+        DataError,
+        "chord needs two strains; found 1 of 2 pairs",
+    ),
+    "break in of every cycle is refused": (
+        lambda: summarise_amplitude(loops_of(np.ones((2, 3))), area=AREA, break_in_cycles=3),
+        DataError,
+        "no cycle is left after break-in; found 3 cycles",
+    ),
+    "a negative area is refused": (
+        lambda: fit_peak_trend(loops_of_trend(np.ones((1, 20))), area=[-1.0]),
+        DataError,
+        "area are not positive",
+    ),
+    "cycles count from one": (
+        lambda: slope_per_decade([[1.0, 2.0, 3.0]], number=[0, 1, 2]),
+        DataError,
+        "cycles count from 1; found 0",
+    ),
+}
 
 
-def test_cycles_count_from_one():
-    with pytest.raises(DataError, match="cycles count from 1; found 0"):
-        slope_per_decade([[1.0, 2.0, 3.0]], number=[0, 1, 2])
+@pytest.mark.parametrize("what", REFUSED)
+def test_refusals(what):
+    call, error, message = REFUSED[what]
+    with pytest.raises(error, match=message):
+        call()

@@ -15,8 +15,6 @@ from reduction.stages.moduli.modulus_product import ModulusCurves
 from reduction.stages.moduli.segments import _fit_piecewise_lines, find_segments
 
 AREA = 5e-4
-
-
 X = 0.8 + 0.01 * np.arange(45)
 
 

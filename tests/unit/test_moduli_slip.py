@@ -89,17 +89,6 @@ def test_a_dead_channel_beside_a_sound_one_has_no_level():
     assert np.isnan(level[1]).all() and np.isnan(slope[1])
 
 
-def test_cycles_without_stroke_are_refused():
-    with pytest.raises(DataError, match="no stroke to compare cycles on; found 40 samples"):
-        cycle_tension_level(
-            np.ones(40),
-            np.ones((1, 40)),
-            cycle_number=np.ones(40, dtype=int),
-            branch=np.repeat([1, 2], 20),
-            n_cycles=1,
-        )
-
-
 def peaks(steps, n_cycles=600, noise=1.0, seed=0):
     rng = np.random.default_rng(seed)
     count = np.arange(1.0, n_cycles + 1)
@@ -359,26 +348,6 @@ def test_a_constant_series_has_no_step():
     assert find_steps(np.ones(100), false_alarm=1e-3) == ()
 
 
-def test_a_series_too_short_is_refused():
-    with pytest.raises(DataError, match="too short for steps; found 10 samples; needed 24"):
-        find_steps(np.zeros(10), false_alarm=1e-3)
-
-
-def test_a_rate_that_is_no_chance_is_refused():
-    with pytest.raises(DataError, match="false-alarm rate is not a chance; found 2"):
-        find_steps(np.zeros(100), false_alarm=2.0)
-
-
-def test_a_missing_value_is_refused():
-    with pytest.raises(DataError, match="1 of 100 values of values are not finite"):
-        find_steps(np.where(np.arange(100) == 5, np.nan, 0.0), false_alarm=1e-3)
-
-
-def test_a_step_without_extent_is_refused():
-    with pytest.raises(DataError, match="a step has no extent; found 0"):
-        _ramp_of(10, onset=3, extent=0)
-
-
 def test_the_background_of_a_series_is_factored_once_and_leaves_a_ramp_in():
     count = np.arange(1.0, 2001)
     series = 5000 - 300 * np.log10(count)
@@ -500,11 +469,6 @@ def test_a_constant_series_has_neither():
     assert sample_noise(np.full(10, 5.0)) == (0.0, 0.0)
 
 
-def test_one_sample_has_no_noise_to_read():
-    with pytest.raises(DataError, match="no noise can be read from one sample"):
-        sample_noise([1.0])
-
-
 @pytest.mark.parametrize("noise", [0.45, 0.6])
 def test_rounding_is_no_part_of_the_noise_beneath_it(noise):
     """Rounding to a step adds a twelfth of its square: 0.6 steps would be read as 0.67."""
@@ -514,3 +478,50 @@ def test_rounding_is_no_part_of_the_noise_beneath_it(noise):
     found, step = noise_and_step(0.25 * codes, reading_noise(0.25 * codes))
     assert step == 0.25
     assert found == pytest.approx(0.25 * noise, rel=0.08)
+
+
+REFUSED = {
+    "cycles without stroke are refused": (
+        lambda: cycle_tension_level(
+            np.ones(40),
+            np.ones((1, 40)),
+            cycle_number=np.ones(40, dtype=int),
+            branch=np.repeat([1, 2], 20),
+            n_cycles=1,
+        ),
+        DataError,
+        "no stroke to compare cycles on; found 40 samples",
+    ),
+    "a series too short is refused": (
+        lambda: find_steps(np.zeros(10), false_alarm=1e-3),
+        DataError,
+        "too short for steps; found 10 samples; needed 24",
+    ),
+    "a rate that is no chance is refused": (
+        lambda: find_steps(np.zeros(100), false_alarm=2.0),
+        DataError,
+        "false-alarm rate is not a chance; found 2",
+    ),
+    "a missing value is refused": (
+        lambda: find_steps(np.where(np.arange(100) == 5, np.nan, 0.0), false_alarm=1e-3),
+        DataError,
+        "1 of 100 values of values are not finite",
+    ),
+    "a step without extent is refused": (
+        lambda: _ramp_of(10, onset=3, extent=0),
+        DataError,
+        "a step has no extent; found 0",
+    ),
+    "one sample has no noise to read": (
+        lambda: sample_noise([1.0]),
+        DataError,
+        "no noise can be read from one sample",
+    ),
+}
+
+
+@pytest.mark.parametrize("what", REFUSED)
+def test_refusals(what):
+    call, error, message = REFUSED[what]
+    with pytest.raises(error, match=message):
+        call()

@@ -15,8 +15,6 @@ from reduction.stages.moduli.stepwise_test import (
 )
 
 AREA, GAUGE, MODULUS = 5e-4, 0.15, 8e5
-
-
 WEIGHTS = np.array([100.0, 200.0, 300.0, 400.0, 300.0, 200.0])
 
 
@@ -224,21 +222,6 @@ def test_a_weight_with_a_digit_too_many_does_not_turn_the_branch():
     assert kept.tolist() == [True, True, False, False, True, True, True]
 
 
-def test_neither_elongation_nor_gauge_length_is_refused():
-    with pytest.raises(DataError, match="no reading has a recorded elongation"):
-        reduce_stepwise(readings(printed=False), area=AREA)
-
-
-def test_one_step_is_refused():
-    with pytest.raises(DataError, match="a stepwise test needs two steps; found 1"):
-        reduce_stepwise(readings([100.0]), area=AREA)
-
-
-def test_no_area_is_refused():
-    with pytest.raises(DataError, match="area are not positive"):
-        reduce_stepwise(readings(), area=0.0)
-
-
 def test_notes_of_the_log_come_first():
     typed = note("laboratory", text="typed")
     assert reduce_stepwise(readings(notes=(typed,)), area=AREA).notes[0] == typed
@@ -280,11 +263,6 @@ def test_the_uncertainty_of_a_gauge_length_is_that_of_the_median():
     assert np.median(found[:, 1]) == pytest.approx(found[:, 0].std(), rel=0.15)
 
 
-def test_no_recorded_elongation_is_refused():
-    with pytest.raises(DataError, match="no reading has a recorded elongation"):
-        _recover_gauge_length([0.2], [np.nan])
-
-
 def test_an_impossible_reading_is_refused():
     with pytest.raises(DataError, match="values of length are not positive"):
         _recover_gauge_length([-0.2], [0.1])
@@ -308,11 +286,6 @@ def test_rows_that_scatter_set_their_own_limit():
 
 def test_what_was_not_recorded_cannot_disagree():
     assert not _find_inconsistent_readings([0.2, 0.3], [np.nan, np.nan], gauge_length=0.15).any()
-
-
-def test_disagreement_needs_a_gauge_length():
-    with pytest.raises(DataError, match="gauge_length are not positive"):
-        _find_inconsistent_readings([0.2], [0.1], gauge_length=0.0)
 
 
 @pytest.mark.parametrize(
@@ -356,3 +329,39 @@ def test_slopes_need_an_area_and_equal_series():
         _interval_slopes([1.0, 2.0], [0.1, 0.2], area=0.0)
     with pytest.raises(DataError, match="series do not pair up"):
         _interval_slopes([1.0, 2.0], [0.1], area=1.0)
+
+
+REFUSED = {
+    "neither elongation nor gauge length is refused": (
+        lambda: reduce_stepwise(readings(printed=False), area=AREA),
+        DataError,
+        "no reading has a recorded elongation",
+    ),
+    "one step is refused": (
+        lambda: reduce_stepwise(readings([100.0]), area=AREA),
+        DataError,
+        "a stepwise test needs two steps; found 1",
+    ),
+    "no area is refused": (
+        lambda: reduce_stepwise(readings(), area=0.0),
+        DataError,
+        "area are not positive",
+    ),
+    "no recorded elongation is refused": (
+        lambda: _recover_gauge_length([0.2], [np.nan]),
+        DataError,
+        "no reading has a recorded elongation",
+    ),
+    "disagreement needs a gauge length": (
+        lambda: _find_inconsistent_readings([0.2], [0.1], gauge_length=0.0),
+        DataError,
+        "gauge_length are not positive",
+    ),
+}
+
+
+@pytest.mark.parametrize("what", REFUSED)
+def test_refusals(what):
+    call, error, message = REFUSED[what]
+    with pytest.raises(error, match=message):
+        call()

@@ -174,8 +174,6 @@ BREAKS = [
     *[Outcome("tensile_strength", v, condition="worn", exposure=5.0) for v in (14e3, 15e3)],
     Outcome("strain_at_failure", 0.2, condition="worn", exposure=5.0),
 ]
-
-
 CYCLES = [
     *[Outcome("cycles_to_failure", v, peak_load_ratio=0.7) for v in (4e3, 5e3, 7e3)],
     *[Outcome("cycles_to_failure", v, peak_load_ratio=0.5) for v in (3e4, 4e4, 5e4)],
@@ -183,8 +181,6 @@ CYCLES = [
     Outcome("cycles_to_failure", 8e4),
     *[Outcome("abrasion_cycles", v, material="nylon") for v in (12e3, 13e3)],
 ]
-
-
 # 6500 - 600 a year, and 100 about it
 EXPOSED = [
     Outcome("tensile_strength", 6500 - 600 * years + about, line="PD", exposure=years)
@@ -319,8 +315,6 @@ def cycled(lives, load=math.nan, **about):
 
 
 NEW = [broken(6400.0, 0.0, condition="new"), broken(6600.0, 0.0, condition="new")]
-
-
 WORN = [broken(5000.0, 2.0, condition="worn"), broken(5200.0, 2.0, condition="buoy")]
 
 

@@ -75,21 +75,11 @@ def test_two_failures_bound_the_median_widely():
     assert 0 < fit.low < 2.5e4 and fit.high > 1e5
 
 
-def test_a_life_of_nothing_is_refused():
-    with pytest.raises(DataError, match="1 of 2 values of cycles are not positive"):
-        fit_life([0.0, 1.0], [False, False])
-
-
 def test_a_ratio_needs_a_failure_in_each_group():
     with pytest.raises(DataError, match="the reference group has no failure; needed one"):
         ratio_of_lives([1.0, 2.0], [True, False], [True, False])
     with pytest.raises(DataError, match="the other group has no failure; needed one"):
         ratio_of_lives([1.0, 2.0], [False, True], [True, False])
-
-
-def test_a_ratio_of_lives_without_scatter_is_refused():
-    with pytest.raises(FitError, match="the failures have no scatter about the law"):
-        ratio_of_lives([1.0, 2.0], [False] * 2, [True, False])
 
 
 def test_a_ratio_of_two_and_one_has_bounds_and_one_of_few_is_wide():
@@ -100,8 +90,6 @@ def test_a_ratio_of_two_and_one_has_bounds_and_one_of_few_is_wide():
 # the likelihood with lower bounds: where it has a maximum, and what it says where it has none
 
 ONES = np.ones((4, 1))
-
-
 NONE = np.zeros(4, dtype=bool)
 
 
@@ -203,11 +191,7 @@ def test_a_reference_without_scatter_or_mean_is_refused(name):
 # life against load: levels, run-outs, and what cannot be fitted
 
 LOAD = np.repeat([0.3, 0.4, 0.5, 0.7], 3)
-
-
 LIVES = 500 * LOAD**-5.0 * np.tile([0.7, 1.0, 1.4], 4)
-
-
 NONE_OF_FATIGUE = np.zeros(12, dtype=bool)
 
 
@@ -262,23 +246,6 @@ def test_loads_that_a_machine_does_not_repeat_are_one_level():
     assert load_levels([0.305, 0.30, 0.31, 0.33]).tolist() == [0, 0, 0, 1]
 
 
-def test_failures_at_one_load_are_refused():
-    with pytest.raises(
-        FitError, match="needs failures at two loads; found failures at 1; needed 2"
-    ):
-        fit_load_life([0.3, 0.5, 0.502], [2e5, 3e4, 4e4], [True, False, False])
-
-
-def test_failures_that_lie_on_a_line_are_refused():
-    with pytest.raises(FitError, match="the failures have no scatter about the law"):
-        fit_load_life([0.3, 0.5], [2e5, 3e4], [False, False])
-
-
-def test_a_load_of_nothing_is_refused():
-    with pytest.raises(DataError, match="values of peak_load_ratio are not positive"):
-        load_levels([0.0])
-
-
 def test_abrasion_is_compared_with_new_polypropylene_of_the_same_make():
     """CG-D-39-80, sec. 6.2: nylon three times, polyester twice, jacketed five to six times."""
     lives = np.array([2.6e3, 3.1e3, 3.4e3, 4.0e3])
@@ -331,3 +298,39 @@ def test_a_side_that_never_drops_is_open():
     )
     assert high == math.inf
     assert low == pytest.approx(-math.log(2))
+
+
+REFUSED = {
+    "a life of nothing is refused": (
+        lambda: fit_life([0.0, 1.0], [False, False]),
+        DataError,
+        "1 of 2 values of cycles are not positive",
+    ),
+    "a ratio of lives without scatter is refused": (
+        lambda: ratio_of_lives([1.0, 2.0], [False] * 2, [True, False]),
+        FitError,
+        "the failures have no scatter about the law",
+    ),
+    "failures at one load are refused": (
+        lambda: fit_load_life([0.3, 0.5, 0.502], [2e5, 3e4, 4e4], [True, False, False]),
+        FitError,
+        "needs failures at two loads; found failures at 1; needed 2",
+    ),
+    "failures that lie on a line are refused": (
+        lambda: fit_load_life([0.3, 0.5], [2e5, 3e4], [False, False]),
+        FitError,
+        "the failures have no scatter about the law",
+    ),
+    "a load of nothing is refused": (
+        lambda: load_levels([0.0]),
+        DataError,
+        "values of peak_load_ratio are not positive",
+    ),
+}
+
+
+@pytest.mark.parametrize("what", REFUSED)
+def test_refusals(what):
+    call, error, message = REFUSED[what]
+    with pytest.raises(error, match=message):
+        call()

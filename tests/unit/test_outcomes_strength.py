@@ -53,16 +53,6 @@ def test_groups_are_kept_apart():
         assert statistics.maximum[place] == own.max()
 
 
-def test_a_strength_of_nothing_is_refused():
-    with pytest.raises(DataError, match="1 of 2 values of value are not positive"):
-        group_statistics([1.0, 0.0], [0, 0], [0, 0], n_groups=1)
-
-
-def test_a_group_without_a_place_is_refused():
-    with pytest.raises(DataError, match="a group has no place; found 0 to 2; needed 0 to 1"):
-        group_statistics([1.0, 2.0], [0, 2], [0, 0], n_groups=2)
-
-
 def test_a_splice_break_above_the_mean_raises_it_and_one_far_below_does_not():
     plain = censored_mean([10.0, 11, 12], [False] * 3)
     assert censored_mean([10.0, 11, 12, 12], [False] * 3 + [True]).mean > plain.mean
@@ -129,11 +119,6 @@ def test_ten_thousand_changes_at_once():
     assert (change.low < change.change).all() and (np.diff(change.high) > 0).all()
 
 
-def test_a_mean_of_nothing_is_refused():
-    with pytest.raises(DataError, match="values of reference_mean are not positive"):
-        ratio(reference=(0.0, 1.0, 3))
-
-
 def test_a_group_of_one_counts_between_and_not_within():
     analysis = one_way([1.0, 2.0, 3.0], [np.nan, 0.5, 0.5], [1, 4, 4])
     assert analysis.within == 6
@@ -152,16 +137,6 @@ def test_groups_without_scatter_have_a_reason_and_no_f():
 def test_many_tables_at_once():
     analysis = one_way([[1.0, 2.0], [1.0, 1.0]], [[1.0, 1.0]] * 2, [[5, 5]] * 2)
     assert analysis.f_statistic.tolist() == pytest.approx([2.5, 0.0])
-
-
-def test_one_group_is_refused():
-    with pytest.raises(DataError, match="one group has nothing to be compared with; needed two"):
-        one_way([1.0], [1.0], [3])
-
-
-def test_a_deviation_that_is_missing_is_refused():
-    with pytest.raises(DataError, match="a group of several values has no deviation; needed"):
-        one_way([1.0, 2.0], [1.0, np.nan], [3, 3])
 
 
 # the line of strength over years
@@ -246,11 +221,7 @@ def test_a_line_without_new_strength_has_no_share():
 # tests with a slack line: the threshold is that of the data
 
 PEAK = [0.7, 0.7, 0.5, 0.5, 0.3, 0.3, 0.3]
-
-
 LIVES = [4e3, 6e3, 4e4, 6e4, 2e5, 2e5, 2e5]
-
-
 STOPPED = [False] * 4 + [True] * 3
 
 
@@ -301,6 +272,42 @@ def test_without_failures_or_without_survivors_one_end_is_open():
     assert math.isnan(levels.threshold_low) and levels.threshold_high == pytest.approx(0.3)
 
 
-def test_lines_that_all_keep_a_tension_are_refused():
-    with pytest.raises(DataError, match="no test has a line that goes slack; found least minimum"):
-        summarise(least=[0.03] * 7)
+REFUSED = {
+    "a strength of nothing is refused": (
+        lambda: group_statistics([1.0, 0.0], [0, 0], [0, 0], n_groups=1),
+        DataError,
+        "1 of 2 values of value are not positive",
+    ),
+    "a group without a place is refused": (
+        lambda: group_statistics([1.0, 2.0], [0, 2], [0, 0], n_groups=2),
+        DataError,
+        "a group has no place; found 0 to 2; needed 0 to 1",
+    ),
+    "a mean of nothing is refused": (
+        lambda: ratio(reference=(0.0, 1.0, 3)),
+        DataError,
+        "values of reference_mean are not positive",
+    ),
+    "one group is refused": (
+        lambda: one_way([1.0], [1.0], [3]),
+        DataError,
+        "one group has nothing to be compared with; needed two",
+    ),
+    "a deviation that is missing is refused": (
+        lambda: one_way([1.0, 2.0], [1.0, np.nan], [3, 3]),
+        DataError,
+        "a group of several values has no deviation; needed",
+    ),
+    "lines that all keep a tension are refused": (
+        lambda: summarise(least=[0.03] * 7),
+        DataError,
+        "no test has a line that goes slack; found least minimum",
+    ),
+}
+
+
+@pytest.mark.parametrize("what", REFUSED)
+def test_refusals(what):
+    call, error, message = REFUSED[what]
+    with pytest.raises(error, match=message):
+        call()

@@ -389,8 +389,6 @@ def test_a_long_standstill_soon_after_a_short_one_leaves_both():
 # holds at constant tension: the crosshead creeps in them and is no guide to where they are
 
 LOAD = [(0, 0), (20, 0), (40, 300), (640, 300), (650, 500), (950, 500), (960, 0), (1000, 0)]
-
-
 START_OF_HELD, END_OF_HELD = [0, 40, 650, 960], [20, 640, 950, 1000]
 
 

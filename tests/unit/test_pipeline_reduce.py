@@ -20,8 +20,6 @@ from reduction.stages.reduced_test import History, TestDescription
 from reduction.stages.strain.strain_model import StrainModel
 
 DIAMETER = 0.025
-
-
 SPIKE = 700
 
 

@@ -31,11 +31,6 @@ from reduction.record.errors import DataError, FitError, SettingsError
 DESIGN = ArmourDesign(np.radians(35.0), 2.5e-3, 25e-3, 210e9)
 
 
-def test_an_unknown_theory_is_refused():
-    with pytest.raises(SettingsError, match="theory of the armour is not known; found 'knapp'"):
-        predict_armour(DESIGN, 1e-3, theory="knapp")
-
-
 @pytest.mark.parametrize("strain", [-1.0, np.nan, np.inf])
 def test_strain_below_minus_one_or_not_finite_is_refused(strain):
     with pytest.raises(SettingsError, match="1 of 2 strains are none of a cable, first at index 1"):
@@ -152,13 +147,6 @@ def test_a_number_outside_its_range_is_refused(name, value, needed):
         ArmourDesign(**GOOD | {name: value})
 
 
-def test_one_bad_design_of_many_is_counted():
-    with pytest.raises(
-        SettingsError, match="wire_radius of 1 of 3 designs is not that of an armour; found -1"
-    ):
-        ArmourDesign(**GOOD | {"wire_radius": np.array([1.0, -1.0, 2.0])})
-
-
 def test_stiffnesses_of_a_round_wire():
     design = ArmourDesign(**GOOD, poisson_ratio=0.3)
     area = np.pi * 2.5e-3**2
@@ -184,8 +172,6 @@ def test_numbers_broadcast_to_designs_and_arrays_are_read_only():
 # errors of the theories and the angles at which they hold
 
 DEGREES = np.arange(5.0, 86.0)
-
-
 DESIGN_OF_ERRORS = ArmourDesign(np.radians(DEGREES), 2.5e-3, 25e-3, 210e9)
 
 
@@ -259,16 +245,10 @@ def test_bad_settings_are_refused():
 # exact geometry of a wire on a rigid core, and the two laws of its moments
 
 STRAIN_OF_EXACT = np.array([-0.3, 1e-9, 1e-3, 0.5])
-
-
 DESIGN_OF_EXACT = ArmourDesign(
     np.radians([[20.0], [50.0], [80.0]]), 1.0, np.array([9.0, 19.0]), 1 / np.pi
 )
-
-
 ANGLE = np.radians([20.0, 50.0, 80.0])[:, None, None]
-
-
 RADIUS = np.array([10.0, 20.0])[None, :, None]
 
 
@@ -528,6 +508,27 @@ def test_a_yield_stress_has_to_be_above_zero(stress):
         _yield_strain(DESIGN_OF_YIELD, stress)
 
 
-def test_a_yield_strain_that_is_lost_in_rounding_is_not_found():
-    with pytest.raises(FitError, match="the strain at which the wires yield is not found"):
-        _yield_strain(DESIGN_OF_YIELD, 1.0)
+REFUSED = {
+    "an unknown theory is refused": (
+        lambda: predict_armour(DESIGN, 1e-3, theory="knapp"),
+        SettingsError,
+        "theory of the armour is not known; found 'knapp'",
+    ),
+    "one bad design of many is counted": (
+        lambda: ArmourDesign(**GOOD | {"wire_radius": np.array([1.0, -1.0, 2.0])}),
+        SettingsError,
+        "wire_radius of 1 of 3 designs is not that of an armour; found -1",
+    ),
+    "a yield strain that is lost in rounding is not found": (
+        lambda: _yield_strain(DESIGN_OF_YIELD, 1.0),
+        FitError,
+        "the strain at which the wires yield is not found",
+    ),
+}
+
+
+@pytest.mark.parametrize("what", REFUSED)
+def test_refusals(what):
+    call, error, message = REFUSED[what]
+    with pytest.raises(error, match=message):
+        call()

@@ -32,8 +32,6 @@ from reduction.prediction.hose_geometry import (
 from reduction.record.errors import DataError, SettingsError
 
 ANGLES = np.radians(np.arange(5.0, 86.0, 1.0))
-
-
 CORES = ("isochoric", "rigid")
 
 
@@ -317,15 +315,9 @@ CORD = CordCurve(
     strain=np.array([0.0, 0.02, 0.06, 0.10, 0.15, 0.22]),
     load=np.array([0.0, 7.1, 22.2, 44.5, 80.1, 133.4]),
 )
-
-
 # so soft at the start that a monotone cubic begins with no slope
 TOE = CordCurve(strain=np.array([0.0, 0.1, 0.2]), load=np.array([0.0, 1.0, 100.0]))
-
-
 MANY = CordCurve(strain=np.linspace(0, 0.2, 60), load=700 * np.linspace(0, 0.2, 60) ** 1.5)
-
-
 CURVES = pytest.mark.parametrize("curve", [CORD, TOE, MANY], ids=["nylon", "toe", "many"])
 
 

@@ -35,13 +35,9 @@ from reduction.prediction.hose_tension import find_events
 from reduction.record.errors import SettingsError
 
 INCH, PSI = 0.0254, 6894.757
-
-
 CORD = CordCurve(
     np.array([0.0, 0.02, 0.06, 0.10, 0.15, 0.22]), np.array([0.0, 7.0, 22.0, 45.0, 80.0, 133.0])
 )
-
-
 LIKE = HoseDesign(
     wrap_angle=np.radians(68.0),
     layer_diameter=(3.4 * INCH, 3.6 * INCH),
@@ -56,14 +52,8 @@ LIKE = HoseDesign(
     cord_strain_scale=1.1,
     dead_length_share=0.07,
 )
-
-
 STRAIN = np.array([[0.15], [0.3], [0.5], [0.79], [1.3], [1.8]])
-
-
 TENSION = np.array([10e3, 11e3, 12e3])
-
-
 LAWS = ("neo-hookean", "linear", "linear-current", "hencky")
 
 

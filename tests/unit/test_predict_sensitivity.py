@@ -17,16 +17,10 @@ from reduction.prediction.hose_tension import find_events, predict_hose
 from reduction.record.errors import DataError, SettingsError
 
 LAWS = ("neo-hookean", "linear", "linear-current", "hencky")
-
-
 EVENTS = ("deepest_slack", "pick_up", "working", "cord_break")
-
-
 CORD = CordCurve(
     np.array([0.0, 0.02, 0.06, 0.10, 0.15, 0.22]), np.array([0.0, 7.0, 22.0, 45.0, 80.0, 133.0])
 )
-
-
 STRAIN = np.linspace(0.013, 2.2, 61)
 
 

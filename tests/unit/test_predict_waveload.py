@@ -36,20 +36,10 @@ from reduction.prediction.wave_theory import (
 from reduction.record.errors import DataError, FitError
 
 D, H_IN, S1 = 0.114, 0.0951, 0.0091
-
-
 HOSE = ImmersedSection(np.array(D), np.array(S1), np.array(H_IN))
-
-
 WHOLE = ImmersedSection(np.array(D), np.array(np.pi * D**2 / 4), np.array(D))
-
-
 WAVE = stokes_wave(wave_height=1.0, wave_period=4.0, water_depth=5.0, elevation=-0.04)
-
-
 TIME = np.linspace(0.0, 9.0, 77)
-
-
 LOADS = ("horizontal", "vertical")
 
 
@@ -138,8 +128,6 @@ def test_results_are_read_only():
 # published coefficients, typed again, and the numbers by which they are chosen
 
 SEA = {"wave_height": 1.25, "wave_period": 3.57, "water_depth": 3.0, "elevation": -0.038}
-
-
 TABLE_2 = [
     ((1.0, 1.0), 0.95, "Wiegel"), ((1.0, 1.4), 2.0, "Agerschou"),
     ((1.34, 1.34), 1.6, "Keulegan"), ((0.8, 1.0), 2.0, "Agerschou"),
@@ -198,13 +186,9 @@ def test_numbers_that_are_none_are_refused_in_coefficients():
 # difference of two loads, where it means something
 
 HOSE_OF_DIFFERENCE = ImmersedSection(np.array(0.114), np.array(0.0091), np.array(0.0951))
-
-
 WAVE_OF_DIFFERENCE = stokes_wave(
     wave_height=1.25, wave_period=3.57, water_depth=3.0, elevation=-0.038
 )
-
-
 EXTREMES = _find_extremes(WAVE_OF_DIFFERENCE, HOSE_OF_DIFFERENCE)
 
 
@@ -222,13 +206,9 @@ def test_extremes_are_cut_by_what_lies_between_the_cuts_of_drag_and_inertia():
 # wind, current and wave on a length of hose
 
 HOSE_OF_ENVIRONMENT = ImmersedSection(np.array(0.114), np.array(0.0091), np.array(0.0951))
-
-
 WAVE_OF_ENVIRONMENT = airy_wave(
     wave_height=1.25, wave_period=3.57, water_depth=6.0, elevation=-0.038
 )
-
-
 TIME_OF_ENVIRONMENT = np.linspace(0.0, 3.57, 50_001)
 
 
@@ -328,14 +308,8 @@ def test_numbers_that_are_none_are_refused_in_environment(change, message):
 # extremes of a load between any samples
 
 HOSE_OF_EXTREMES = ImmersedSection(np.array(0.114), np.array(0.0091), np.array(0.0951))
-
-
 SEA_OF_EXTREMES = {"wave_height": 1.25, "wave_period": 3.57, "elevation": -0.038}
-
-
 NAMES = ("horizontal", "vertical", "horizontal_classic", "vertical_classic")
-
-
 U, A = np.array([1.0]), np.array([1.0])
 
 

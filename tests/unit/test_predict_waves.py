@@ -38,8 +38,6 @@ from reduction.record.errors import DataError, FitError, SettingsError
 from reduction.record.measurement import STANDARD_GRAVITY
 
 SEA = {"wave_height": 1.25, "wave_period": 3.57, "water_depth": 3.0}
-
-
 MAKERS = [airy_wave, stokes_wave]
 
 
@@ -201,11 +199,6 @@ def test_a_current_faster_than_a_given_wave_is_refused(make):
 def test_sizes_are_positive(make, name):
     with pytest.raises(DataError, match=name):
         make(**{**SEA, "wave_number": 0.3, name: -1.0}, elevation=0.0)
-
-
-def test_a_time_that_is_no_number_is_refused():
-    with pytest.raises(DataError, match="time"):
-        particle_motion(airy_wave(**SEA, elevation=0.0), [0.0, np.nan])
 
 
 def test_period_of_the_wave_is_that_of_its_number():
@@ -451,11 +444,6 @@ def test_a_wave_at_the_limit_passes_and_one_above_is_refused():
         _refuse_breaking(wave_height=1.0001 * greatest, wave_number=0.3, water_depth=3.0)
 
 
-def test_numbers_are_positive():
-    with pytest.raises(DataError, match="water_depth"):
-        breaking_height(0.3, 0.0)
-
-
 # wave number from period and depth, with and without a current
 
 
@@ -506,24 +494,12 @@ def test_over_deep_water_the_waves_end_at_a_quarter_of_their_speed():
         _wave_number(period, 1e3, current_velocity=-limit * (1 + 1e-9))
 
 
-def test_a_blocked_wave_among_others_is_named():
-    with pytest.raises(
-        DataError, match="stops 1 of 3 waves, first at index 1; found a current of -9"
-    ):
-        _wave_number(4.0, 10.0, current_velocity=[0.0, -9.0, 1.0])
-
-
 def test_period_is_the_inverse():
     period = np.array([2.0, 3.57, 9.0])[:, None]
     depth, current = np.array([1.0, 6.0, 80.0]), 0.4
     number = _wave_number(period, depth, current_velocity=current)
     back = wave_period_of(number, depth, current_velocity=current)
     assert back == pytest.approx(np.broadcast_to(period, back.shape), rel=1e-13)
-
-
-def test_a_length_that_the_current_carries_back_has_no_period():
-    with pytest.raises(DataError, match="the opposing current stops"):
-        wave_period_of(2 * np.pi / 5, 10.0, current_velocity=-2.0)
 
 
 def test_group_velocity_is_the_derivative_of_the_frequency():
@@ -568,8 +544,6 @@ def test_periods_and_depths_are_positive_numbers(bad):
 # sums of harmonics and the phases of their roots
 
 PHASE = np.linspace(-7.0, 7.0, 101)
-
-
 COSINES, SINES = np.array([1.3, -0.4, 0.2]), np.array([0.7, 0.1, -0.5])
 
 
@@ -614,11 +588,6 @@ def test_many_sums_at_once_and_an_order_that_is_rounding():
 def test_a_sum_that_is_zero_gives_a_phase_and_no_sums_none():
     assert root_phases(np.zeros((3, 5), dtype=complex)).shape == (3, 1)
     assert root_phases(np.zeros((0, 5), dtype=complex)).size == 0
-
-
-def test_shapes_that_are_no_sum_are_refused():
-    with pytest.raises(DataError, match="the coefficients have no middle"):
-        root_phases(np.ones(4, dtype=complex))
 
 
 # steady waves by the stream function, against the equations that they have to meet
@@ -754,6 +723,42 @@ def test_the_printed_stokes_wave_is_that_of_the_package_but_for_the_rounded_freq
     assert wave.angular_frequency == pytest.approx(1.76, abs=0.005)
 
 
-def test_only_two_loads_are_printed():
-    with pytest.raises(SettingsError, match="the paper has no such load; found 'third'"):
-        printed_airy_wave("third")
+REFUSED = {
+    "a time that is no number is refused": (
+        lambda: particle_motion(airy_wave(**SEA, elevation=0.0), [0.0, np.nan]),
+        DataError,
+        "time",
+    ),
+    "numbers are positive": (
+        lambda: breaking_height(0.3, 0.0),
+        DataError,
+        "water_depth",
+    ),
+    "a blocked wave among others is named": (
+        lambda: _wave_number(4.0, 10.0, current_velocity=[0.0, -9.0, 1.0]),
+        DataError,
+        "stops 1 of 3 waves, first at index 1; found a current of -9",
+    ),
+    "a length that the current carries back has no period": (
+        lambda: wave_period_of(2 * np.pi / 5, 10.0, current_velocity=-2.0),
+        DataError,
+        "the opposing current stops",
+    ),
+    "shapes that are no sum are refused": (
+        lambda: root_phases(np.ones(4, dtype=complex)),
+        DataError,
+        "the coefficients have no middle",
+    ),
+    "only two loads are printed": (
+        lambda: printed_airy_wave("third"),
+        SettingsError,
+        "the paper has no such load; found 'third'",
+    ),
+}
+
+
+@pytest.mark.parametrize("what", REFUSED)
+def test_refusals(what):
+    call, error, message = REFUSED[what]
+    with pytest.raises(error, match=message):
+        call()

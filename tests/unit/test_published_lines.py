@@ -20,11 +20,7 @@ from reduction.stages.strain.strain_fit import fit_strain_model
 from reduction.stages.three_parameter_line.slow_pull import slope_of_cubic
 
 POUND = 4.4482216152605
-
-
 LINES = {line.name: line for line in published_lines()}
-
-
 BRAID, POLYESTER = "nylon-double-braid-0.5in-new", "polyester-double-braid-0.5in-new"
 
 
@@ -189,11 +185,7 @@ def test_lines_cannot_be_changed():
 # tethers of WHOI-2005-10 in SI
 
 INCH, FOOT, LBF = 0.0254, 0.3048, 4.4482216152605
-
-
 PSI = LBF / INCH**2
-
-
 TETHERS = {one.name: one for one in published_tethers()}
 
 

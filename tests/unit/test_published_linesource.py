@@ -250,15 +250,9 @@ def test_a_remark_on_a_cell_says_that_it_is_one(lines):
 # cubics end where they cannot be trusted: by the tables, typed here, and by their own slope
 
 REST = "quasi_static_spring_constant"
-
-
 FIFTH = 0.196  # 1.96 times a tenth: sec. 4.4.1, new lines
-
-
 # Table 9, nylon double braid, 5 years: B, C, D of strain, 1/lb, 1/lb2, 1/lb3
 OLD_NYLON = (2.014e-4, -5.148e-8, 3.259e-12)
-
-
 # Tables 6 and 8, plaited nylon, new: K_0 in lb, strain
 PLAIT_STRAIN = (1.694e-4, -3.943e-8, 3.02e-12)
 
@@ -349,8 +343,6 @@ def test_what_is_open_is_not_said_to_be_replaced():
 # pieces of the published tethers against Table 6, typed a second time
 
 TABLE = Path(__file__).parents[1] / "golden" / "whoi_2005_10_table_6.csv"
-
-
 # open in Table 6: Table 5 stands in
 OPEN = {("T-1", "new")}
 

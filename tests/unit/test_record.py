@@ -28,11 +28,6 @@ def test_arrays_of_a_record_cannot_be_written():
         record().time[0] = 1.0
 
 
-def test_a_channel_of_another_length_is_refused():
-    with pytest.raises(DataError, match=r"tension does not fit the record; found \(1, 4\); needed"):
-        record(tension=np.ones((1, 4)))
-
-
 def test_area_uses_the_mean_of_the_readings():
     specimen = Specimen("a", diameter=(1.0, 3.0))
     assert specimen.area == pytest.approx(math.pi)
@@ -88,11 +83,6 @@ def test_finite_refuses_with_count_and_first_index():
     assert as_finite("strain", 3).dtype == np.float64
 
 
-def test_positive_refuses_zero():
-    with pytest.raises(DataError, match="1 of 2 values of area are not positive.*found 0"):
-        as_positive("area", [1.0, 0.0])
-
-
 def test_increasing_refuses_a_plateau_and_a_matrix():
     with pytest.raises(DataError, match="first at index 2; found 2"):
         as_increasing("time", [1.0, 2.0, 2.0])
@@ -100,13 +90,34 @@ def test_increasing_refuses_a_plateau_and_a_matrix():
         as_increasing("time", np.ones((2, 2)))
 
 
-def test_shapes_must_pair_up():
-    with pytest.raises(DataError, match=r"found a \(2,\), b \(3,\)"):
-        as_same_shape(a=[1, 2], b=[1, 2, 3])
-
-
 @pytest.mark.parametrize("value", [-0.1, np.nan, np.inf])
 def test_a_standard_uncertainty_is_zero_or_more(value):
     with pytest.raises(SettingsError, match="standard uncertainty of bore cannot be used; found"):
         as_spread("bore", value)
     assert as_spread("bore", 0.0) == 0.0
+
+
+REFUSED = {
+    "a channel of another length is refused": (
+        lambda: record(tension=np.ones((1, 4))),
+        DataError,
+        r"tension does not fit the record; found \(1, 4\); needed",
+    ),
+    "positive refuses zero": (
+        lambda: as_positive("area", [1.0, 0.0]),
+        DataError,
+        "1 of 2 values of area are not positive.*found 0",
+    ),
+    "shapes must pair up": (
+        lambda: as_same_shape(a=[1, 2], b=[1, 2, 3]),
+        DataError,
+        r"found a \(2,\), b \(3,\)",
+    ),
+}
+
+
+@pytest.mark.parametrize("what", REFUSED)
+def test_refusals(what):
+    call, error, message = REFUSED[what]
+    with pytest.raises(error, match=message):
+        call()

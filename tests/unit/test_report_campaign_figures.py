@@ -102,8 +102,6 @@ def test_a_part_keeps_the_look_that_it_has_in_the_other_figures(forty):
 # all tests of a campaign in one figure: a colour a specimen, the envelope of its cycles, bands
 
 S, B = "specimen", ("specimen", "branch_name", "strain_bin")
-
-
 NAN = np.nan
 
 

@@ -20,8 +20,6 @@ from reduction.report.test_view import OF_NO_TEST, Status, TestView
 from reduction.report.text_style import NOT_GIVEN
 
 S, B = "specimen", ("specimen", "branch_name", "strain_bin")
-
-
 NAN = np.nan
 
 

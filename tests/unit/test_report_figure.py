@@ -135,8 +135,6 @@ def test_numbers_on_an_axis_are_written_out_unless_it_says_otherwise():
 # fewer points, but every extreme and every gap
 
 VALUES = st.floats(-1e6, 1e6) | st.just(float("nan"))
-
-
 CHANNELS = arrays(np.float64, st.integers(200, 600), elements=VALUES)
 
 
@@ -393,17 +391,11 @@ VISIONS = {
         [0.004733, 0.691367, 0.303900],
     ],
 }  # fmt: skip
-
-
 TO_XYZ = np.array(
     [[0.4124564, 0.3575761, 0.1804375], [0.2126729, 0.7151522, 0.0721750],
      [0.0193339, 0.1191920, 0.9503041]]
 )  # fmt: skip
-
-
 WHITE = TO_XYZ.sum(axis=1)
-
-
 LEAST = 12.0
 
 

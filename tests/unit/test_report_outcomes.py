@@ -46,8 +46,6 @@ from reduction.report.text_style import NOT_GIVEN
 from reduction.stages.three_parameter_line.change_in_length import PROPERTY_NAMES, ChangeInLength
 
 LBF = 4.4482216152605
-
-
 # 6500 lbf - 600 lbf a year, and 100 lbf about it
 BREAKS = [
     Outcome("tensile_strength", LBF * (6500 - 600 * years + about), line="PD", exposure=years,
@@ -55,19 +53,13 @@ BREAKS = [
     for years in (0.0, 2.0, 4.0)
     for about in (-100.0, 100.0)
 ]  # fmt: skip
-
-
 SPLICE = Outcome("tensile_strength", 5000 * LBF, line="PD", exposure=2.0, condition="worn",
                  place="splice", is_valid=False)  # fmt: skip
-
-
 CYCLES = [
     Outcome("cycles_to_failure", lives, line="N8", minimum_load_ratio=0.0, peak_load_ratio=load)
     for load, of_load in {0.7: (4e3, 5e3, 7e3), 0.5: (3e4, 4e4, 5e4)}.items()
     for lives in of_load
 ]
-
-
 SURVIVED = [
     Outcome("cycles_to_failure", 2e5, line="N8", minimum_load_ratio=0.0, peak_load_ratio=0.27,
             is_suspended=True)

@@ -24,8 +24,6 @@ from reduction.report.test_view import TestView
 from reduction.report.text_style import PageTable, TableCell
 
 NASTY = "</script><script>alert(1)</script> \"quote\" 'x' & \u2028\nnew line"
-
-
 STATUS = "test,status,exit_status,message,raw_sha256,seconds\r\n"
 
 

@@ -149,8 +149,6 @@ def test_a_branch_of_one_strain_has_a_level_line():
 # trends over many cycles: thinned, said so, and no more worked out than is drawn
 
 NAMES = ("peak_tension", "valley_tension", "hysteresis_energy", "mean_strain")
-
-
 SPIKE = 1234
 
 
@@ -202,20 +200,10 @@ def test_a_test_among_others_keeps_of_its_cycles_what_they_reach_together():
 # the splice correction drawn: marks, the method on them, and what it misses
 
 FREE, SPLICES, COMPLIANCE, EXPONENT = 2.5, 1.2, 2e-3, 0.8
-
-
 TENSION = np.array([0.0, 200.0, 400.0, 800.0])
-
-
 STRAIN = np.array([0.0, 0.5, 1.0, 1.5])
-
-
 MISSED = np.array([0.001, -0.002, 0.0, 0.003])
-
-
 RATIO = 0.15
-
-
 S, C, M = "specimen", "coefficient_name", "mark"
 
 
@@ -345,11 +333,7 @@ def test_a_test_without_a_record_has_no_end_to_mark():
 # the modulus of a test drawn: what is trusted, and what was trimmed away beside it
 
 NAN = np.nan
-
-
 TRIMMED = np.array([NAN, NAN, 2.0, 3.0, 4.0, NAN])
-
-
 WHOLE = np.array([NAN, 1.5, 2.1, 3.0, 4.1, 9.0])
 
 

@@ -291,8 +291,6 @@ def test_series_of_one_piece_are_drawn_as_they_are():
 # A test with weights: what its ± holds, where that comes from, and the tension of its readings
 
 INCH, POUND = 0.0254, 4.4482216
-
-
 AREA = np.pi / 4 * 0.0257**2
 
 

@@ -314,16 +314,10 @@ def test_misprints_change_one_digit():
 # how blind a reproduced number is: by how much it could be wrong and still come back
 
 HIDDEN = 0.1
-
-
 # a mean and a deviation of two digits, in a difference of two means that nearly cancel or are few
 F_OF_TABLE_A_4 = {".83", "42.75", ".33", ".003"}
-
-
 # said with about or approximately, of one digit that is not zero
 ONE_DIGIT = {"about 1,000", "about 20", "200", "30"}
-
-
 # known to one interval of weights
 ONE_INTERVAL = {("sec 4.8", "static test, where it agrees with T-2", "strain")}
 

@@ -11,8 +11,6 @@ from reduction.published.printed_cells import cells_of, errata_of, table_of
 from reduction.published.wang_2022 import _answers, _armour, _equation_answers, _response, items
 
 ITEMS = items()
-
-
 BY_KEY = {item.cell.key: item for item in ITEMS}
 
 

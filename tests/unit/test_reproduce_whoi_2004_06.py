@@ -9,8 +9,6 @@ from reduction.published.printed_cells import cells_of, errata_of, table_of
 from reduction.published.whoi_2004_06 import _answers, _equation_answers, items
 
 ITEMS = items()
-
-
 BY_KEY = {item.cell.key: item for item in ITEMS}
 
 
@@ -80,8 +78,6 @@ def test_what_is_recomputed():
 # equations of WHOI-2004-06: factors and powers are whole numbers, to the last bits
 
 ANSWERS = _equation_answers()
-
-
 REPORT = "WHOI-2004-06"
 
 

@@ -20,11 +20,7 @@ from reduction.published.zhang_2015 import (
 )
 
 ITEMS = items()
-
-
 BY_KEY = {item.cell.key: item for item in ITEMS}
-
-
 # by hand: of Table 7, 40 vertical Airy cells less the four at t = 0, where there is no velocity;
 # of Table 5 the four vertical ones; of Table 8 both of P2, the maximum of P3, the averages of P3
 # and P4
@@ -99,8 +95,6 @@ def test_what_is_recomputed(key, value, within):
 # equations of Zhang (2015): factors and powers are whole numbers, to the last bits
 
 ANSWERS = _equation_answers()
-
-
 SPEED = ("eq 14", "wave number k", "divisor of 2 pi")
 
 
@@ -121,11 +115,7 @@ def test_the_wave_number_is_that_of_the_length():
 # tables 5 to 8 of Zhang (2015): what the two kinematics of the vertical Airy loads do
 
 ANSWERS_OF_WAVES = _table_answers()
-
-
 CELLS = [cell for cell in cells_of("Zhang-2015") if cell.table == "7"]
-
-
 HALF_A_HUNDREDTH = 0.005 * (1 + 1e-9)
 
 

@@ -174,16 +174,6 @@ def test_a_law_that_was_asked_for_and_does_not_fit_is_refused():
         )
 
 
-def test_tension_driven_without_a_tension_is_refused():
-    with pytest.raises(DataError, match="by tension-driven has no mark to rest on"):
-        fit(method="tension-driven", tension=False)
-
-
-def test_slack_rows_alone_are_refused():
-    with pytest.raises(DataError, match="splices of 'new' have no law"):
-        fit({"T-1": []})
-
-
 def test_a_method_of_marks_without_marks_is_refused():
     with pytest.raises(DataError, match="by strain-ratio needs splice marks"):
         fit_strain_model(Specimen("new"), test_id="T-1", settings=StrainSettings("strain-ratio"))
@@ -264,11 +254,6 @@ def test_the_relaxed_length_is_that_which_stretches():
     assert np.isnan(StrainModel("a", "extensometer").relaxed_length)
 
 
-def test_nothing_to_go_by_is_refused():
-    with pytest.raises(DataError, match="nothing says how position becomes strain of 'rope'"):
-        fit_strain_model(Specimen("rope"), test_id="a")
-
-
 def test_gauge_length_names_what_it_lacks():
     gauge = StrainSettings("gauge-length")
     with pytest.raises(DataError, match="by gauge-length lacks a gauge length"):
@@ -345,3 +330,29 @@ def test_what_creep_of_splices_would_do_to_an_amplitude_is_stated():
     slope = np.polyfit(marks.free_length[loaded], marks.splice_length[loaded], 1)[0]
     assert told.numbers["effect"] == pytest.approx(0.1 * slope)
     assert told.severity == "note"
+
+
+REFUSED = {
+    "tension driven without a tension is refused": (
+        lambda: fit(method="tension-driven", tension=False),
+        DataError,
+        "by tension-driven has no mark to rest on",
+    ),
+    "slack rows alone are refused": (
+        lambda: fit({"T-1": []}),
+        DataError,
+        "splices of 'new' have no law",
+    ),
+    "nothing to go by is refused": (
+        lambda: fit_strain_model(Specimen("rope"), test_id="a"),
+        DataError,
+        "nothing says how position becomes strain of 'rope'",
+    ),
+}
+
+
+@pytest.mark.parametrize("what", REFUSED)
+def test_refusals(what):
+    call, error, message = REFUSED[what]
+    with pytest.raises(error, match=message):
+        call()

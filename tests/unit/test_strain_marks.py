@@ -57,11 +57,7 @@ def measured(rows, holds, tension, **more):
 
 
 HOLDS = [(0.0, 5.0, 3.74, True), (20.0, 80.0, 5.90, False), (90.0, 290.0, 6.63, False)]
-
-
 RAMP = np.arange(4000) / 10  # a tension that tells the time
-
-
 TWO = marks([3.74, 5.90, 6.63], [2.55, 4.51, 5.17], hold=("slack", "min", "max"))
 
 
@@ -151,11 +147,6 @@ def test_of_contradicting_rows_the_one_is_named_without_which_the_others_agree(m
         check_marks(marks(position, free, hold=hold))
 
 
-def test_rows_too_few_to_tell_which_is_wrong_name_none():
-    with pytest.raises(DataError, match=r"Correct the row in the marks file"):
-        check_marks(marks([3.74, 5.90, 6.63], [2.55, 4.51, 4.40]))
-
-
 def of_slack_rows(*far_toe):
     """Slack rows of as many tests, and two marks of splices that stretch with the tension."""
     n = len(far_toe)
@@ -237,11 +228,6 @@ def test_a_grip_in_place_of_a_splice_does_not_stretch():
     rows = SpliceMarks("new", ("T-1",) * 4, ("slack", "min", "centre", "max"), near, far, thimble)
     found = fit_strain_model(Specimen("new"), test_id="T-1", marks=rows, settings=BY_MARKS)
     assert "splices-unlike" not in {one.code for one in found.notes}
-
-
-def test_splices_that_shrink_under_more_stretch_are_refused():
-    with pytest.raises(DataError, match="grows with position, by no more than position does"):
-        check_marks(marks([5.90, 6.00], [4.51, 4.70]))
 
 
 def test_a_tape_is_not_taken_to_read_better_than_a_hundredth_of_a_foot():
@@ -361,8 +347,6 @@ def test_a_last_test_whose_only_mark_has_no_hold_has_no_marks_of_its_own():
 # relaxed lengths of tape readings; covariances against many sets of marks drawn
 
 READING = 0.00124
-
-
 DRAWS = 4000
 
 
@@ -417,21 +401,9 @@ def test_rows_without_a_stated_error_take_their_scatter():
     assert str(found.note).endswith("it is estimated from their scatter, with 4 degrees of freedom")
 
 
-def test_no_slack_row_is_refused():
-    with pytest.raises(DataError, match="the marks have no slack row"):
-        relaxed_lengths([], [], reading_uncertainty=READING)
-
-
-def test_relaxed_lengths_are_positive():
-    with pytest.raises(DataError, match="relaxed length are not positive"):
-        relaxed_lengths([0.0], [1.18], reading_uncertainty=READING)
-
-
 # scatter of tape readings; expected values from printed quantiles and from draws
 
 LINE = np.stack([np.ones(3), np.arange(3.0)])
-
-
 AWAY = np.array([1.0, -2.0, 1.0]) / np.sqrt(6)  # what no line through three rows can follow
 
 
@@ -496,3 +468,34 @@ def test_a_row_to_spare_is_needed_to_refute_the_tape():
 
 def test_odds_that_are_too_small_to_print_are_not_printed():
     assert "below one in a million" in str(row_scatter(1.0, 100 * AWAY, LINE).note)
+
+
+REFUSED = {
+    "rows too few to tell which is wrong name none": (
+        lambda: check_marks(marks([3.74, 5.90, 6.63], [2.55, 4.51, 4.40])),
+        DataError,
+        r"Correct the row in the marks file",
+    ),
+    "splices that shrink under more stretch are refused": (
+        lambda: check_marks(marks([5.90, 6.00], [4.51, 4.70])),
+        DataError,
+        "grows with position, by no more than position does",
+    ),
+    "no slack row is refused": (
+        lambda: relaxed_lengths([], [], reading_uncertainty=READING),
+        DataError,
+        "the marks have no slack row",
+    ),
+    "relaxed lengths are positive": (
+        lambda: relaxed_lengths([0.0], [1.18], reading_uncertainty=READING),
+        DataError,
+        "relaxed length are not positive",
+    ),
+}
+
+
+@pytest.mark.parametrize("what", REFUSED)
+def test_refusals(what):
+    call, error, message = REFUSED[what]
+    with pytest.raises(error, match=message):
+        call()

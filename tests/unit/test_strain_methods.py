@@ -21,8 +21,6 @@ from reduction.stages.strain.strain_model import (
 )
 
 LENGTHS = {"relaxed_free_length": 2.5, "relaxed_splice_length": 1.2}
-
-
 LAW = {"splice_compliance": 0.0012, "splice_exponent": 0.85}
 
 
@@ -41,11 +39,6 @@ def test_a_splice_ratio_of_one_is_the_strain_of_the_whole_length():
 def test_a_splice_ratio_of_zero_charges_all_travel_to_the_free_length():
     strain = _splice_ratio_strain([3.7, 3.7 + 2.5], **LENGTHS, splice_strain_ratio=0.0)
     np.testing.assert_allclose(strain, [0.0, 1.0], atol=1e-15)
-
-
-def test_a_ratio_that_leaves_no_length_is_refused():
-    with pytest.raises(DataError, match="splice_strain_ratio"):
-        _splice_ratio_strain([4.0], **LENGTHS, splice_strain_ratio=-3.0)
 
 
 def test_splice_strain_is_the_power_law():
@@ -89,11 +82,6 @@ def test_missing_position_or_tension_is_missing_strain(position, force):
     assert np.isnan(found).tolist() == [False, True]
 
 
-def test_series_that_do_not_pair_up_are_refused():
-    with pytest.raises(DataError, match="series do not pair up"):
-        _tension_driven_strain([5.0, 6.0], [100.0], **LENGTHS, **LAW)
-
-
 @pytest.mark.parametrize("name", list(LENGTHS))
 def test_a_relaxed_length_of_zero_is_refused(name):
     lengths = {**LENGTHS, name: 0.0}
@@ -101,13 +89,6 @@ def test_a_relaxed_length_of_zero_is_refused(name):
         _tension_driven_strain([5.0], [100.0], **lengths, **LAW)
     with pytest.raises(DataError, match=name):
         _splice_ratio_strain([5.0], **lengths, splice_strain_ratio=0.2)
-
-
-def test_a_line_on_no_length_is_refused():
-    with pytest.raises(DataError, match="relaxed_free_length"):
-        _marked_line_strain(
-            [5.0], free_length_intercept=0.0, free_length_slope=1.0, relaxed_free_length=-1.0
-        )
 
 
 def test_a_displacement_over_a_gauge_length():
@@ -125,8 +106,6 @@ def test_gauge_length_needs_a_length_and_a_reference():
 # unit tests of reduction.stages.strain.strain_model
 
 POSITION, TENSION = np.array([5.9, 6.6, 7.3]), np.array([380.0, 480.0, 590.0])
-
-
 OF_POSITION = {
     "marks": (
         _marked_line_strain,
@@ -146,16 +125,12 @@ OF_POSITION = {
     ),
     "gauge-length": (_gauge_length_strain, {"reference_position": 3.7, "gauge_length": 2.5}),
 }
-
-
 LAW_OF_EVALUATION = {
     "relaxed_free_length": 2.55,
     "relaxed_splice_length": 1.18,
     "splice_compliance": 0.0012,
     "splice_exponent": 0.85,
 }
-
-
 TENSION_DRIVEN = StrainModel(
     "new", "tension-driven", LAW_OF_EVALUATION, tension_low=0.0, tension_high=500.0
 )
@@ -280,22 +255,14 @@ def test_sensitivity_of_mixed_strain_is_its_derivative(bend, limit):
 
 
 TENSION_OF_INVERSE = np.array([0.0, 40.0, 300.0, 1200.0])
-
-
 POSITION_OF_INVERSE = np.array([3.74, 5.1, 6.6, 11.0])
-
-
 DRIVEN = {
     "relaxed_free_length": 2.55,
     "relaxed_splice_length": 1.19,
     "splice_compliance": 0.00113,
     "splice_exponent": 0.86,
 }
-
-
 RATIO = {"relaxed_free_length": 2.55, "relaxed_splice_length": 1.19, "splice_strain_ratio": 0.23}
-
-
 MODELS = [
     StrainModel("T", "tension-driven", DRIVEN),
     StrainModel("T", "strain-ratio", RATIO),
@@ -342,11 +309,6 @@ def test_one_strain_at_several_tensions_is_several_lengths():
     assert (np.diff(found) > 0).all()
 
 
-def test_an_extensometer_knows_no_length():
-    with pytest.raises(DataError, match="from an extensometer, which does not know the length"):
-        position_by_model(StrainModel("T", "extensometer"), strain=1.0, tension=0.0)
-
-
 @pytest.mark.parametrize("index", [0, 1])
 def test_a_longer_tether_has_the_same_splices(index):
     longer = with_free_length(MODELS[index], 10.0)
@@ -370,11 +332,6 @@ def test_methods_that_hold_for_one_length_are_refused_another(index):
         with_free_length(MODELS[index], 10.0)
 
 
-def test_a_length_is_positive():
-    with pytest.raises(DataError, match="free_length are not positive"):
-        with_free_length(MODELS[0], 0.0)
-
-
 # unit tests of reduction.stages.strain.strain_model
 
 
@@ -393,13 +350,6 @@ def test_the_mean_is_of_shares_and_not_of_lengths():
     assert free_length_fraction([1.0, 3.0], [2.0, 4.0]) == 0.625
 
 
-def test_free_longer_than_total_is_refused_with_index_and_values():
-    with pytest.raises(
-        DataError, match=r"1 of 2 .* index 1; found free_length 12, total_length 11"
-    ):
-        free_length_fraction([8.0, 12.0], [10.0, 11.0])
-
-
 @pytest.mark.parametrize(("free", "total"), [([], []), ([1.0], [2.0, 3.0]), (1.0, 2.0)])
 def test_marks_that_do_not_pair_up_are_refused(free, total):
     with pytest.raises(DataError, match="splice marks do not pair up"):
@@ -412,6 +362,49 @@ def test_a_share_that_is_none_is_refused(share):
         free_length_strain(10.0, free_fraction=share, relaxed_free_length=8.0)
 
 
-def test_a_relaxed_length_of_zero_is_refused_in_splice():
-    with pytest.raises(DataError, match="relaxed_free_length is not positive"):
-        free_length_strain(10.0, free_fraction=0.8, relaxed_free_length=0.0)
+REFUSED = {
+    "a ratio that leaves no length is refused": (
+        lambda: _splice_ratio_strain([4.0], **LENGTHS, splice_strain_ratio=-3.0),
+        DataError,
+        "splice_strain_ratio",
+    ),
+    "series that do not pair up are refused": (
+        lambda: _tension_driven_strain([5.0, 6.0], [100.0], **LENGTHS, **LAW),
+        DataError,
+        "series do not pair up",
+    ),
+    "a line on no length is refused": (
+        lambda: _marked_line_strain(
+            [5.0], free_length_intercept=0.0, free_length_slope=1.0, relaxed_free_length=-1.0
+        ),
+        DataError,
+        "relaxed_free_length",
+    ),
+    "an extensometer knows no length": (
+        lambda: position_by_model(StrainModel("T", "extensometer"), strain=1.0, tension=0.0),
+        DataError,
+        "from an extensometer, which does not know the length",
+    ),
+    "a length is positive": (
+        lambda: with_free_length(MODELS[0], 0.0),
+        DataError,
+        "free_length are not positive",
+    ),
+    "free longer than total is refused with index and values": (
+        lambda: free_length_fraction([8.0, 12.0], [10.0, 11.0]),
+        DataError,
+        r"1 of 2 .* index 1; found free_length 12, total_length 11",
+    ),
+    "a relaxed length of zero is refused in splice": (
+        lambda: free_length_strain(10.0, free_fraction=0.8, relaxed_free_length=0.0),
+        DataError,
+        "relaxed_free_length is not positive",
+    ),
+}
+
+
+@pytest.mark.parametrize("what", REFUSED)
+def test_refusals(what):
+    call, error, message = REFUSED[what]
+    with pytest.raises(error, match=message):
+        call()

@@ -16,25 +16,10 @@ def test_stress_is_tension_over_area_and_missing_where_tension_is():
     np.testing.assert_allclose(nominal_stress([10.0, np.nan], area=0.5), [20.0, np.nan])
 
 
-def test_no_area_no_stress():
-    with pytest.raises(DataError, match="area are not positive"):
-        nominal_stress([1.0], area=0.0)
-
-
 def test_volume_is_kept():
     stretch, diameter = np.array([1.0, 1.5, 4.0]), np.array([0.03, 0.02, 0.01])
     before = constant_volume_diameter(stretch - 1, diameter)
     np.testing.assert_allclose(before**2, diameter**2 * stretch)
-
-
-def test_a_diameter_at_no_length_is_refused():
-    with pytest.raises(DataError, match=r"1 \+ strain"):
-        constant_volume_diameter([-1.0], [0.02])
-
-
-def test_strains_and_diameters_pair_up():
-    with pytest.raises(DataError, match="do not pair up"):
-        constant_volume_diameter([0.1, 1.0], [0.02])
 
 
 def stretched(scale, scatter=0.0):
@@ -72,3 +57,29 @@ def test_one_stretched_reading_is_held_against_a_tenth_of_the_diameter(stretched
 def test_stretched_diameters_without_one_before_stretch_are_refused():
     with pytest.raises(DataError, match="specimen 'a' has no diameter"):
         tuple(map(str, check_constant_volume(Specimen("a", stretched_diameters=stretched(1.0)))))
+
+
+REFUSED = {
+    "no area no stress": (
+        lambda: nominal_stress([1.0], area=0.0),
+        DataError,
+        "area are not positive",
+    ),
+    "a diameter at no length is refused": (
+        lambda: constant_volume_diameter([-1.0], [0.02]),
+        DataError,
+        r"1 \+ strain",
+    ),
+    "strains and diameters pair up": (
+        lambda: constant_volume_diameter([0.1, 1.0], [0.02]),
+        DataError,
+        "do not pair up",
+    ),
+}
+
+
+@pytest.mark.parametrize("what", REFUSED)
+def test_refusals(what):
+    call, error, message = REFUSED[what]
+    with pytest.raises(error, match=message):
+        call()

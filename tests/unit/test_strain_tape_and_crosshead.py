@@ -67,25 +67,10 @@ def test_readings_that_would_be_shorter_than_the_allowance_fit_no_unit():
     assert "column, unit and zero of crosshead_position" in str(raised.value)
 
 
-def test_without_a_hold_in_the_log_its_range_names_the_unit():
-    with pytest.raises(DataError, match=r"is the header far_thimble_ft\?"):
-        check(HOLDS / 0.3048, holds=np.empty(0), slack=SLACK / 0.3048)
-
-
-def test_one_row_out_of_reach_among_rows_that_agree_is_named():
-    with pytest.raises(DataError, match=r"marks.csv:5 .*hold max; found far_thimble 73.5 m"):
-        check(HOLDS * [1, 1, 10])
-
-
 def test_marks_that_were_read_before_the_log_began_contradict_nothing():
     # cycles between 5 and 6.5 m: the set-up is not in the log
     assert check(HOLDS, holds=np.empty(0), reach=(5.0, 6.5)) == ()
     assert check(HOLDS, holds=np.array([5.0]), reach=(5.0, 6.5)) == ()
-
-
-def test_one_shift_of_all_rows_is_the_zero_of_the_crosshead():
-    with pytest.raises(DataError, match=r"are off by \+0.3 m: the zero of crosshead_position"):
-        check(HOLDS - 0.3, slack=SLACK - 0.3)
 
 
 def test_a_small_shift_is_said_unless_the_crosshead_is_stated_to_be_so_uncertain():
@@ -160,3 +145,29 @@ class TestZeroAtTension:
         zero = zero_at_tension(place, 1000 * place, reference_tension=250.0)
         assert zero.position == pytest.approx(0.25)
         assert zero.standard_uncertainty == pytest.approx(0.5 / 12**0.5)
+
+
+REFUSED = {
+    "without a hold in the log its range names the unit": (
+        lambda: check(HOLDS / 0.3048, holds=np.empty(0), slack=SLACK / 0.3048),
+        DataError,
+        r"is the header far_thimble_ft\?",
+    ),
+    "one row out of reach among rows that agree is named": (
+        lambda: check(HOLDS * [1, 1, 10]),
+        DataError,
+        r"marks.csv:5 .*hold max; found far_thimble 73.5 m",
+    ),
+    "one shift of all rows is the zero of the crosshead": (
+        lambda: check(HOLDS - 0.3, slack=SLACK - 0.3),
+        DataError,
+        r"are off by \+0.3 m: the zero of crosshead_position",
+    ),
+}
+
+
+@pytest.mark.parametrize("what", REFUSED)
+def test_refusals(what):
+    call, error, message = REFUSED[what]
+    with pytest.raises(error, match=message):
+        call()

@@ -102,11 +102,6 @@ def test_a_number_of_factors_without_a_published_design_is_refused(n_factors):
         box_behnken(n_factors)
 
 
-def test_a_negative_number_of_centres_is_refused():
-    with pytest.raises(SettingsError, match="centre runs is negative; found -1"):
-        box_behnken(3, n_centre=-1)
-
-
 @pytest.mark.parametrize("n_runs", [12, 20, 24])
 def test_plackett_burman_is_orthogonal_and_balanced(n_runs):
     columns = plackett_burman(n_runs - 1, n_runs=n_runs).coded
@@ -134,11 +129,6 @@ def test_the_fewest_runs_that_leave_a_dummy_are_taken(n_factors, n_runs, n_dummy
     assert design.dummy.shape == (n_runs, n_dummy)
 
 
-def test_no_factors_at_all_are_refused():
-    with pytest.raises(SettingsError, match="a screening design needs factors; found 0"):
-        plackett_burman(0)
-
-
 def test_more_factors_than_columns_are_refused():
     with pytest.raises(
         SettingsError, match="12 runs have no room .* found 12 factors; needed at most 11"
@@ -146,13 +136,6 @@ def test_more_factors_than_columns_are_refused():
         plackett_burman(12, n_runs=12)
     with pytest.raises(SettingsError, match="24 runs have no room"):
         plackett_burman(24)
-
-
-def test_another_number_of_runs_is_refused():
-    with pytest.raises(
-        SettingsError, match="no Plackett-Burman design .* found 16; needed 12, 20 or 24"
-    ):
-        plackett_burman(5, n_runs=16)
 
 
 LOW, HIGH = [0.1, 768.0, 320.0], [0.5, 1920.0, 768.0]
@@ -193,16 +176,6 @@ def test_covariance_is_carried_as_draws_of_the_coefficients_are():
     expected = np.cov(draws @ matrix.T, rowvar=False)
     found = matrix @ (root @ root.T) @ matrix.T
     np.testing.assert_allclose(np.diag(found), np.diag(expected), rtol=0.02)
-
-
-def test_a_high_level_below_its_low_one_is_refused():
-    with pytest.raises(SettingsError, match="high level of factor 2 does not lie above"):
-        coded_from_engineering([[0.0, 0.0]], low=[0.0, 1.0], high=[1.0, 1.0])
-
-
-def test_levels_that_do_not_pair_up_are_refused():
-    with pytest.raises(SettingsError, match="low and high levels do not pair up"):
-        engineering_from_coded([[0.0]], low=[0.0], high=[1.0, 2.0])
 
 
 # levels in SI, in break strength, in mean tension; what cannot be a level
@@ -284,15 +257,6 @@ def test_only_loads_are_fractions():
         FactorLevels("mean_tension", 0.1, 0.5, "mean_tension")
 
 
-def test_break_strength_that_is_not_given_is_asked_for():
-    with pytest.raises(
-        SettingsError,
-        match=r"fraction of the rated break strength, which is not given; found mean_tension, "
-        r"tension_amplitude; .*Give rated_break_strength",
-    ):
-        engineering_levels(CODED, loads(0.1, 0.3, 0.05, 0.1))
-
-
 @pytest.mark.parametrize("strength", [0.0, -5.0, float("nan")])
 def test_break_strength_that_cannot_be_is_refused(strength):
     with pytest.raises(DataError, match="rated_break_strength are not"):
@@ -360,22 +324,64 @@ def test_gradient_matrix_is_the_difference_of_the_model_matrix():
         np.testing.assert_allclose(found[:, factor], difference / (2 * step), atol=1e-9)
 
 
-def test_no_factor_is_refused():
-    with pytest.raises(SettingsError, match="a surface has no factor"):
-        quadratic_exponents(0)
-
-
-def test_a_term_of_third_order_is_refused():
-    with pytest.raises(SettingsError, match="above second order; found order 3"):
-        term_kinds(np.array([[2, 1]]))
-
-
 @pytest.mark.parametrize("names", [["f"], ["f", "f"]])
 def test_names_that_do_not_pair_up_are_refused(names):
     with pytest.raises(SettingsError, match="needed 2 different names"):
         term_names(quadratic_exponents(2), names)
 
 
-def test_points_that_are_not_finite_are_refused():
-    with pytest.raises(DataError, match="1 of 2 values of the levels are not finite"):
-        model_matrix([1.0, np.nan], quadratic_exponents(2))
+REFUSED = {
+    "a negative number of centres is refused": (
+        lambda: box_behnken(3, n_centre=-1),
+        SettingsError,
+        "centre runs is negative; found -1",
+    ),
+    "no factors at all are refused": (
+        lambda: plackett_burman(0),
+        SettingsError,
+        "a screening design needs factors; found 0",
+    ),
+    "another number of runs is refused": (
+        lambda: plackett_burman(5, n_runs=16),
+        SettingsError,
+        "no Plackett-Burman design .* found 16; needed 12, 20 or 24",
+    ),
+    "a high level below its low one is refused": (
+        lambda: coded_from_engineering([[0.0, 0.0]], low=[0.0, 1.0], high=[1.0, 1.0]),
+        SettingsError,
+        "high level of factor 2 does not lie above",
+    ),
+    "levels that do not pair up are refused": (
+        lambda: engineering_from_coded([[0.0]], low=[0.0], high=[1.0, 2.0]),
+        SettingsError,
+        "low and high levels do not pair up",
+    ),
+    "break strength that is not given is asked for": (
+        lambda: engineering_levels(CODED, loads(0.1, 0.3, 0.05, 0.1)),
+        SettingsError,
+        r"fraction of the rated break strength, which is not given; found mean_tension, "
+        r"tension_amplitude; .*Give rated_break_strength",
+    ),
+    "no factor is refused": (
+        lambda: quadratic_exponents(0),
+        SettingsError,
+        "a surface has no factor",
+    ),
+    "a term of third order is refused": (
+        lambda: term_kinds(np.array([[2, 1]])),
+        SettingsError,
+        "above second order; found order 3",
+    ),
+    "points that are not finite are refused": (
+        lambda: model_matrix([1.0, np.nan], quadratic_exponents(2)),
+        DataError,
+        "1 of 2 values of the levels are not finite",
+    ),
+}
+
+
+@pytest.mark.parametrize("what", REFUSED)
+def test_refusals(what):
+    call, error, message = REFUSED[what]
+    with pytest.raises(error, match=message):
+        call()

@@ -105,8 +105,6 @@ def test_levels_off_the_range_by_more_than_a_twentieth_of_it_are_told(ends, how)
 # drift over the order of the runs, beside the terms of a surface
 
 RNG = np.random.default_rng(1980)
-
-
 ORDER = RNG.permutation(15) + 1.0
 
 
@@ -164,8 +162,6 @@ def test_a_run_without_a_place_is_left_out_of_the_drift_alone():
 # A run far off the surface of all others is named, and sound runs are not
 
 RNG_OF_OUTLIERS = np.random.default_rng(13)
-
-
 LOW, HIGH = np.array([0.1, 15.0, 4.0]), np.array([0.5, 40.0, 12.0])
 
 

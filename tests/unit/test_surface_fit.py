@@ -28,14 +28,8 @@ from reduction.experiments.surface_statistics import anova_table, diagnose, regr
 from reduction.record.errors import DataError, SettingsError
 
 EXPONENTS = quadratic_exponents(3)
-
-
 NAMES = term_names(EXPONENTS, ["f", "Tm", "dT"])
-
-
 RUNS = box_behnken(3).coded
-
-
 MATRIX = model_matrix(RUNS, EXPONENTS)
 
 
@@ -436,8 +430,6 @@ def test_one_degree_of_freedom_leaves_no_deleted_residual():
 
 # Treb: B1 .. B10 of the published data by least squares
 TREB = np.array([90, -9.375, -1.375, -3.375, 19.75, 19.75, -11.5, -6.25, 4.75, 6.75])
-
-
 BOX = {"low": [0.0, 0.0, 0.0], "high": [1.0, 1.0, 1.0]}
 
 

@@ -54,14 +54,8 @@ def test_one_factor_has_a_centre_and_two_ends():
 
 
 RUNS = box_behnken(3).coded
-
-
 EXPONENTS = quadratic_exponents(3)
-
-
 MATRIX = model_matrix(RUNS, EXPONENTS)
-
-
 LOW, HIGH = np.array([0.1, 768.0, 320.0]), np.array([0.5, 1920.0, 768.0])
 
 
@@ -208,8 +202,6 @@ def test_another_specimen_scatters_as_specimens_do():
 # what counts as tested: levels that runs came near, and what the runs say between them
 
 PLAN = box_behnken(3).coded
-
-
 REACHED = PLAN * (1 - 1e-3 * np.random.default_rng(3).random(PLAN.shape))
 
 

@@ -28,11 +28,7 @@ from reduction.experiments.screening import screening_effects
 from reduction.record.errors import DataError, FitError, SettingsError
 
 FREQUENCY = FactorLevels("frequency", 0.1, 0.5)
-
-
 MEAN = FactorLevels("mean_tension", 1000.0, 3000.0)
-
-
 AMPLITUDE = FactorLevels("tension_amplitude", 200.0, 600.0)
 
 
@@ -104,13 +100,6 @@ def test_without_a_load_the_standard_order_is_kept():
     np.testing.assert_allclose(sheet.mean_tension, 2000 + 1000 * design.coded[:, 1])
 
 
-def test_another_placing_of_repeats_is_refused():
-    with pytest.raises(
-        SettingsError, match="one of two ways; found random; needed together or spread"
-    ):
-        make_run_sheet(box_behnken(3), (FREQUENCY, MEAN, AMPLITUDE), repeats="random")
-
-
 def test_a_break_strength_that_cannot_be_is_refused_though_no_level_needs_it():
     with pytest.raises(DataError, match="rated_break_strength are not positive"):
         make_run_sheet(box_behnken(3), (FREQUENCY, MEAN, AMPLITUDE), rated_break_strength=0.0)
@@ -129,11 +118,7 @@ def test_a_sheet_is_read_only():
 # cautions: each stands where its cause is, and not where it is not
 
 MEAN_OF_CAUTIONS = FactorLevels("mean_tension", 0.12, 0.30, "rated_break_strength")
-
-
 AMPLITUDE_OF_CAUTIONS = FactorLevels("tension_amplitude", 0.05, 0.12, "rated_break_strength")
-
-
 SHARE = FactorLevels("tension_amplitude", 0.3, 0.6, "mean_tension")
 
 
@@ -295,11 +280,7 @@ def test_a_measured_minimum_near_zero_is_slack_and_a_planned_one_is_not():
 # runs that are not where the plan has them
 
 PLAN = box_behnken(3).coded
-
-
 NAMES = [f"R{number}" for number in range(1, 16)]
-
-
 FACTORS = ["f", "T", "a"]
 
 
@@ -330,11 +311,6 @@ def test_the_farthest_stands_first():
     assert [word.split()[:2] for word in off(away)] == [["R8", "f"], ["R3", "T"]]
 
 
-def test_levels_that_do_not_pair_up_are_refused():
-    with pytest.raises(DataError, match="series do not pair up"):
-        off(PLAN[:14])
-
-
 # the smallest effect that a screening is expected to see
 
 
@@ -355,11 +331,6 @@ def test_it_is_what_screenings_of_noise_come_to(n_factors):
     error = np.sqrt(np.mean(found.effect_standard_error**2))
     ratio = found.minimum_significant_effect[0] / found.effect_standard_error[0]
     assert ratio * error == pytest.approx(float(expected), rel=0.01 if n_factors == 5 else 0.15)
-
-
-def test_what_is_no_scatter_is_refused():
-    with pytest.raises(DataError, match="sigma"):
-        smallest_effect(plackett_burman(5), sigma=0.0)
 
 
 # expected widths: against the factors of the fifteen runs, a simulation, and lost runs
@@ -449,11 +420,7 @@ def test_a_scatter_that_cannot_be_is_refused(sigma):
 
 
 EXPONENTS = quadratic_exponents(3)
-
-
 NAMES_OF_VARIANCE = term_names(EXPONENTS, ["f", "Tm", "dT"])
-
-
 MATRIX = model_matrix(box_behnken(3).coded, EXPONENTS)
 
 
@@ -474,11 +441,6 @@ def test_variance_factors_of_several_patterns_pair_up_with_their_responses():
     np.testing.assert_array_equal(found.ravel(), [8.0, 2.0, 8.0])
 
 
-def test_fewer_runs_than_terms_are_refused():
-    with pytest.raises(FitError, match="fewer runs than terms; found 9 runs; needed 10"):
-        covariance_factor(MATRIX[:9], names=NAMES_OF_VARIANCE)
-
-
 def test_a_singular_design_names_what_it_confounds():
     two_levels = np.sign(np.random.default_rng(0).normal(size=(20, 3)))
     with pytest.raises(FitError, match=r"cannot tell all terms apart; found f\^2 with mean; "):
@@ -489,3 +451,34 @@ def test_a_column_of_noughts_is_named():
     assert _find_confounded([[1.0, 0.0], [1.0, 0.0]], ["mean", "f"]) == ("f is zero in every run",)
     with pytest.raises(FitError, match="f is zero in every run"):
         covariance_factor([[1.0, 0.0], [1.0, 0.0]], names=["mean", "f"])
+
+
+REFUSED = {
+    "another placing of repeats is refused": (
+        lambda: make_run_sheet(box_behnken(3), (FREQUENCY, MEAN, AMPLITUDE), repeats="random"),
+        SettingsError,
+        "one of two ways; found random; needed together or spread",
+    ),
+    "levels that do not pair up are refused": (
+        lambda: off(PLAN[:14]),
+        DataError,
+        "series do not pair up",
+    ),
+    "what is no scatter is refused": (
+        lambda: smallest_effect(plackett_burman(5), sigma=0.0),
+        DataError,
+        "sigma",
+    ),
+    "fewer runs than terms are refused": (
+        lambda: covariance_factor(MATRIX[:9], names=NAMES_OF_VARIANCE),
+        FitError,
+        "fewer runs than terms; found 9 runs; needed 10",
+    ),
+}
+
+
+@pytest.mark.parametrize("what", REFUSED)
+def test_refusals(what):
+    call, error, message = REFUSED[what]
+    with pytest.raises(error, match=message):
+        call()

@@ -14,8 +14,6 @@ from reduction.experiments.screening import (
 from reduction.record.errors import DataError, SettingsError
 
 FIVE = plackett_burman(5)
-
-
 RNG = np.random.default_rng(11)
 
 

@@ -23,17 +23,9 @@ from reduction.experiments.response_transform import (
 from reduction.record.errors import DataError, FitError, SettingsError
 
 RUNS = box_behnken(3).coded
-
-
 EXPONENTS = quadratic_exponents(3)
-
-
 MATRIX = model_matrix(RUNS, EXPONENTS)
-
-
 LOW, HIGH = np.array([0.1, 768.0, 320.0]), np.array([0.5, 1920.0, 768.0])
-
-
 FACTORS = ["frequency", "mean_tension", "tension_amplitude"]
 
 
@@ -525,8 +517,6 @@ LOW_OF_BETWEEN_RUNS, HIGH_OF_BETWEEN_RUNS = (
     np.array([0.1, 3400.0, 1400.0]),
     np.array([0.5, 8500.0, 3400.0]),
 )
-
-
 SPEC = {
     "factors": {
         "frequency": ["0.1 Hz", "0.5 Hz"], "mean_tension": ["3400 N", "8500 N"],

@@ -217,8 +217,6 @@ def test_synthetic_rows_say_so(tables):
 # tables written block by block: the same bytes, in bounded memory
 
 N_CYCLES = 30000
-
-
 PER_CYCLE = ("mean_tension", "tension_amplitude", "loss_factor", "hysteresis_energy")
 
 
@@ -720,11 +718,7 @@ def test_a_slope_without_an_uncertainty_leaves_that_of_the_ratio_empty():
 # numbers are written as Python writes them, whatever their size
 
 RNG = np.random.default_rng(20)
-
-
 SIZES = 10.0 ** np.arange(-8, 20)
-
-
 NUMBERS = {
     "of any bits": RNG.integers(0, 2**63, 20000, dtype=np.int64).view(np.float64),
     "of sizes that occur": RNG.normal(size=20000) * RNG.choice(SIZES, 20000),

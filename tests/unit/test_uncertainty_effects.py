@@ -81,8 +81,6 @@ def test_possible_friction_of_splices_is_weighed_against_the_interval_of_the_ene
 # by how much strain is too large after a slip, and when that is worth a warning
 
 GAUGE_LENGTH = 2.5  # m
-
-
 # strain is 40 % of the position in metres: one metre of stroke over 2.5 m
 LINE = StrainModel(
     "new", "marks",

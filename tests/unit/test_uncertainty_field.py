@@ -37,8 +37,6 @@ MODEL = StrainModel(
      "splice_exponent": 0.9},
     np.diag([1e-6, 2e-6, 1e-10, 1e-4]),
 )  # fmt: skip
-
-
 ERRORS = InstrumentErrors(
     "new", tension_gain=0.0025, tension_offset=2.0, position_gain=0.001, position_offset=0.003,
     strain_gain=0.002, stiffness=0.003,
@@ -97,16 +95,10 @@ COEFFICIENTS = {
     "splice_compliance": 0.0012,
     "splice_exponent": 0.86,
 }
-
-
 DEVIATION = np.array([1.2e-3, 1.5e-3, 5e-5, 6e-3])
-
-
 CORRELATION = np.array(
     [[1, -0.8, 0.1, 0.0], [-0.8, 1, -0.3, 0.1], [0.1, -0.3, 1, -0.9], [0.0, 0.1, -0.9, 1]]
 )
-
-
 MODEL_OF_FIELDLENGTH = StrainModel(
     "new", "tension-driven", COEFFICIENTS, CORRELATION * np.outer(DEVIATION, DEVIATION)
 )
@@ -196,14 +188,8 @@ def test_the_strain_at_which_a_specimen_goes_slack_moves_with_gain_zero_and_lag(
 # errors of load cells at points of the plane, against laws fitted again to wrong tensions
 
 FREE, SPLICES, COMPLIANCE, EXPONENT = 2.55, 1.18, 0.0012, 0.86
-
-
 MARKS = np.array([0.7, 200.0, 420.0, 600.0, 900.0])  # the first while it was slack
-
-
 POINTS = np.array([250.0, 480.0, 800.0])
-
-
 SIZE = {"tension_gain": 1e-4, "tension_offset": 0.05}
 
 
@@ -331,8 +317,6 @@ def test_a_wrong_zero_of_the_cell_is_no_slope_without_bounds_at_a_tension_near_n
 # errors of the crosshead's scale, as the zero of strain is from the log or from elsewhere
 
 LENGTH, START = 2.0, 2.3
-
-
 STRAIN = np.array([0.0, 0.4, 0.9])
 
 
@@ -382,8 +366,6 @@ MODEL_OF_SPLICE_FRICTION = StrainModel(
     {"relaxed_free_length": 2.5, "relaxed_splice_length": 1.25, "splice_compliance": 0.2 / 450,
      "splice_exponent": 1.0},
 )  # fmt: skip
-
-
 ERRORS_OF_SPLICE_FRICTION = InstrumentErrors("new", splice_friction=0.05)
 
 
@@ -466,8 +448,6 @@ def test_a_specimen_without_splices_has_no_such_error():
 # what the hysteresis of a load cell does to a loop and its branches
 
 GAUGE = StrainModel("rope", "gauge-length", {"gauge_length": 1.0, "reference_position": 1.0})
-
-
 PEAK, STROKE, LOSS = 1000.0, 0.01, 0.05  # [N], [1], [1]: tension from zero, strain amplitude
 
 
@@ -577,19 +557,13 @@ def test_the_hysteresis_that_moves_the_energy_by_its_uncertainty_is_told_where_n
 # contributions to the parameters of a law against the same fit to a stress with that error
 
 STRAIN_OF_ELASTOMER = np.linspace(0.02, 2.2, 500)
-
-
 # two Ogden terms, and a part that no law here has: what is left over bends the least squares
 TRUE = hyperelastic_stress(
     STRAIN_OF_ELASTOMER,
     law="ogden-2",
     parameters={"modulus_1": 4e5, "modulus_2": 2e3, "exponent_1": 1.6, "exponent_2": 6.0},
 )
-
-
 STRESS = TRUE + 6e3 * np.sin(4 * STRAIN_OF_ELASTOMER)
-
-
 ERRORS_OF_ELASTOMER = {
     "gain": 2e-4 * STRESS,
     "zero": np.full(STRAIN_OF_ELASTOMER.size, 30.0),

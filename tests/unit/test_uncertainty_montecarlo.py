@@ -17,16 +17,10 @@ from reduction.stages.three_parameter_line.line_of_loops import identify_run
 from reduction.uncertainty.monte_carlo import N_DRAWS, _draw_line, with_line_spread
 
 STORED, LOST, RATE, REST = 3e4, 4e3, 0.3, 2e4
-
-
 TURN = 2 * np.pi * RATE
-
-
 FUNDAMENTAL = dict(
     zip(FUNDAMENTAL_INPUTS, ([STORED], [LOST], [RATE], [REST]), strict=True)
 )  # fmt: skip
-
-
 # of a quantile of this many draws, four times its standard deviation over u
 QUANTILE = 4 * np.sqrt(0.025 * 0.975 / N_DRAWS) / stats.norm.pdf(1.96)
 
@@ -151,8 +145,6 @@ def test_a_line_that_has_no_solution_itself_is_not_drawn():
 # the uncertainty of a line of a test: which propagation is stated, and what is noted
 
 STORED_OF_SHARED_MONTECARLO, LOST_OF_SHARED_MONTECARLO, RATE_OF_SHARED_MONTECARLO = 3e4, 4e3, 0.3
-
-
 NAMES = ("dissipation_spring_constant", "relaxation_time", "dashpot_coefficient")
 
 

@@ -27,8 +27,6 @@ from reduction.uncertainty.propagation import with_shared_interval
 from reduction.uncertainty.surface_errors import with_shared_surfaces
 
 MODEL = StrainModel("new", "gauge-length", {"reference_position": 2.0, "gauge_length": 2.0})
-
-
 CELL, NEW, USED = (
     Component("tension_gain", "cell"), Component("diameter", "new"), Component("diameter", "used"),
 )  # fmt: skip
@@ -113,19 +111,13 @@ def test_a_stepwise_test_has_the_gauge_length_and_the_diameter_in_its_moduli(ste
 # means, drifts and trends over cycles: the errors of the cycles go through the same sums
 
 AREA = 5e-4
-
-
 MODEL_OF_SHARED_CYCLES = StrainModel(
     "new", "gauge-length", {"reference_position": 0.0, "gauge_length": 2.0}
 )
-
-
 TENSIONS = (
     "mean_tension", "tension_amplitude", "peak_tension", "valley_tension",
     "apparent_spring_constant",
 )  # fmt: skip
-
-
 STRENGTH = np.array([9000.0, 9000.0])
 
 
