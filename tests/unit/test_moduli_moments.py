@@ -378,3 +378,20 @@ def test_grids_that_differ_by_rounding_are_the_same():
     x = 0.1 * np.arange(1, 9)
     at = curve_at(x * (1 + 1e-15), x, np.arange(8.0), spacing=0.1)
     assert np.isfinite(at).all()
+def test_curves_that_soften_are_put_on_the_mean_curve_in_proportion():
+    """Each curve 1 % softer than the one before, and a modulus that steps: no residual beside it."""
+    n_curves, n_each = 12, 40
+    places = (np.arange(n_each) + np.mod(0.37 * np.arange(n_curves)[:, None], 1)) / n_each
+    strain = (1 + 0.5 * places).ravel()
+    curve = np.repeat(np.arange(n_curves), n_each)
+    share = 1 - 0.01 * curve
+    tension = share * (200 + 1000 * strain - 200 * np.maximum(strain - 1.25, 0))
+    grid = StrainGrid(low=1.0, width=0.02, n_bins=25, half_window=2)
+    moments, _ = accumulate_moments(
+        strain, tension, curve=curve, n_curves=n_curves, grid=grid, tension_reference=300.0
+    )
+    fits = fit_windows(moments.pooled(1), minimum_count=4)
+    beside = np.isfinite(fits.slope[0]) & (np.abs(grid.centres - 1.25) > 0.06)
+    expected = np.where(grid.centres < 1.25, 1000, 800) * share.mean()
+    assert fits.slope[0, beside] == pytest.approx(expected[beside], rel=1e-3)
+    assert np.sqrt(fits.slope_variance[0, beside]).max() < 2.0

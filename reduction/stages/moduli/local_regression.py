@@ -368,26 +368,33 @@ class BranchMoments:
         return BranchMoments(self.sums[:, start:stop], self.grid, self.tension_reference)
 
     def pooled(self, n_branches: int) -> BranchMoments:
-        """Moments of each branch over all its curves, each put on the level of the mean curve.
+        """Moments of each branch over all its curves, each put on the mean curve.
 
         Curves come branch by branch within a cycle.  Tension falls from cycle to cycle, and not
         every cycle has a sample in every bin: if the level of a cycle were not removed, that fall
         would appear as a slope.  Nor are the samples of a bin at one strain: where there are few,
-        the slope across the bin must not count as level.
+        the slope across the bin must not count as level.  A specimen that softens loses tension in
+        proportion: where the ranges of the curves differ beyond chance, they are removed as well.
         """
         sums = self.sums.reshape(_N_SUMS, -1, n_branches, self.sums.shape[-1])
         count, strain, tension = sums[0], sums[1], sums[5]
         n_samples = np.maximum(count.sum(axis=0), 1)
+        of_curve = np.maximum(count.sum(axis=-1, keepdims=True), 1)
         tension = tension - (strain - count * (strain.sum(axis=0) / n_samples)) * self._slope(sums)
-        level = np.zeros((*count.shape[:2], 1))
+        level, scale = np.zeros((*count.shape[:2], 1)), np.ones((*count.shape[:2], 1))
         for _ in range(_LEVEL_STEPS):  # the mean of a bin depends on the levels of its curves
-            mean = (tension - count * level).sum(axis=0) / n_samples
-            level = (tension - count * mean).sum(axis=-1, keepdims=True)
-            level = level / np.maximum(count.sum(axis=-1, keepdims=True), 1)
-        pooled = sums.sum(axis=1)
-        pooled[5:8] -= (sums[0:3] * level).sum(axis=1)
-        pooled[8] += (level * (level * count - 2 * sums[5])).sum(axis=0)
-        return BranchMoments(pooled, self.grid, self.tension_reference)
+            mean = ((tension - count * level) / scale).sum(axis=0) / n_samples
+            above = mean - (count * mean).sum(axis=-1, keepdims=True) / of_curve
+            power = np.maximum((count * above**2).sum(axis=-1, keepdims=True), _TINY)
+            grown = (above * tension).sum(axis=-1, keepdims=True) / power
+            scale = np.where(_is_beyond_chance(tension, count, above, grown), grown, 1.0)
+            scale = scale / ((of_curve * scale).sum(axis=0) / of_curve.sum(axis=0))
+            level = (tension - count * scale * mean).sum(axis=-1, keepdims=True) / of_curve
+        pooled = sums.copy()
+        pooled[8] += level * (level * count - 2 * sums[5])
+        pooled[8] /= scale**2
+        pooled[5:8] = (sums[5:8] - sums[0:3] * level) / scale
+        return BranchMoments(pooled.sum(axis=1), self.grid, self.tension_reference)
 
     def _slope(self, sums: Floats) -> Floats:
         """Slope of all curves of a branch together at each bin; the nearest one at the ends."""
@@ -412,6 +419,25 @@ class BranchMoments:
         """Curves of both, one after the other, of one grid and reference."""
         both = np.concatenate([self.sums, other.sums], axis=1)
         return BranchMoments(both, self.grid, self.tension_reference)
+
+
+def _is_beyond_chance(tension: Floats, count: Floats, above: Floats, grown: Floats) -> Bools:
+    """Whether the ranges of the curves of a branch differ by more than their readings explain.
+
+    ``tension`` and ``count`` are sums by curve, branch and bin; ``above`` is the mean curve less
+    its mean over the readings of a curve, and ``grown`` the range of a curve over that of it.
+    """
+    filled = np.maximum(count, 1)
+    level = tension.sum(axis=-1, keepdims=True) / np.maximum(count.sum(axis=-1, keepdims=True), 1)
+    left = ((tension - count * (level + grown * above)) ** 2 / filled).sum(axis=(0, 2))
+    freedom = np.maximum((count > 0).sum(axis=(0, 2)) - 2 * count.shape[0], 1)
+    apart = ((grown - 1) ** 2 * (count * above**2).sum(axis=-1, keepdims=True)).mean(axis=(0, 2))
+    return np.asarray(apart > _APART * left / freedom)[:, None]
+
+
+_APART = 16.0  # ratio of the variances; of many pairs of blocks none exceeds it by chance
+
+_TINY = 1e-300
 
 
 @dataclass(frozen=True)
