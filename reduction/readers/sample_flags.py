@@ -850,8 +850,8 @@ def _in_order(record: Record) -> tuple[Record, Integers | None]:
     """
     time = record.time
     parts = sample_blocks(time.size, time, overlap=1)
-    falls = any((np.diff(time[part]) < 0).any() for part in parts)
-    if not falls or time.size > _MOST_SORTED or not np.isfinite(time).all():
+    stalls = any((np.diff(time[part]) <= 0).any() for part in parts)
+    if not stalls or time.size > _MOST_SORTED or not np.isfinite(time).all():
         return record, None
     rows = np.argsort(time, kind="stable")
     place, load = take_samples(record.crosshead_position, rows), take_samples(record.tension, rows)
