@@ -378,6 +378,8 @@ def test_grids_that_differ_by_rounding_are_the_same():
     x = 0.1 * np.arange(1, 9)
     at = curve_at(x * (1 + 1e-15), x, np.arange(8.0), spacing=0.1)
     assert np.isfinite(at).all()
+
+
 def test_curves_that_soften_are_put_on_the_mean_curve_in_proportion():
     """Each curve 1 % softer than the one before, and a modulus that steps: no residual beside it."""
     n_curves, n_each = 12, 40
