@@ -24,16 +24,12 @@ from reduction.record.errors import SettingsError
 from reduction.record.measurement import Floats, Integers, read_only_arrays
 
 
-@dataclass(frozen=True)
-class InstrumentErrors:
-    """Standard uncertainties of the instruments of one specimen; zero where not stated.
-
-    All except those of a single reading are shared by all samples.
+@dataclass(frozen=True, kw_only=True)
+class ErrorSizes:
+    """Standard uncertainties of the instruments of a test; zero if not stated.
 
     Parameters
     ----------
-    specimen : str
-        Specimen of the tension channel.
     tension_gain : float
         Relative, for the load cell and its amplifier. [1]
     tension_offset : float
@@ -41,21 +37,16 @@ class InstrumentErrors:
     tension_reversibility : float
         Falling less rising indication of the load cell at the middle of a cycle, over half the
         range of tension of the cycle. [1]
+    tension_reading, position_reading : float
+        A single reading (noise and resolution), independent of all other samples. [N], [m]
     position_gain : float
         Relative, for the scale of the crosshead. [1]
     position_offset : float
         Zero of the crosshead. [m]
-    position_of_scale_zero : float
-        Reading at which the crosshead scale is zero: the length there for a displacement, 0 for a
-        pin-to-pin length.  It has no uncertainty. [m]
     lag : float
         Time by which tension is logged late (or early) relative to position. [s]
-    smoothed_over : float
-        Longest time constant of a tension filter, if the record shows that tension lags. [s]
     diameter : float
         Mean diameter. [m]
-    diameter_readings : int
-        Number of readings that give the error of the diameter; 0 if it is stated. [1]
     area : float
         Relative, for an area stated instead of a diameter. [1]
     strain_gain : float
@@ -69,37 +60,23 @@ class InstrumentErrors:
     linear_density : float
         [kg m-1]
     machine_compliance : float
-        Machine deflection per tension of this specimen. [m N-1]
+        Machine deflection per tension. [m N-1]
     splice_friction : float
         Excess length of the splices when unloading over that when loading at the same tension, as a
         fraction of their extension. [1]
     is_splice_friction_known : bool
         Whether it is stated, or found from a mark on the way down.
-    splice_slip : float
-        Slip of the splices after their marks were read. [m]
-    splices_slipped_by : float
-        Slip of the splices by the end of the test, from steps in tension. [m]
-    test : str
-        Name of the test.
-    tension_reading, position_reading : float
-        A single reading, independent of all other samples. [N], [m]
-    tension_instrument, position_instrument : str
-        Channels with the same name share their gain and offset.
-    strain_model : str
-        Strain models with the same name share the errors of their coefficients.
     """
 
-    specimen: str
     tension_gain: float = 0.0
     tension_offset: float = 0.0
     tension_reversibility: float = 0.0
+    tension_reading: float = 0.0
     position_gain: float = 0.0
     position_offset: float = 0.0
-    position_of_scale_zero: float = 0.0
+    position_reading: float = 0.0
     lag: float = 0.0
-    smoothed_over: float = 0.0
     diameter: float = 0.0
-    diameter_readings: int = 0
     area: float = 0.0
     strain_gain: float = 0.0
     rated_break_strength: float = 0.0
@@ -109,10 +86,43 @@ class InstrumentErrors:
     machine_compliance: float = 0.0
     splice_friction: float = 0.0
     is_splice_friction_known: bool = False
+
+
+@dataclass(frozen=True)
+class InstrumentErrors(ErrorSizes):
+    """Errors of the instruments of one specimen.
+
+    All except those of a single reading are shared by all samples.
+
+    Parameters
+    ----------
+    specimen : str
+        Specimen of the tension channel.
+    position_of_scale_zero : float
+        Reading at which the crosshead scale is zero: the length there for a displacement, 0 for a
+        pin-to-pin length.  It has no uncertainty. [m]
+    smoothed_over : float
+        Longest time constant of a tension filter, if the record shows that tension lags. [s]
+    diameter_readings : int
+        Number of readings that give the error of the diameter; 0 if it is stated. [1]
+    splice_slip : float
+        Slip of the splices after their marks were read. [m]
+    splices_slipped_by : float
+        Slip of the splices by the end of the test, from steps in tension. [m]
+    test : str
+        Name of the test.
+    tension_instrument, position_instrument : str
+        Channels with the same name share their gain and offset.
+    strain_model : str
+        Strain models with the same name share the errors of their coefficients.
+    """
+
+    specimen: str
+    position_of_scale_zero: float = 0.0
+    smoothed_over: float = 0.0
+    diameter_readings: int = 0
     splice_slip: float = 0.0
     splices_slipped_by: float = 0.0
-    tension_reading: float = 0.0
-    position_reading: float = 0.0
     test: str = ""
     tension_instrument: str = "load cell"
     position_instrument: str = "crosshead"
@@ -536,55 +546,18 @@ USUAL_SPLICE_FRICTION = 0.02
 
 
 @dataclass(frozen=True)
-class StatedErrors:
-    """Standard uncertainties stated by a campaign; zero if not stated.
+class StatedErrors(ErrorSizes):
+    """Errors stated by a campaign.
 
     Parameters
     ----------
-    tension_gain, tension_reversibility, position_gain : float
-        Relative. [1]
-    tension_offset, tension_reading : float
-        Zero, and a single reading (noise and resolution). [N]
-    position_offset, position_reading : float
-        The same for the crosshead. [m]
-    lag : float
-        [s]
-    diameter : float
-        Mean diameter of a specimen. [m]
-    area : float
-        Relative, for the area of a specimen that has no diameter. [1]
-    strain_gain, rated_break_strength, stiffness : float
-        Relative: strain method, break strength, and effect of test temperature on the stiffness.
-        [1]
-    attached_mass, linear_density, machine_compliance : float
-        Load train and the specimen's own mass. [kg], [kg m-1], [m N-1]
     splice_friction : float
-        Difference between splices when unloading and loading, relative to their extension; not zero
-        if unstated. [1]
-    is_splice_friction_known : bool
-        Whether it is stated, or found from a mark on the way down.
+        As in `ErrorSizes`; not zero if unstated. [1]
     has_one_load_cell : bool
         Whether all tension channels share the errors of one load cell.
     """
 
-    tension_gain: float = 0.0
-    tension_offset: float = 0.0
-    tension_reversibility: float = 0.0
-    tension_reading: float = 0.0
-    position_gain: float = 0.0
-    position_offset: float = 0.0
-    position_reading: float = 0.0
-    lag: float = 0.0
-    diameter: float = 0.0
-    area: float = 0.0
-    strain_gain: float = 0.0
-    rated_break_strength: float = 0.0
-    stiffness: float = 0.0
-    attached_mass: float = 0.0
-    linear_density: float = 0.0
-    machine_compliance: float = 0.0
     splice_friction: float = USUAL_SPLICE_FRICTION
-    is_splice_friction_known: bool = False
     has_one_load_cell: bool = False
 
     @property
@@ -608,26 +581,9 @@ class StatedErrors:
     ) -> InstrumentErrors:
         """Errors for one specimen of one test; channels count from 1."""
         return InstrumentErrors(
-            specimen=specimen,
+            specimen,
+            **{item.name: getattr(self, item.name) for item in fields(ErrorSizes)},
             test=test,
-            tension_gain=self.tension_gain,
-            tension_offset=self.tension_offset,
-            tension_reversibility=self.tension_reversibility,
-            position_gain=self.position_gain,
-            position_offset=self.position_offset,
-            lag=self.lag,
-            diameter=self.diameter,
-            area=self.area,
-            strain_gain=self.strain_gain,
-            rated_break_strength=self.rated_break_strength,
-            stiffness=self.stiffness,
-            attached_mass=self.attached_mass,
-            linear_density=self.linear_density,
-            machine_compliance=self.machine_compliance,
-            splice_friction=self.splice_friction,
-            is_splice_friction_known=self.is_splice_friction_known,
-            tension_reading=self.tension_reading,
-            position_reading=self.position_reading,
             tension_instrument=self.load_cell_name(load_cell, channel=channel),
             position_instrument=machine or "crosshead",
             strain_model=strain_model or specimen,
