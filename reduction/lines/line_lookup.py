@@ -12,7 +12,7 @@ References
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
@@ -39,6 +39,7 @@ from reduction.lines.line_levels import completed_levels, evaluate_levels, refus
 from reduction.lines.line_surface import evaluate_surface
 from reduction.lines.lookup_product import (
     OF_MEAN,
+    CycleLoads,
     DesignValues,
     LineCurve,
     LineLevels,
@@ -51,7 +52,7 @@ from reduction.record.contributions import (
     Component,
 )
 from reduction.record.errors import DataError, SettingsError
-from reduction.record.measurement import Bools, Floats, read_only_arrays
+from reduction.record.measurement import Bools, Floats
 
 LOADED_SHARE = 0.6
 """Greatest share of the break strength for a line that is always loaded. [1]"""
@@ -67,33 +68,13 @@ _HOW_FLAGGED = "--extrapolate flag gives the number, where there is one, and fla
 _SLACK = 1e-9
 
 
-@dataclass(frozen=True)
-@read_only_arrays
-class _CycleLoads:
-    """Ends of a cycle of tension; arrays have the shape (...) of the points.
-
-    ``is_slack`` where the minimum is zero; ``is_above_rule`` where the peak exceeds the share
-    that the source allows. Shares are of the rated break strength; ``own`` shares are of the
-    strength of the line in its condition. NaN where not known.
-    """
-
-    peak_tension: Floats
-    minimum_tension: Floats
-    peak_share: Floats
-    minimum_share: Floats
-    own_peak_share: Floats
-    own_minimum_share: Floats
-    is_slack: Bools
-    is_above_rule: Bools
-
-
 def cycle_loads(
     mean_tension: ArrayLike,
     tension_amplitude: ArrayLike,
     *,
     rated_break_strength: float,
     tensile_strength: float = float("nan"),
-) -> _CycleLoads:
+) -> CycleLoads:
     """Peak and minimum tension of a cycle, as loads and as shares of the break strength.
 
     Notes
@@ -135,7 +116,7 @@ def cycle_loads(
             own_peak, own_least = peak / tensile_strength, least / tensile_strength
         is_low = own_least < LEAST_SHARE * (1 - _SLACK)
         above = own_peak > np.where(is_low, SLACK_SHARE, LOADED_SHARE) * (1 + _SLACK)
-    return _CycleLoads(
+    return CycleLoads(
         peak_tension=np.asarray(peak),
         minimum_tension=np.asarray(least),
         peak_share=np.asarray(peak_share),
@@ -149,7 +130,7 @@ def cycle_loads(
 
 def _loads_of_line(
     line: LineSource, given: Mapping[str, Floats], shape: tuple[int, ...], *, branch: str = ""
-) -> _CycleLoads:
+) -> CycleLoads:
     """Peak and minimum tension at the points of a look-up.
 
     Notes
@@ -203,7 +184,7 @@ def _one_tension(line: LineSource, given: Mapping[str, Floats], branch: str) -> 
     return np.asarray(np.nan)
 
 
-def _unknown_at(loads: _CycleLoads, unknown: Bools) -> _CycleLoads:
+def _unknown_at(loads: CycleLoads, unknown: Bools) -> CycleLoads:
     numbers = (
         "peak_tension", "minimum_tension", "peak_share", "minimum_share", "own_peak_share",
         "own_minimum_share",
@@ -215,7 +196,7 @@ def _unknown_at(loads: _CycleLoads, unknown: Bools) -> _CycleLoads:
     )
 
 
-def _refuse_slack(line: LineSource, loads: _CycleLoads) -> None:
+def _refuse_slack(line: LineSource, loads: CycleLoads) -> None:
     if loads.is_slack.any():
         peak = loads.peak_tension[loads.is_slack].ravel()[0]
         raise DataError(
@@ -236,7 +217,7 @@ def _design_values(
     line: LineSource,
     of: LineSurface | LineCurve | LineLevels,
     *,
-    loads: _CycleLoads,
+    loads: CycleLoads,
     inside: Bools,
     untested: Bools,
     words: tuple[str, str],
@@ -276,17 +257,9 @@ def _design_values(
         quantity=of.quantity,
         unit=quantity_of(of.quantity).unit,
         component=component,
-        **numbers,
         is_inside=inside,
         is_untested=untested,
-        peak_tension=loads.peak_tension,
-        minimum_tension=loads.minimum_tension,
-        peak_share=loads.peak_share,
-        minimum_share=loads.minimum_share,
-        own_peak_share=loads.own_peak_share,
-        own_minimum_share=loads.own_minimum_share,
-        is_slack=loads.is_slack,
-        is_above_rule=loads.is_above_rule,
+        **(vars(loads) | numbers),
         rule=line.rule,
         source=line.source,
         errata=() if isinstance(of, LineLevels) else of.errata,

@@ -87,7 +87,7 @@ def find_lines(
         one
         for one in known
         if all(_has_words(getattr(one, name), text) for name, text in words.items())
-        and (diameter is None or _is_size(one.diameter, diameter, tolerance))
+        and (diameter is None or abs(one.diameter - diameter) <= (tolerance + _ROUNDING) * diameter)
     ]
     if not found:
         sizes = [] if diameter is None else [f"diameter {1e3 * diameter:.4g} mm within "
@@ -106,10 +106,6 @@ def _has_words(text: str, wanted: str) -> bool:
         any(word == one or (word.isalpha() and one.startswith(word)) for one in there)
         for word in _WORD.findall(wanted.lower())
     )
-
-
-def _is_size(diameter: float, wanted: float, tolerance: float) -> bool:
-    return abs(diameter - wanted) <= (tolerance + _ROUNDING) * wanted
 
 
 def _there_is(lines: Sequence[LineSource]) -> str:

@@ -385,10 +385,42 @@ class LineSource:
         return {"dissipation_spring_constant", "relaxation_time"} <= self.surfaces.keys()
 
 
+@dataclass(frozen=True, kw_only=True)
+@read_only_arrays
+class CycleLoads:
+    """Ends of a cycle of tension; arrays have the shape (...) of the points.
+
+    Parameters
+    ----------
+    peak_tension, minimum_tension : ndarray
+        Mean tension plus and minus amplitude; without a cycle the one tension, from the curve if
+        a strain is given; NaN where not known. [N]
+    peak_share, minimum_share : ndarray
+        Relative to the rated break strength; NaN where that is not known. [1]
+    own_peak_share, own_minimum_share : ndarray
+        Relative to the strength of the line in its condition, or to the rated one where no other
+        is known. [1]
+    is_slack : ndarray of bool
+        The minimum is zero.
+    is_above_rule : ndarray of bool
+        The peak exceeds 60 % of the strength that the line has, or 30 % where the minimum is below
+        3 % of it.
+    """
+
+    peak_tension: Floats
+    minimum_tension: Floats
+    peak_share: Floats
+    minimum_share: Floats
+    own_peak_share: Floats
+    own_minimum_share: Floats
+    is_slack: Bools
+    is_above_rule: Bools
+
+
 @dataclass(frozen=True)
 @read_only_arrays
-class DesignValues:
-    """Values of one quantity at points.  Arrays have the shape (...) of the points.
+class DesignValues(CycleLoads):
+    """Values of one quantity at points, with loads; arrays have the shape (...) of the points.
 
     Parameters
     ----------
@@ -411,19 +443,6 @@ class DesignValues:
         Within the tested levels or range.
     is_untested : ndarray of bool
         Inside, but farther from the runs than any run.
-    peak_tension, minimum_tension : ndarray
-        Mean tension plus and minus amplitude; without a cycle the one tension, from the curve if
-        a strain is given; NaN where not known. [N]
-    peak_share, minimum_share : ndarray
-        Relative to the rated break strength; NaN where that is not known. [1]
-    own_peak_share, own_minimum_share : ndarray
-        Relative to the strength of the line in its condition, or to the rated one where no other
-        is known. [1]
-    is_slack : ndarray of bool
-        The minimum is zero.
-    is_above_rule : ndarray of bool
-        The peak exceeds 60 % of the strength that the line has, or 30 % where the minimum is below
-        3 % of it.
     rule : str
         Limits of the load on the line in the source.
     source : str
@@ -461,14 +480,6 @@ class DesignValues:
     line_high: Floats
     is_inside: Bools
     is_untested: Bools
-    peak_tension: Floats
-    minimum_tension: Floats
-    peak_share: Floats
-    minimum_share: Floats
-    own_peak_share: Floats
-    own_minimum_share: Floats
-    is_slack: Bools
-    is_above_rule: Bools
     rule: str
     source: str
     errata: tuple[str, ...] = ()
