@@ -117,8 +117,11 @@ def _group_outcomes(outcomes: Iterable[Outcome], quantity: OutcomeQuantity) -> _
     )
 
 
-def _reference_of(groups: Sequence[Group], *, reference_condition: str = "new") -> Integers:
-    """Reference group of each group.
+_REFERENCE_CONDITION = "new"
+
+
+def _reference_of(groups: Sequence[Group]) -> Integers:
+    """Reference group of each group: that of the same product in the reference condition.
 
     Examples
     --------
@@ -126,11 +129,9 @@ def _reference_of(groups: Sequence[Group], *, reference_condition: str = "new") 
     >>> print(_reference_of([Group(*line, "new", None), Group(*line, "5 years", 5.0)]))
     [-1  0]
     """
-    if not reference_condition:
-        raise DataError("no reference is named", needed="a word of the column condition")
     places: dict[tuple[str, str, str, float | None], list[int]] = {}
     for number, group in enumerate(groups):
-        if group.condition == reference_condition:
+        if group.condition == _REFERENCE_CONDITION:
             places.setdefault(group.product, []).append(number)
     found = [places.get(group.product, []) for group in groups]
     return np.array(
@@ -532,11 +533,11 @@ def _labels_of(group: Group) -> Row:
 _OF_LINE = ("line", "material", "construction", "diameter")
 
 
-def _strength_of(grouped: _Grouped, reference_condition: str) -> dict[Group, Row]:
+def _strength_of(grouped: _Grouped) -> dict[Group, Row]:
     """Numbers of one quantity by group, without the name of the quantity."""
     n_groups = len(grouped.groups)
     statistics = group_statistics(grouped.value, grouped.group, grouped.use, n_groups=n_groups)
-    reference = _reference_of(grouped.groups, reference_condition=reference_condition)
+    reference = _reference_of(grouped.groups)
     rows: dict[Group, Row] = {}
     for place, group in enumerate(grouped.groups):
         mean, deviation = statistics.mean[place], statistics.standard_deviation[place]
@@ -580,7 +581,7 @@ def _strength_of(grouped: _Grouped, reference_condition: str) -> dict[Group, Row
     return rows
 
 
-def strength_rows(outcomes: Iterable[Outcome], *, reference_condition: str = "new") -> list[Row]:
+def strength_rows(outcomes: Iterable[Outcome]) -> list[Row]:
     """Rows of the table of strength and strain at failure, one a group.
 
     By the names of `STRENGTH_COLUMNS`, in order of appearance.
@@ -597,9 +598,9 @@ def strength_rows(outcomes: Iterable[Outcome], *, reference_condition: str = "ne
     rows: dict[Group, Row] = {}
     for quantity in quantities:
         grouped = _group_outcomes(listed, quantity)
-        for group, numbers in _strength_of(grouped, reference_condition).items():
+        for group, numbers in _strength_of(grouped).items():
             row = rows.setdefault(group, _empty_row(STRENGTH_COLUMNS) | _labels_of(group))
-            row["reference_condition"] = reference_condition
+            row["reference_condition"] = _REFERENCE_CONDITION
             row.update({quantity + name: number for name, number in numbers.items()})
     return list(rows.values())
 

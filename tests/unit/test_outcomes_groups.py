@@ -76,11 +76,6 @@ def test_no_reference_or_two_of_them_is_none():
     assert _reference_of(_group_outcomes(rows, "tensile_strength").groups).tolist() == [-1, -1, -1]
 
 
-def test_a_reference_without_a_name_is_refused():
-    with pytest.raises(DataError, match="no reference is named; needed a word"):
-        _reference_of([], reference_condition="")
-
-
 SHEET = Specimen(
     "N-1", material="nylon", construction="plaited", condition="new", diameter=(0.012, 0.013),
     rated_break_strength=20e3,
@@ -229,12 +224,6 @@ def test_rows_of_strength_stand_by_group_and_count_every_test():
     assert worn["strain_at_failure_reason"] == (
         "fewer than two values: there is no deviation; no deviation is known for one of the means"
     )
-
-
-def test_another_condition_may_be_the_reference():
-    new, _ = strength_rows(BREAKS, reference_condition="worn")
-    assert new["tensile_strength_change"] == pytest.approx(1.0)
-    assert new["reference_condition"] == "worn"
 
 
 def test_rows_of_fatigue_stand_by_level_and_count_every_test():
