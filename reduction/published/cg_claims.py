@@ -543,18 +543,13 @@ CLAIMS_OF_TESTS |= {
 COLUMN_LOST = "the column of the five-year line is lost in the text"
 
 
-def _ratios(pages: Pages) -> dict[str, float]:
-    """K_ap over K_0 at the centre points."""
-    return {
-        row: 1e4 * pages.value("3", row, f"{K_AP} B1") / centre_stiffness(pages, row)
-        for row in CENTRE_LINES
-    }
-
-
 def _stiffness_ratio(cell: Cell, pages: Pages) -> ReproducedItem:
     if cell.table.startswith("sec A"):
         return measured_item(cell, "the stiffness of the screening is not printed")
-    ratios = sorted(_ratios(pages).values())
+    ratios = sorted(
+        1e4 * pages.value("3", row, f"{K_AP} B1") / centre_stiffness(pages, row)
+        for row in CENTRE_LINES
+    )
     extreme = ratios[0] if cell.column.endswith("low") else ratios[-1]
     return judge(
         cell, extreme, "least and greatest of seven lines at the centre, Tables 3, 6, 7 and 8"

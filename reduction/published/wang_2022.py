@@ -35,6 +35,10 @@ _HELIX = 27.5e-3  # assumed
 
 _DEGREES = 20.0
 
+_ANGLE = float(np.radians(_DEGREES))
+
+_SINE, _COSINE, _TANGENT = float(np.sin(_ANGLE)), float(np.cos(_ANGLE)), float(np.tan(_ANGLE))
+
 _BENDING, _TORSION = "bending moment G'", "torsion moment H"
 
 
@@ -66,11 +70,6 @@ def _at(quantity: str, theory: ArmourTheory = "intermediate", degrees: float = _
     return float(_response(degrees, quantity, theory=theory))
 
 
-def _trigonometry(degrees: float = _DEGREES) -> tuple[float, float, float]:
-    angle = np.radians(degrees)
-    return float(np.sin(angle)), float(np.cos(angle)), float(np.tan(angle))
-
-
 def _geometry() -> Answers:
     angle = np.radians([30.0, 60.0])
     pitch, curvature = [], []
@@ -83,7 +82,7 @@ def _geometry() -> Answers:
     change = _at("angle_change", "exact")
     current = _at("current_winding_angle", "exact")
     wire_strain = _at("wire_strain", "exact")
-    ratio = float(np.cos(current) / np.cos(np.radians(_DEGREES)))
+    ratio = float(np.cos(current)) / _COSINE
     second_order = (ratio - (1 + _STRAIN - wire_strain)) / (wire_strain * (wire_strain - _STRAIN))
     return {
         ("sec 2", "thread pitch h", "power of tan(alpha)"): Answer(
@@ -91,7 +90,7 @@ def _geometry() -> Answers:
         ("eq 2", "curvature", "power of sin(alpha)"): Answer(
             log_slope(np.sin(angle), np.array(curvature)), helix),
         ("eq 9", "change of the winding angle", "sign of its definition, current less rest"):
-            Answer((current - float(np.radians(_DEGREES))) / change, "exact helix", tolerance=1e-9),
+            Answer((current - _ANGLE) / change, "exact helix", tolerance=1e-9),
         ("eq 10", "axial and rotation strain", "equations that are linearised, from"): Answer(
             7.0, "strain and rotation are (7) and (8); (9) is a cosine"),
         ("eq 21", "current over rest cosine, small angles",
@@ -114,24 +113,23 @@ def _stiffness() -> Answers:
 
 def _intermediate() -> Answers:
     how = "theory of intermediate angles of the package"
-    sine, cosine, tangent = _trigonometry()
     pair = np.array([20.0, 50.0])
     tangents = np.tan(np.radians(pair))
     strain = _response(pair, "wire_strain") / _STRAIN
     change = _response(pair, "angle_change") / (_STRAIN * tangents)
-    common = _STRAIN * tangent / (1 + tangent**2)
+    common = _STRAIN * _TANGENT / (1 + _TANGENT**2)
     curvature, torsion = _at("curvature_change") * _HELIX, _at("torsion_change") * _HELIX
     moment = ELASTIC_MODULUS * pi * _WIRE**4 * _STRAIN / _HELIX
-    share = moment * cosine**2 * tangent**2 / (1 + tangent**2)
+    share = moment * _COSINE**2 * _TANGENT**2 / (1 + _TANGENT**2)
     answers: Answers = {
         ("eq 12", "wire strain", "power of tan(alpha)"): Answer(
             log_slope(tangents, 1 / strain - 1), how),
         ("eq 13", "change of the winding angle", "power of tan(alpha) in the divisor"): Answer(
             log_slope(tangents, -1 / change - 1), how),
         ("eq 14", "change of curvature", "factor"): Answer(
-            curvature / (sine * cosine * common), how),
+            curvature / (_SINE * _COSINE * common), how),
         ("eq 15", "change of torsion", "factor of the squared cosine"): Answer(
-            (1 - torsion / common) / cosine**2, how),
+            (1 - torsion / common) / _COSINE**2, how),
         ("eq 16", _BENDING, "divisor"): Answer(-share / _at("bending_moment"), how),
     }  # fmt: skip
     for degrees in (20.0, 80.0):
@@ -147,11 +145,10 @@ def _intermediate() -> Answers:
 
 def _stresses() -> Answers:
     how = "theory of intermediate angles of the package"
-    _, cosine, tangent = _trigonometry()
     section = pi * _WIRE**3
     size = ELASTIC_MODULUS * _WIRE * _STRAIN / _HELIX
     bending, torsion = _at("bending_stress"), _at("torsion_stress")
-    share = cosine**2 * tangent**2 / (1 + tangent**2)
+    share = _COSINE**2 * _TANGENT**2 / (1 + _TANGENT**2)
     bent, twisted = "stress of the bending moment", "stress of the torsion moment"
     return {
         ("eq 18", bent, "factor of G' / (pi R2^3)"): Answer(
@@ -165,7 +162,6 @@ def _stresses() -> Answers:
 
 def _small() -> Answers:
     how = "theory of small angles of the package"
-    sine, cosine, _ = _trigonometry()
     pair = np.array([10.0, 20.0])
     change = _at("angle_change", "small")
     bending = _at("bending_moment", "small") / (pi / 4 * ELASTIC_MODULUS * _WIRE**4)
@@ -176,20 +172,19 @@ def _small() -> Answers:
         ("eq 20", "wire strain, small angles", "power of cos(alpha)"): Answer(
             log_slope(np.cos(np.radians(pair)), _response(pair, "wire_strain", theory="small")),
             how),
-        ("eq 22", _BENDING, "factor"): Answer(bending * _HELIX / (sine * cosine * change), how),
+        ("eq 22", _BENDING, "factor"): Answer(bending * _HELIX / (_SINE * _COSINE * change), how),
         ("eq 22", _TORSION, "power of R2"): Answer(log_slope(wires, np.array(moments)), how),
         ("eq 22", _TORSION, "factor of the squared cosine, after 1"): Answer(
-            (per_change + 1) / cosine**2, how),
+            (per_change + 1) / _COSINE**2, how),
     }  # fmt: skip
 
 
 def _spring() -> Answers:
     how = "close-coiled spring of the package"
-    _, cosine, tangent = _trigonometry()
     force = _at("tension", "large")
     shear_modulus = ELASTIC_MODULUS / (2 * (1 + POISSON_RATIO))
-    constant = force / (_STRAIN * 2 * pi * _HELIX / tangent)
-    size = _STRAIN * ELASTIC_MODULUS * _WIRE**4 * pi / (_HELIX**2 * (1 + POISSON_RATIO) * tangent)
+    constant = force / (_STRAIN * 2 * pi * _HELIX / _TANGENT)
+    size = _STRAIN * ELASTIC_MODULUS * _WIRE**4 * pi / (_HELIX**2 * (1 + POISSON_RATIO) * _TANGENT)
     cosines = np.cos(np.radians([20.0, 80.0]))
     strength = layer_strength(_armour(np.array([20.0, 80.0])), 800e6)
     answers: Answers = {
@@ -197,7 +192,7 @@ def _spring() -> Answers:
             shear_modulus * _WIRE**4 / _HELIX**3 / constant, how),
         ("eq 25", "force of the spring f", "divisor"): Answer(size / force, how),
         ("eq 28", "stress of the axial force of the spring", "divisor"): Answer(
-            size * cosine / (pi * _WIRE**2) / _at("axial_stress", "large"), how),
+            size * _COSINE / (pi * _WIRE**2) / _at("axial_stress", "large"), how),
         ("sec 5.3", "strength of the layer F", "power of cos(alpha)"): Answer(
             log_slope(cosines, strength), "part of the axial force along the cable",
             tolerance=1e-9),

@@ -406,11 +406,6 @@ def _columns(row: _Row) -> dict[str, float]:
     }
 
 
-def _item_printed_twice(cell: Cell, book: Mapping[Key, Cell]) -> ReproducedItem | None:
-    """A claim of the text compared with its repetition elsewhere in the text."""
-    return _as_elsewhere(cell, _TWIN[cell.key], book) if cell.key in _TWIN else None
-
-
 def _as_elsewhere(cell: Cell, key: Key, book: Mapping[Key, Cell]) -> ReproducedItem:
     there = book[key]
     place = f"printed again, {there.page}: {there.printed} {there.unit}"
@@ -723,7 +718,7 @@ def _items_of(cells: Sequence[Cell]) -> list[ReproducedItem]:
     return [
         by_key.get(cell.key)
         or _item_of_programme(cell, table["1"])
-        or _item_printed_twice(cell, book)
+        or (_as_elsewhere(cell, _TWIN[cell.key], book) if cell.key in _TWIN else None)
         or measured_item(cell, _why_not(cell))
         for cell in cells
     ]
