@@ -14,11 +14,10 @@ from reduction.archive.campaign_products import NamedComparison
 from reduction.archive.csv_columns import Cell, csv_text
 from reduction.archive.csv_tables import write_tables
 from reduction.batch.prediction_product import compare_archive, write_hoses, write_named
-from reduction.campaign.armour_spec import load_armour_case
 from reduction.campaign.hose_spec import load_hose
 from reduction.campaign.plan import ComparisonPlan
+from reduction.campaign.prediction_specs import load_armour_case, load_wave_case
 from reduction.campaign.toml_file import at_place
-from reduction.campaign.wave_spec import load_wave_case
 from reduction.cli.output import CommandOutput
 from reduction.cli.printed_numbers import plain, short, table_of
 from reduction.prediction.armour import PredictedArmour, predict_armour_case

@@ -14,7 +14,6 @@ from typer.testing import CliRunner
 
 from reduction.archive import report_details as laboratory
 from reduction.campaign import hose_spec as hosemodel
-from reduction.campaign.armour_spec import _ArmourKeys, _ArmourLayerKeys, load_armour_case
 from reduction.campaign.assembly_spec import (
     _AssemblyKeys,
     _CurveKeys,
@@ -26,7 +25,13 @@ from reduction.campaign.assembly_spec import (
 from reduction.campaign.experiment_plans import _ExperimentKeys, _ResponseKeys, _SpecFile
 from reduction.campaign.hose_spec import load_hose
 from reduction.campaign.model import _ReportSection
-from reduction.campaign.wave_spec import _WaveLoadKeys, load_wave_case
+from reduction.campaign.prediction_specs import (
+    _ArmourKeys,
+    _ArmourLayerKeys,
+    _WaveLoadKeys,
+    load_armour_case,
+    load_wave_case,
+)
 from reduction.cli.curves import deployed_line
 from reduction.cli.main import app
 from reduction.lines.line_lookup import look_up

@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 from predicted_cases import ARMOUR, LEAST_ARMOUR, LEAST_WAVE, WAVE, changed
 
-from reduction.campaign.armour_spec import load_armour_case
 from reduction.campaign.assembly_spec import load_assembly_case
-from reduction.campaign.wave_spec import load_wave_case
+from reduction.campaign.prediction_specs import load_armour_case, load_wave_case
 from reduction.record.errors import SettingsError
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from predicted_cases import ARMOUR, LEAST_ARMOUR, changed
 
-from reduction.campaign.armour_spec import load_armour_case
+from reduction.campaign.prediction_specs import load_armour_case
 from reduction.prediction.armour import predict_armour_case, wound_at_all_angles
 from reduction.record.errors import SettingsError
 

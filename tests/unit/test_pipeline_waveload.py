@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from predicted_cases import LEAST_WAVE, WAVE
 
-from reduction.campaign.wave_spec import load_wave_case
+from reduction.campaign.prediction_specs import load_wave_case
 from reduction.prediction.wave_load import predict_wave_load
 from reduction.record.errors import DataError, FitError
 

@@ -7,8 +7,7 @@ import plotly.graph_objects as go
 import pytest
 from predicted_cases import ARMOUR, LEAST_ARMOUR, WAVE, changed
 
-from reduction.campaign.armour_spec import load_armour_case
-from reduction.campaign.wave_spec import load_wave_case
+from reduction.campaign.prediction_specs import load_armour_case, load_wave_case
 from reduction.prediction.armour import predict_armour_case
 from reduction.prediction.wave_load import predict_wave_load
 from reduction.report.figures.theory_figures import (
