@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
@@ -49,6 +48,7 @@ from reduction.quantities.units import combined_unit
 from reduction.record.contributions import Component, Contributions, combined_standard_uncertainty
 from reduction.record.errors import SettingsError
 from reduction.record.measurement import Floats
+from reduction.record.plain_text import natural_order
 from reduction.stages.moduli.local_regression import curve_at
 from reduction.uncertainty.propagation import ratio_contributions
 
@@ -345,7 +345,7 @@ def _left(whole: float, contribution: Floats) -> float:
     return float(np.sqrt(max(whole**2 - float(contribution @ contribution), 0.0)))
 
 
-_Place = tuple[float, list[tuple[int, str]]]
+_Place = tuple[float, tuple[tuple[int, int, str], ...]]
 
 _ALL = (
     *TABLES, *PROPERTY_TABLES, *EXPERIMENT_TABLES, *PREDICTION_TABLES, *COMPARISON_TABLES,
@@ -438,8 +438,7 @@ def table_of(archive: xr.Dataset, name: str) -> pd.DataFrame:
 def _place(path: Path) -> _Place:
     """Sort key: place in the history, unplaced tests last; then the name, T-2 before T-10."""
     test, order = place_of(path)
-    name = re.split(r"(\d+)", test)
-    return order, [(int(part), "") if part.isdigit() else (-1, part) for part in name]
+    return order, natural_order(test)
 
 
 def _add_tests(

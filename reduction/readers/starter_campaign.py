@@ -24,7 +24,7 @@ from reduction.readers.sniff import (
     unknown_layout,
 )
 from reduction.record.errors import LogError
-from reduction.record.plain_text import safe_cell, toml_comment, toml_text
+from reduction.record.plain_text import natural_order, safe_cell, toml_comment, toml_text
 
 _WRITTEN = ("campaign.toml", "tests.csv")
 
@@ -131,7 +131,7 @@ def starter_campaign(folder: Path) -> dict[str, str]:
     marks: list[str] = []
     refused: list[str] = []
     blind: list[Path] = []
-    for path in sorted(folder.iterdir(), key=lambda entry: _natural(entry.name)):
+    for path in sorted(folder.iterdir(), key=lambda entry: natural_order(entry.name)):
         if path.name.startswith(".") or path.name in _WRITTEN:
             continue
         if path.is_dir() and path.name not in _PRODUCTS:
@@ -238,12 +238,6 @@ def _form(log: _Log) -> tuple[str, tuple[str, ...]]:
     """What logs of one layout have in common; of columns without a unit also what is above them."""
     settings = log.sniffed.settings
     return settings, _units_said(log) if f'unit = "{UNKNOWN}"' in settings else ()
-
-
-def _natural(name: str) -> list[tuple[int, str]]:
-    """Sort key that places T-10 after T-9."""
-    parts = re.split(r"(\d+)", name.lower())
-    return [(int(part), "") if part.isdigit() else (-1, part) for part in parts if part]
 
 
 def _texts(folder: Path, logs: list[_Log], marks: list[str], refused: list[str]) -> dict[str, str]:

@@ -1,4 +1,4 @@
-"""Makes texts from untrusted files safe to show.
+"""Makes texts from untrusted files safe to show, and puts names in order.
 
 An address may contain a password before its host, or a signature after its path.  Neither is shown,
 written or kept.
@@ -197,3 +197,18 @@ def secrets_of(address: str) -> tuple[str, ...]:
     pieces += [part.partition("=")[2] for part in re.split(r"[&#;]", behind)]
     found = dict.fromkeys(piece for piece in pieces if len(piece) >= _SHORTEST)
     return tuple(sorted(found, key=len, reverse=True))
+
+
+def natural_order(name: str) -> tuple[tuple[int, int, str], ...]:
+    """Sort key that puts T-10 after T-2.
+
+    Examples
+    --------
+    >>> sorted(["T-10", "T-2", "hold"], key=natural_order)
+    ['hold', 'T-2', 'T-10']
+    """
+    return tuple(
+        (0, int(part), "") if part.isdecimal() else (1, 0, part.lower())
+        for part in re.split(r"(\d+)", name)
+        if part
+    )

@@ -16,7 +16,7 @@ from reduction.archive.product_files import CLIENT_PAGE_NAME, archives_of_tests
 from reduction.archive.report_details import read_details
 from reduction.quantities.units import UnitSystem
 from reduction.record.errors import ArchiveError
-from reduction.record.plain_text import bare_cell
+from reduction.record.plain_text import bare_cell, natural_order
 from reduction.report.answer_tables import (
     design_modulus_table,
     hold_table,
@@ -74,7 +74,6 @@ from reduction.report.test_view import (
     any_synthetic,
     instrument_sentences,
     instrument_table,
-    natural_order,
 )
 from reduction.report.text_style import PageTable
 
@@ -88,11 +87,6 @@ _NAME = "tests-{:02}.html"
 
 _OWN = re.compile(r"tests-\d{2,}\.html")
 """File names that are written here: pages of others in the folder are kept."""
-
-
-def _is_page_of_tests(name: str) -> bool:
-    """Whether a file name is that of a page of sections that the campaign page has no room for."""
-    return _OWN.fullmatch(name) is not None
 
 
 def _over_pages(
@@ -155,7 +149,7 @@ def _write_pages(
             pieces = render_page(replace(content, segments=None, about=about))
     write_text_atomically(index, *pieces)
     for path in out.iterdir():
-        if _is_page_of_tests(path.name) and path not in kept:
+        if _OWN.fullmatch(path.name) and path not in kept:
             take_away(path)
     return index
 

@@ -8,7 +8,6 @@ References
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -95,13 +94,26 @@ class Status:
     test: str
     status: str
     message: str = ""
-    exit_status: str = ""
     raw_sha256: str = ""
-    seconds: str = ""
+
+
+class ArchiveView:
+    """Part of an archive on the page."""
+
+    data: xr.Dataset
+
+    def attribute(self, name: str) -> str:
+        """Global attribute as text; empty where there is none."""
+        return str(self.data.attrs.get(name, ""))
+
+    @property
+    def is_synthetic(self) -> bool:
+        """True where no specimen was ever pulled."""
+        return self.attribute("synthetic").lower() == "yes"
 
 
 @dataclass(frozen=True)
-class TestView:
+class TestView(ArchiveView):
     """One test on the page; a variable that the archive lacks is None.
 
     Parameters
@@ -137,11 +149,6 @@ class TestView:
     def kind(self) -> str:
         """Kind of the test: cyclic, fatigue, relaxation, stepwise, ..."""
         return self.attribute("test_kind")
-
-    @property
-    def is_synthetic(self) -> bool:
-        """True where no specimen was ever pulled."""
-        return self.attribute("synthetic").lower() == "yes"
 
     @property
     def is_stepwise(self) -> bool:
@@ -210,10 +217,6 @@ class TestView:
         if not stored.size:
             return np.unique(cycles)
         return np.unique(stored[np.abs(stored[:, None] - cycles).argmin(axis=0)])
-
-    def attribute(self, name: str) -> str:
-        """Global attribute as text; empty where there is none."""
-        return str(self.data.attrs.get(name, ""))
 
     def array(self, name: str) -> Floats | None:
         """Values of a variable; missing flags and counts keep their code numbers."""
@@ -358,21 +361,6 @@ def all_specimens(tests: Sequence[TestView]) -> list[str]:
 def any_synthetic(tests: Sequence[TestView]) -> bool:
     """Return whether a figure or table of these tests has to be marked as synthetic."""
     return any(view.is_synthetic for view in tests)
-
-
-def natural_order(name: str) -> tuple[tuple[int, int, str], ...]:
-    """Sort key that puts T-10 after T-2.
-
-    Examples
-    --------
-    >>> sorted(["T-10", "T-2", "hold"], key=natural_order)
-    ['hold', 'T-2', 'T-10']
-    """
-    return tuple(
-        (0, int(part), "") if part.isdigit() else (1, 0, part.lower())
-        for part in re.split(r"(\d+)", name)
-        if part
-    )
 
 
 NOTHING_STATED = (
@@ -595,7 +583,7 @@ def plus_minus_of_tests(
 
 
 @dataclass(frozen=True)
-class RowView:
+class RowView(ArchiveView):
     """One item on the page: a hose, a comparison, an experiment.
 
     Parameters
@@ -617,15 +605,6 @@ class RowView:
     data: xr.Dataset
     index: int
     units: UnitSystem = "si"
-
-    @property
-    def is_synthetic(self) -> bool:
-        """True where the campaign says that its numbers are made up."""
-        return self.attribute("synthetic").lower() == "yes"
-
-    def attribute(self, name: str) -> str:
-        """Global attribute as text; empty where there is none."""
-        return str(self.data.attrs.get(name, ""))
 
     @cached_property
     def sizes(self) -> dict[str, int]:
