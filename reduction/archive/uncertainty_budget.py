@@ -274,13 +274,9 @@ def words_of(
             found.append(
                 text
                 if one.dtype.kind not in "fi"
-                else f"{_place_in_words(name, dim)} {_meaning(one)}"
+                else f"{name.removeprefix(f'{dim}_').replace('_', ' ')} {_meaning(one)}"
             )
     return _JOINED.get(dim, ", ").join(dict.fromkeys(found))
-
-
-def _place_in_words(name: str, dim: str) -> str:
-    return name.removeprefix(f"{dim}_").replace("_", " ")
 
 
 def _meaning(one: xr.Variable) -> str:

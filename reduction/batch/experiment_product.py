@@ -264,7 +264,11 @@ def write_experiments(
         return None if run in failed else folder / f"{run}.nc"
 
     empty = {
-        name: _nothing_to_fit(plan)
+        name: FitError(
+            "there is nothing to fit",
+            found=f"no archive of any of its {len(plan.runs)} runs",
+            hint="The messages of its runs say why.",
+        )
         for name, plan in campaign.experiments.items()
         if not (held[name] or any((path := archive_of(run)) and path.exists() for run in plan.runs))
     }
@@ -306,15 +310,6 @@ def write_experiments(
 def settings_of_experiments(plans: Mapping[str, ExperimentPlan]) -> str:
     """All settings of experiments as JSON: the attribute ``settings`` of their archive."""
     return json.dumps({name: asdict(plan) for name, plan in plans.items()}, sort_keys=True)
-
-
-def _nothing_to_fit(plan: ExperimentPlan) -> FitError:
-    """Error of an experiment in which no run gave a product."""
-    return FitError(
-        "there is nothing to fit",
-        found=f"no archive of any of its {len(plan.runs)} runs",
-        hint="The messages of its runs say why.",
-    )
 
 
 def _in_one_line(result: ExperimentResult) -> str:

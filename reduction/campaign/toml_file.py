@@ -369,20 +369,15 @@ def _cells(folder: Path, name: str) -> Iterator[tuple[int, str, str]]:
         )
 
 
-def _tables_in(table: dict[str, Any]) -> list[str]:
-    """Tables named in campaign.toml."""
-    return [
+def _named_tables(folder: Path, table: dict[str, Any]) -> Iterator[str]:
+    """Names of the tables of a campaign (tests, results and marks) without repeats."""
+    names = [
         value
         for keys, value in _leaves(table)
         if isinstance(value, str)
         and not _is_open(value)
         and (keys in _TABLES or keys[-2:] == ("strain", "marks"))
     ]
-
-
-def _named_tables(folder: Path, table: dict[str, Any]) -> Iterator[str]:
-    """Names of the tables of a campaign (tests, results and marks) without repeats."""
-    names = _tables_in(table)
     seen: set[str] = set()
     for name in names:  # grows during the loop
         if name in seen:

@@ -420,14 +420,6 @@ def _identified(view: ComparisonView) -> list[str]:
     ]
 
 
-def _outcome_findings(view: OutcomeView) -> list[SummaryFinding]:
-    """Return the outcomes that differ from the others of their group."""
-    return [
-        SummaryFinding(one.severity, ("outcomes",), str(one), urgency(one))
-        for one in odd_outcomes(view.outcomes)
-    ]
-
-
 def _make_outcome_section(view: OutcomeView) -> TestSection:
     """Return the section; empty parts are left out."""
     parts = [
@@ -547,7 +539,11 @@ class CampaignView:
         """Findings that a reader must know first."""
         found = [SummaryFinding("warning", (name,), _STRAY) for name in self.stray]
         found += [one for view, _ in self.experiments for one in experiment_findings(view)]
-        found += [one for view, _ in self.outcomes for one in _outcome_findings(view)]
+        found += [
+            SummaryFinding(one.severity, ("outcomes",), str(one), urgency(one))
+            for view, _ in self.outcomes
+            for one in odd_outcomes(view.outcomes)
+        ]
         found += [one for view, _ in self.compared for one in _comparison_findings(view)]
         return found + [one for view, _ in self.hoses for one in _hose_findings(view)]
 

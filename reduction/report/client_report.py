@@ -10,7 +10,7 @@ References
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from importlib.resources import files
 
@@ -160,20 +160,6 @@ def _environment(details: ReportDetails, tests: Sequence[TestView]) -> list[_Ent
     return found
 
 
-def _authorisation(details: ReportDetails) -> list[_Entry]:
-    """Return who is responsible for the report."""
-    return [
-        _Entry("Authorised by", details.authorised.by),
-        _Entry("Function", details.authorised.function),
-        _Entry("Date", details.authorised.on),
-    ]
-
-
-def _missing_of(groups: Iterable[Sequence[_Entry]]) -> list[str]:
-    """Return the labels of missing fields, in the order of the report."""
-    return [one.label for group in groups for one in group if one.is_missing]
-
-
 def _of_tests(tests: Sequence[TestView], name: str) -> str:
     """Return an attribute of the tests: once where they agree, by test where they differ."""
     by_text: dict[str, list[str]] = {}
@@ -257,16 +243,6 @@ class _Drawing:
     is_wide: bool = False
 
 
-def _drawings(figures: Collection[tuple[Figure, bool]]) -> list[_Drawing]:
-    """Return the figures that can be drawn; ``True`` with one requests the full width."""
-    return [_drawing(one, is_wide=wide) for one, wide in figures if can_be_drawn(one)]
-
-
-def _not_drawn(figures: Collection[tuple[Figure, bool]]) -> list[str]:
-    """Return the titles of the figures that cannot be drawn."""
-    return [one.title for one, _ in figures if not can_be_drawn(one)]
-
-
 def _chosen_figures(
     tests: Sequence[TestView], sections: Sequence[TestSection]
 ) -> Iterator[tuple[Figure, bool]]:
@@ -337,7 +313,11 @@ def _groups(details: ReportDetails, tests: Sequence[TestView]) -> dict[str, list
         "identification": _identification(details, tests),
         "method": _method(details, tests),
         "environment": _environment(details, tests),
-        "authorisation": _authorisation(details),
+        "authorisation": [
+            _Entry("Authorised by", details.authorised.by),
+            _Entry("Function", details.authorised.function),
+            _Entry("Date", details.authorised.on),
+        ],
     }
 
 
@@ -355,7 +335,7 @@ def render_client_report(content: ClientContent) -> str:
     groups = _groups(details, tests)
     return template.render(
         **groups,
-        missing=_missing_of(groups.values()),
+        missing=[one.label for group in groups.values() for one in group if one.is_missing],
         style=Markup(  # noqa: S704  # the style of the package; texts on each sheet are quoted
             _sheet_style(details, label, synthetic=synthetic)
             + (room / "static" / "client.css").read_text("utf-8")
@@ -373,8 +353,8 @@ def render_client_report(content: ClientContent) -> str:
         instruments=instrument_table(tests, units),
         instrument_notes=instrument_sentences(tests),
         results=_results(content),
-        drawings=_drawings(figures),
-        not_drawn=_not_drawn(figures),
+        drawings=[_drawing(one, is_wide=wide) for one, wide in figures if can_be_drawn(one)],
+        not_drawn=[one.title for one, _ in figures if not can_be_drawn(one)],
         conformity=conformity_table(details, tests, units),
         doubts=[one for one in content.faults if one.severity in ("failure", "warning")],
         statements=_STATEMENTS,

@@ -20,13 +20,14 @@ from reduction.archive.variables import at_places, read_notes, stored
 from reduction.experiments.fit_results import ResponseSurfaces
 from reduction.experiments.outcome_groups import Group
 from reduction.experiments.outcomes import Outcome
+from reduction.prediction.comparison_error import EventDifference
 from reduction.prediction.hose_geometry import NEUTRAL_ANGLE
 from reduction.quantities.names import QUANTITIES, RESPONSES, SCALES
 from reduction.quantities.row import COMPONENT
 from reduction.quantities.units import UnitSystem, combined_unit, display_unit
 from reduction.record.measurement import Floats, Integers
 from reduction.record.notes import Note
-from reduction.report.test_view import Expanded, RowView, TestView, expand, expanded_of
+from reduction.report.test_view import ArchiveView, Expanded, RowView, TestView, expand, expanded_of
 from reduction.report.text_style import DEGREES, Shown, in_order, shown
 
 EVENT_WORDS = {
@@ -161,19 +162,8 @@ _NUMBER_WORDS = {
 _IDENTIFIED = {0: False, 1: True}
 
 
-@dataclass(frozen=True)
-class _MetEvent:
-    """An event of the cords, predicted and measured; SI, NaN where the test did not reach it."""
-
-    name: str
-    strain: float
-    tension: float
-    measured_tension: float
-    tension_difference: float
-    tension_difference_standard_uncertainty: float
-    measured_strain: float
-    strain_difference: float
-    strain_difference_standard_uncertainty: float
+class _MetEvent(EventDifference):
+    """An event of the cords, predicted and measured."""
 
     @property
     def words(self) -> str:
@@ -638,7 +628,7 @@ _ROUNDING = 1e-6
 
 
 @dataclass(frozen=True)
-class RopeView:
+class RopeView(ArchiveView):
     """One rope on the page.
 
     Parameters
@@ -662,18 +652,9 @@ class RopeView:
     units: UnitSystem = "si"
 
     @property
-    def is_synthetic(self) -> bool:
-        """True where no specimen was ever pulled."""
-        return self.attribute("synthetic").lower() == "yes"
-
-    @property
     def names(self) -> list[str]:
         """Property of each row."""
         return self.texts("property_name")
-
-    def attribute(self, name: str) -> str:
-        """Global attribute; empty where there is none."""
-        return str(self.data.attrs.get(name, ""))
 
     def array(self, name: str) -> Floats:
         """Values of a variable, one per row."""

@@ -353,7 +353,8 @@ def write_composite_page(
     )  # fmt: skip
     _write_curve_page(
         path, f"Composite curve of {source.name}", [part], tiles=tiles, units=units,
-        notes=(*_warning(curve), *curve.notes, *source.notes), sources=source.sources,
+        notes=[*([f"DOUBTFUL: {curve.doubt}"] if curve.doubt else []), *curve.notes, *source.notes],
+        sources=source.sources,
         synthetic=source.is_synthetic, subtitle=f"Branch: {source.branch}.",
     )  # fmt: skip
 
@@ -382,11 +383,6 @@ def write_assembly_page(found: DeployedLine, path: Path, *, units: UnitSystem = 
         sources=(found.splices, *source.sources), synthetic=source.is_synthetic,
         subtitle=f"{found.words}.",
     )  # fmt: skip
-
-
-def _warning(curve: CompositeCurve) -> tuple[str, ...]:
-    """Reasons why a curve is doubtful as a whole, placed before its notes."""
-    return (f"DOUBTFUL: {curve.doubt}",) if curve.doubt else ()
 
 
 def _piece_table(source: PieceSource, curve: CompositeCurve, units: UnitSystem) -> PageTable:

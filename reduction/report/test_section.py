@@ -472,11 +472,6 @@ def _hold_table(view: TestView) -> PageTable | None:
     )  # fmt: skip
 
 
-def _refusals(view: TestView) -> list[str]:
-    """Return the values that a hold does not support, each with its reason."""
-    return _of_holds(view, "hold_refusal")
-
-
 def _of_holds(view: TestView, name: str) -> list[str]:
     """Return the texts of the holds that have one, each with its hold and specimen."""
     sheet = Sheet(view, ("hold",))
@@ -750,7 +745,7 @@ def make_section(view: TestView) -> TestSection:
         _budget_part(view),
         make_part(
             "Holds", draw_holds(view), [_hold_table(view), _prony_table(view)],
-            refusals=_refusals(view),
+            refusals=_of_holds(view, "hold_refusal"),
         ),
         make_part(
             "Strain and splices" if view.is_rubber else "Strain", draw_splices(view),

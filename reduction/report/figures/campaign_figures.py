@@ -141,7 +141,11 @@ def draw_all_moduli(tests: Sequence[TestView]) -> list[Figure]:
     """Draw the modulus of every test in one figure a specimen, a colour and a marker a test."""
     found = []
     for order, specimen in enumerate(all_specimens(tests)):
-        own = [(index, view) for index, view in enumerate(tests) if _has_curve(view, specimen)]
+        own = [
+            (index, view)
+            for index, view in enumerate(tests)
+            if "tangent_modulus" in view.data and specimen in view.specimens
+        ]
         data = [trace for index, view in own for trace in _curves(view, specimen, index)]
         if not data:
             continue
@@ -223,7 +227,7 @@ def draw_parts(tests: Sequence[TestView]) -> list[Figure]:
                         f" separately: the change over the long test. {_about_bands(parts)}",
                         data, synthetic=any_synthetic(parts), height=400,
                         xaxis=axis("strain [%]"),
-                        yaxis=_modulus_axis(data, _whole_units(parts)),
+                        yaxis=_modulus_axis(data, parts[0].units if parts else "si"),
                     )
                 )  # fmt: skip
     return found
@@ -270,11 +274,6 @@ def draw_static_dynamic(tests: Sequence[TestView]) -> list[Figure]:
     return [figure for figure in found if figure.has_data]
 
 
-def _whole_units(tests: Sequence[TestView]) -> UnitSystem:
-    """Return the unit system of the page."""
-    return tests[0].units if tests else "si"
-
-
 def _static(view: TestView, branch: str, index: int, factor: float) -> Trace:
     strain, modulus = view.array("interval_strain"), view.array("interval_modulus")
     own = view.array("interval_branch")
@@ -291,10 +290,6 @@ def _static(view: TestView, branch: str, index: int, factor: float) -> Trace:
         "error_y": {"type": "data", "array": plain_numbers(half), "width": 4},
         "marker": {**marker(index, size=11), "line": {"width": 1, "color": "#8C8C8C"}},
     }
-
-
-def _has_curve(view: TestView, specimen: str) -> bool:
-    return "tangent_modulus" in view.data and specimen in view.specimens
 
 
 def _curves(view: TestView, specimen: str, index: int) -> list[Trace]:
