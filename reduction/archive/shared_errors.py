@@ -13,8 +13,8 @@ import xarray as xr
 from reduction.archive.variables import Values, stored, texts
 from reduction.prediction.measured_curve import SharedErrors, constant_errors
 from reduction.quantities.names import OF_TEST
+from reduction.quantities.outcomes_and_weights import IN_PLACE_OF_RECORD
 from reduction.quantities.row import COMPONENT
-from reduction.quantities.weight_readings import IN_PLACE_OF_RECORD
 from reduction.record.contributions import (
     Component,
     Contributions,

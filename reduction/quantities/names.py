@@ -13,12 +13,11 @@ from reduction.quantities.axes import AXES
 from reduction.quantities.hoses import OF_COMPARISONS, OF_PREDICTIONS
 from reduction.quantities.line_and_ropes import OF_LINE, OF_PROGRAMME, OF_PROPERTIES
 from reduction.quantities.moduli import OF_MODULI
-from reduction.quantities.outcome_values import OF_OUTCOMES
+from reduction.quantities.outcomes_and_weights import IN_PLACE_OF_RECORD, OF_OUTCOMES, OF_STEPS
 from reduction.quantities.row import Quantity, schema_from
 from reduction.quantities.samples_and_cycles import OF_RECORD
 from reduction.quantities.surfaces import OF_EVERY_SURFACE, OF_EXPERIMENTS, OF_RESPONSES
 from reduction.quantities.table_columns import OF_CATALOGUE, OF_LOOK_UP, OF_TABLES
-from reduction.quantities.weight_readings import IN_PLACE_OF_RECORD, OF_STEPS
 
 BRANCH_NAMES = ("ascending", "descending")
 
