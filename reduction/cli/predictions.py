@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -35,6 +35,7 @@ from reduction.quantities.names import quantity
 from reduction.quantities.units import UnitSystem, display_unit
 from reduction.readers.raw_log import hash_source
 from reduction.record.errors import SettingsError
+from reduction.record.notes import Note
 from reduction.report.campaign_page import write_report
 from reduction.report.single_pages import write_armour_page, write_wave_page
 from reduction.report.text_style import shown
@@ -156,11 +157,19 @@ def _events(hose: PredictedHose) -> dict[str, HoseEvent]:
     }
 
 
+def _by_kind(notes: Iterable[Note]) -> tuple[list[str], list[str]]:
+    """Warnings, and the other notes, as sentences."""
+    kinds: tuple[list[str], list[str]] = ([], [])
+    for one in notes:
+        kinds[one.severity != "warning"].append(str(one))
+    return kinds
+
+
 def _show_hose(hose: PredictedHose, output: CommandOutput) -> None:
     force, per_newton = output.unit("N")
     pressure, per_pascal = output.unit("Pa")
     small = shown("small length", output.system)
-    warnings = [one for one in hose.notes if one.severity == "warning"]
+    warnings, notes = _by_kind(hose.notes)
     output.say_each("warning", warnings)
     output.say(
         f"hose {hose.plan.name}: {np.degrees(float(hose.plan.design.wrap_angle)):.4g} degrees from"
@@ -210,7 +219,7 @@ def _show_hose(hose: PredictedHose, output: CommandOutput) -> None:
             f"{100 * layer.least_strain:.1f} to {100 * layer.greatest_strain:.1f} % up to the "
             f"working load{needed}"
         )
-    output.say_each("note", (one for one in hose.notes if one not in warnings))
+    output.say_each("note", notes)
 
 
 def _spread(hose: PredictedHose, event: str) -> dict[str, float]:
@@ -358,7 +367,8 @@ def _show_armour(found: PredictedArmour, output: CommandOutput) -> None:
     moment, per_moment = output.unit("N m")
     small = shown("small length", output.system)
     stress = shown("stress", output.system)
-    output.say_each("warning", found.doubts)
+    warnings, notes = _by_kind(found.notes)
+    output.say_each("warning", warnings)
     held, free = found.axial_stiffness
     output.say(
         f"cable: tension {short(per_newton * float(found.together.tension[0]))} {force}, torque "
@@ -406,7 +416,7 @@ def _show_armour(found: PredictedArmour, output: CommandOutput) -> None:
     output.show(table)
     for sentence in found.use[0].statement:
         output.say(f"  {sentence}")
-    output.say_each("note", found.notes)
+    output.say_each("note", notes)
 
 
 def _armour_document(found: PredictedArmour) -> dict[str, Any]:
@@ -449,8 +459,7 @@ def _armour_document(found: PredictedArmour) -> dict[str, Any]:
             else {key: plain(value) for key, value in asdict(found.strength).items()},
         },
         "error_against_exact": errors,
-        "notes": list(found.notes),
-        "doubts": list(found.doubts),
+        **dict(zip(("doubts", "notes"), _by_kind(found.notes), strict=True)),
     }
 
 
@@ -492,7 +501,8 @@ def _show_wave_load(found: PredictedWaveLoad, output: CommandOutput) -> None:
     force, per_newton = output.unit("N")
     area = shown("area", output.system)
     section, theory = found.load.section, found.theory
-    output.say_each("warning", found.doubts)
+    warnings, notes = _by_kind(found.notes)
+    output.say_each("warning", warnings)
     table = table_of(
         f"load [{force}/{length}]", "maximum", "at [s]", "minimum", "at [s]", "classic maximum",
         "classic minimum", "reduction from classic [%]",
@@ -534,7 +544,7 @@ def _show_wave_load(found: PredictedWaveLoad, output: CommandOutput) -> None:
         f"Reynolds {short(float(regime.reynolds_number), 3)}, "
         f"drag over inertia {float(regime.drag_to_inertia):.3g}"
     )
-    output.say_each("note", found.notes)
+    output.say_each("note", notes)
 
 
 def _wave_load_document(found: PredictedWaveLoad) -> dict[str, Any]:
@@ -562,8 +572,7 @@ def _wave_load_document(found: PredictedWaveLoad) -> dict[str, Any]:
         },
         "regime": {key: plain(value) for key, value in asdict(found.regime).items()},
         "anchor_force": {key: plain(value) for key, value in asdict(found.anchor).items()},
-        "notes": list(found.notes),
-        "doubts": list(found.doubts),
+        **dict(zip(("doubts", "notes"), _by_kind(found.notes), strict=True)),
     }
 
 
@@ -615,7 +624,7 @@ def _show_comparison(named: NamedComparison, output: CommandOutput) -> None:
         f"{named.test} of {named.specimen} ({found.measured.loading}) against {named.hose}: "
         f"{verdict_words(found.validation, unit=force, factor=factor)}"
     )
-    warnings = [one for one in named.notes if one.severity == "warning"]
+    warnings, notes = _by_kind(named.notes)
     output.say_each("warning", warnings)
     table = table_of(
         f"predicted less measured [{force}]", "bias", "RMS", "RMS [%]", "worst", "at strain [%]",
@@ -659,7 +668,7 @@ def _show_comparison(named: NamedComparison, output: CommandOutput) -> None:
         )
         if found.pressure.calibration is not None:
             _show_calibration(found.pressure.calibration, output)
-    output.say_each("note", (one for one in named.notes if one not in warnings))
+    output.say_each("note", notes)
 
 
 def _show_calibration(fit: HoseCalibration, output: CommandOutput) -> None:

@@ -80,6 +80,7 @@ from reduction.prediction.hose_geometry import cord_stretch_ratio, hose_stretch_
 from reduction.record.arrays import as_increasing, require_of_design
 from reduction.record.errors import FitError, SettingsError
 from reduction.record.measurement import Bools, Floats, read_only_arrays
+from reduction.record.notes import Note, note
 
 ArmourTheory = Literal["small", "intermediate", "large", "exact", "conjugate"]
 
@@ -1143,8 +1144,7 @@ class PredictedArmour:
     strength: _CableStrength | None
     gap: Floats
     thinning_loss: Floats
-    notes: tuple[str, ...]
-    doubts: tuple[str, ...]
+    notes: tuple[Note, ...]
 
 
 def predict_armour_case(
@@ -1157,17 +1157,14 @@ def predict_armour_case(
     }
     together = _predict_layers(layers, strain)
     known = np.isfinite(layers.yield_stress)
-    notes, doubts = list[str](), list[str]()
+    notes = []
     for place, name in enumerate(names):
         if responses["exact"].is_lifted[place, 0]:
-            doubts.append(f"{name}: the wires leave the core; no theory here holds")
+            notes.append(note("wires-leave-core", name))
         if together.is_yielding[place, 0]:
-            doubts.append(f"{name}: the wires yield; all loads beyond that are too high")
+            notes.append(note("wires-yield", name))
     if abs(together.torque_imbalance[0]) > _UNBALANCED:
-        notes.append(
-            f"the layers do not balance: {100 * together.torque_imbalance[0]:.0f} % of their "
-            "torque is left, and a cable that is free to turn stretches further"
-        )
+        notes.append(note("layers-unbalanced", effect=float(together.torque_imbalance[0])))
     return PredictedArmour(
         layer_names=tuple(names),
         layers=layers,
@@ -1187,7 +1184,6 @@ def predict_armour_case(
         gap=_wire_gap(design),
         thinning_loss=_thinning_loss(design),
         notes=tuple(notes),
-        doubts=tuple(doubts),
     )
 
 

@@ -77,6 +77,7 @@ from reduction.prediction.wave_theory import (
 from reduction.record.arrays import as_finite, as_positive
 from reduction.record.errors import DataError, FitError
 from reduction.record.measurement import Bools, Floats, read_only_arrays
+from reduction.record.notes import Note, by_severity, note
 
 _STEP = 1e-14  # greatest last Newton step, relative to the root
 
@@ -958,8 +959,7 @@ class PredictedWaveLoad:
     difference: _LoadDifference
     regime: _FlowRegime
     anchor: _AnchorForce
-    notes: tuple[str, ...]
-    doubts: tuple[str, ...]
+    notes: tuple[Note, ...]
 
 
 def predict_wave_load(
@@ -1040,33 +1040,25 @@ def predict_wave_load(
         drag_coefficient=drag_coefficient,
         inertia_coefficient=inertia_coefficient,
     )
-    notes, doubts = list(described.reasons), list[str]()
+    notes = list(described.reasons)
     slender = float(regime.diameter_to_length)
     if slender > GREATEST_DIAMETER_TO_LENGTH:
-        doubts.append(
-            f"the diameter is {100 * slender:.0f} % of the wave length: the hose scatters the "
-            "wave, and Morison's equation does not hold above "
-            f"{100 * GREATEST_DIAMETER_TO_LENGTH:.0f} %"
-        )
+        notes.append(note("hose-scatters-wave", share=slender, most=GREATEST_DIAMETER_TO_LENGTH))
     length = 2 * pi / wave.wave_number
     if abs(length / described.wave_length - 1) > _SAME_LENGTH:
-        notes.append(f"the wave of {used} is {length:.4g} m long, for it is high")
+        notes.append(note("high-wave-is-longer", theory=used, length=length))
     if used != "stream function":
         if used != described.theory:
-            notes.append(
-                f"computed by {used}, as asked for; Zhang (2015) takes {described.theory} at"
-                " this depth"
-            )
+            notes.append(note("theory-asked-for", theory=used, usual=described.theory))
         try:
             true = _find_extremes(
                 wave_by("stream function"), section, vertical_width=vertical_width, **given
             )
         except (DataError, FitError):
-            doubts.append(
-                f"the stream function finds no such wave: the error of {used} is not known"
-            )
+            notes.append(note("theory-error-unknown", theory=used))
         else:
-            doubts += _error_words(used, extremes, true)
+            errors = _error_words(extremes, true)
+            notes += [note("theory-does-not-hold", theory=used, errors=errors)] if errors else []
     return PredictedWaveLoad(
         theory=described,
         used=used,
@@ -1090,13 +1082,12 @@ def predict_wave_load(
             air_density=air_density,
             **given,
         ),
-        notes=tuple(notes),
-        doubts=tuple(doubts),
+        notes=by_severity(notes),
     )
 
 
-def _error_words(used: str, found: _LoadExtremes, true: _LoadExtremes) -> list[str]:
-    """Errors of the greatest loads of a theory, by the stream function."""
+def _error_words(found: _LoadExtremes, true: _LoadExtremes) -> str:
+    """Errors of the greatest loads of a theory, by the stream function; empty where small."""
     said = []
     for name in ("horizontal", "vertical"):
         own, right = (float(getattr(one, name).greatest) for one in (found, true))
@@ -1104,9 +1095,4 @@ def _error_words(used: str, found: _LoadExtremes, true: _LoadExtremes) -> list[s
         if right > 0 and abs(own / right - 1) > _SMALL_ERROR:
             size = f"{100 * abs(own / right - 1):.0f} %"
             said.append(f"greatest {name} load is {size} too {'high' if own > right else 'low'}")
-    if not said:
-        return []
-    return [
-        f"{used} does not hold for this wave: the {' and the '.join(said)}."
-        ' Use wave_theory = "stream function"'
-    ]
+    return " and the ".join(said)

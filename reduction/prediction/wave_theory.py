@@ -97,6 +97,7 @@ from reduction.prediction.stream_function import SteadyWave, steady_wave
 from reduction.record.arrays import as_finite, as_positive
 from reduction.record.errors import DataError, FitError, SettingsError
 from reduction.record.measurement import STANDARD_GRAVITY, Floats, read_only_arrays
+from reduction.record.notes import Note, note
 
 _STEP = 1e-14  # greatest last Newton step, relative to the root
 
@@ -1065,7 +1066,7 @@ class WaveTheory:
         Ursell number above 8 pi^2 / 3, or a secondary crest in the trough.
     is_second_order_small : bool
         Second harmonics below 5 % of the first.
-    reasons : tuple of str
+    reasons : tuple of Note
         Objections to the theory, in words; empty where there are none.
     """
 
@@ -1084,7 +1085,7 @@ class WaveTheory:
     is_computed: bool
     is_beyond_stokes: bool
     is_second_order_small: bool
-    reasons: tuple[str, ...]
+    reasons: tuple[Note, ...]
 
 
 def describe_wave(
@@ -1145,22 +1146,19 @@ def describe_wave(
     is_beyond = ursell > GREATEST_URSELL_NUMBER or surface > _SECONDARY_CREST
     is_small = max(surface, velocity) < _NEGLIGIBLE
     doubts = {
-        f"the wave breaks: {breaking_ratio:.2f} of the breaking height": breaking_ratio > 1,
-        f"Table 1 names no theory for a depth of {relative_depth:.3f} wave lengths": (
+        note("wave-breaks", ratio=breaking_ratio): breaking_ratio > 1,
+        note("no-theory-at-depth", depth=relative_depth): (
             theory == "beyond the table" and asked != "stream function"
         ),
-        f"the second harmonic of the surface is {100 * surface:.0f} % of the first": (
+        note("second-harmonic", share=surface): (
             theory == "airy" and asked in (None, "airy") and not is_small
         ),
-        f"Stokes' second order is at its end: Ursell number {ursell:.1f} (at most "
-        f"{GREATEST_URSELL_NUMBER:.1f}), second harmonic of the surface {100 * surface:.0f} % "
-        f"(at most {100 * _SECONDARY_CREST:.0f} %)": (
-            is_beyond and (asked or theory) in ("airy", "stokes")
-        ),
-        f"the given length is {100 * mismatch:+.1f} % off that of the period": (
-            abs(mismatch) > _LENGTH_TOLERANCE
-        ),
-    }
+        note(
+            "stokes-at-its-end", ursell=ursell, most=GREATEST_URSELL_NUMBER, share=surface,
+            most_share=_SECONDARY_CREST,
+        ): is_beyond and (asked or theory) in ("airy", "stokes"),
+        note("wave-length-off", off=mismatch): abs(mismatch) > _LENGTH_TOLERANCE,
+    }  # fmt: skip
     return WaveTheory(
         theory=theory,
         printed=_printed_theory(relative_depth, steepness),
@@ -1177,7 +1175,7 @@ def describe_wave(
         is_computed=theory != "beyond the table",
         is_beyond_stokes=is_beyond,
         is_second_order_small=is_small,
-        reasons=tuple(text for text, is_so in doubts.items() if is_so),
+        reasons=tuple(one for one, is_so in doubts.items() if is_so),
     )
 
 

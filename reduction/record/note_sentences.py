@@ -1621,6 +1621,43 @@ _OF_HOSES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "warning",
         lambda effect: f"the safe working load is uncertain by {effect:.0%} (k = 1)",
     ),
+    "layers-unbalanced": (
+        "note",
+        "the layers do not balance: {effect:.0%} of their torque is left, and a cable that is free"
+        " to turn stretches further",
+    ),
+    "wires-leave-core": ("warning", "the wires leave the core; no theory here holds"),
+    "wires-yield": ("warning", "the wires yield; all loads beyond that are too high"),
+    "wave-breaks": ("warning", "the wave breaks: {ratio:.2f} of the breaking height"),
+    "no-theory-at-depth": (
+        "note", "Table 1 names no theory for a depth of {depth:.3f} wave lengths"
+    ),
+    "second-harmonic": (
+        "note", "the second harmonic of the surface is {share:.0%} of the first"
+    ),
+    "stokes-at-its-end": (
+        "note",
+        "Stokes' second order is at its end: Ursell number {ursell:.1f} (at most {most:.1f}),"
+        " second harmonic of the surface {share:.0%} (at most {most_share:.0%})",
+    ),
+    "wave-length-off": ("note", "the given length is {off:+.1%} off that of the period"),
+    "hose-scatters-wave": (
+        "warning",
+        "the diameter is {share:.0%} of the wave length: the hose scatters the wave, and Morison's"
+        " equation does not hold above {most:.0%}",
+    ),
+    "high-wave-is-longer": ("note", "the wave of {theory} is {length:.4g} m long, for it is high"),
+    "theory-asked-for": (
+        "note", "computed by {theory}, as asked for; Zhang (2015) takes {usual} at this depth"
+    ),
+    "theory-error-unknown": (
+        "warning", "the stream function finds no such wave: the error of {theory} is not known"
+    ),
+    "theory-does-not-hold": (
+        "warning",
+        "{theory} does not hold for this wave: the {errors}."
+        ' Use wave_theory = "stream function"',
+    ),
     "cycles-pooled": ("note", "each row pools {n_cycles} consecutive cycles"),
     "one-branch": (
         "note",

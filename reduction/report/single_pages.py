@@ -19,6 +19,7 @@ from reduction.prediction.wave_load import (
 from reduction.quantities.digits import plain_number
 from reduction.quantities.units import UnitSystem, display_unit
 from reduction.record.measurement import Bools, Floats
+from reduction.record.notes import Note
 from reduction.report.campaign_summary import SummaryFinding, Tile
 from reduction.report.figure_data import Figure, Trace, axis, band, line, make_figure, plain_numbers
 from reduction.report.figures.theory_figures import (
@@ -247,7 +248,7 @@ def write_wave_page(
     ]  # fmt: skip
     return write_single_page(
         out, _title("Wave load", name), "load", parts, answer=extremes_table(found, units),
-        tiles=tiles, notes=(*found.doubts, *found.notes), units=units, about=_OF_WAVE,
+        tiles=tiles, notes=found.notes, units=units, about=_OF_WAVE,
     )  # fmt: skip
 
 
@@ -276,7 +277,7 @@ def write_armour_page(
     ]  # fmt: skip
     return write_single_page(
         out, _title("Armour", name), "armour", parts, answer=layers_table(found, units),
-        tiles=tiles, notes=(*found.doubts, *found.notes), units=units, about=_OF_ARMOUR,
+        tiles=tiles, notes=found.notes, units=units, about=_OF_ARMOUR,
     )  # fmt: skip
 
 
@@ -288,7 +289,7 @@ def write_single_page(
     *,
     answer: PageTable | None,
     tiles: Sequence[Tile],
-    notes: Sequence[str],
+    notes: Sequence[Note | str],
     units: UnitSystem,
     about: str,
     made_from: str = "the numbers of its SPEC.toml alone",
@@ -308,7 +309,11 @@ def write_single_page(
         ),
         tiles=tiles,
         faults=[
-            SummaryFinding("warning", (title,), f"{note[:1].upper()}{note[1:]}.") for note in notes
+            SummaryFinding(
+                one.severity if isinstance(one, Note) else "warning", (title,),
+                f"{str(one)[:1].upper()}{str(one)[1:]}.",
+            )
+            for one in notes
         ],
         chapters=[section],
         answers=[] if answer is None else [answer],

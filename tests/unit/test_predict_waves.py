@@ -338,8 +338,8 @@ def test_the_second_printed_example_is_at_the_edge():
     assert wave.elevation_ratio == pytest.approx(0.30, abs=0.005)
     assert wave.breaking_ratio == pytest.approx(0.0625 / 0.105, abs=0.005)
     assert wave.is_beyond_stokes and not wave.is_breaking
-    assert any("Stokes' second order is at its end" in one for one in wave.reasons)
-    assert any("the given length is +22.7 % off" in one for one in wave.reasons)
+    assert any("Stokes' second order is at its end" in str(one) for one in wave.reasons)
+    assert any("the given length is +22.7 % off" in str(one) for one in wave.reasons)
 
 
 @pytest.mark.parametrize(("depth", "period"), [(3.0, 3.57), (6.0, 3.57), (40.0, 5.0), (1.0, 2.0)])
@@ -377,7 +377,7 @@ def test_an_airy_wave_whose_second_harmonic_counts_says_so():
     steep = describe_wave(wave_height=1.25, wave_period=3.57, water_depth=6.0)
     assert steep.theory == "airy"
     # kH/8 (2 + 3 / sinh^2 kd) coth kd by hand: 12 %
-    assert any("the second harmonic of the surface is 12 %" in one for one in steep.reasons)
+    assert any("the second harmonic of the surface is 12 %" in str(one) for one in steep.reasons)
     flat = describe_wave(wave_height=0.2, wave_period=3.57, water_depth=6.0)
     assert flat.is_second_order_small and flat.reasons == ()
     assert flat.length_mismatch == 0
@@ -392,14 +392,14 @@ def test_a_length_that_no_wave_has_is_refused(length):
 def test_a_breaking_wave_is_flagged():
     wave = describe_wave(wave_height=3.0, wave_period=3.57, water_depth=6.0)
     assert wave.is_breaking and wave.breaking_ratio > 1
-    assert any(one.startswith("the wave breaks: 1.") for one in wave.reasons)
+    assert any(str(one).startswith("the wave breaks: 1.") for one in wave.reasons)
 
 
 def test_a_wave_beyond_the_table_is_computed_by_name_alone():
     sea = {"wave_height": 0.2, "wave_period": 12.0, "water_depth": 1.5}
     wave = describe_wave(**sea)
     assert wave.theory == "beyond the table" and not wave.is_computed
-    assert any("Table 1 names no theory" in one for one in wave.reasons)
+    assert any("Table 1 names no theory" in str(one) for one in wave.reasons)
     with pytest.raises(DataError, match="the theory of this wave is not computed: beyond"):
         regular_wave(wave, **sea, elevation=0.0)
     assert regular_wave(wave, **sea, elevation=0.0, theory="airy").elevation.size == 1

@@ -346,8 +346,9 @@ def test_the_page_of_a_wave_load_stands_alone(wave, tmp_path):
     assert "alert(1)</script>" not in page and "Wave load &lt;/script&gt;" in page
     assert page.count("data-figure=") == 4
     assert page.index("Extremes of the load over a period") < page.index('id="wrong"')
-    # what speaks against the wave is a warning
-    assert ">Warnings<" in page and "The given length is" in page
+    # the page ranks what it says as the terminal does
+    assert ">Warnings<" in page and "does not hold for this wave" in page
+    assert page.index(">Notes<") < page.index("The given length is")
     assert "Where these numbers come from" not in page
     assert "from the numbers of its SPEC.toml alone." in page
     assert "SYNTHETIC" not in page and "https://" not in page.partition("<body>")[2][:5000]
@@ -359,7 +360,7 @@ def test_the_page_of_an_armour_stands_alone(armour, tmp_path):
     )
     assert page.count("data-figure=") == 8
     assert "Units: US customary. Notes are in SI." in page
-    assert ">Warnings<" in page and "The layers do not balance" in page
+    assert ">Notes<" in page and "The layers do not balance" in page
     for heading in ("The cable and its layers", "One wire", "Where each theory holds"):
         assert f"<h3>{heading}</h3>" in page
     single = write_armour_page(armour(LEAST_ARMOUR), tmp_path / "one", name="one").read_text(
