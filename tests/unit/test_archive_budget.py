@@ -1,5 +1,7 @@
 """The budget of one number, read from an archive."""
 
+from math import nan
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -16,6 +18,7 @@ from reduction.archive.uncertainty_budget import (
 )
 from reduction.record.contributions import coverage_factor
 from reduction.record.errors import ArchiveError, SettingsError
+from reduction.uncertainty.budget import conformity
 
 
 @pytest.fixture
@@ -299,9 +302,6 @@ def test_a_ratio_says_of_which_two(archive):
     assert words_of(archive, "comparison", 0, {}) == "used over new"
 
 
-# from how many numbers an uncertainty was found
-
-
 @pytest.mark.parametrize("n_cycles", [3, 10, 30])
 def test_differences_of_neighbours_are_worth_fewer_than_cycles(n_cycles):
     # drawn: twice the mean over the variance of what they are found from
@@ -353,3 +353,31 @@ def test_a_mean_is_of_the_cycles_after_the_break_in_that_have_a_number():
     )
     freedom = effective_freedom(spread, "test_dynamic_modulus")
     assert coverage_factor(freedom) == pytest.approx([2.262, 3.182], abs=1e-3)
+
+
+# decision rules: the cases of JCGM 106:2012, 8.2 and 8.3, one beside the other
+
+# value, interval, lower, upper; simple acceptance, guard band
+CASES = [
+    (5.0, (4.0, 6.0), 3.0, 7.0, "conforms", "conforms"),
+    (5.0, (4.0, 6.0), 4.0, 6.0, "conforms", "conforms"),
+    (5.0, (4.0, 6.0), 4.5, 7.0, "conforms", "no statement"),
+    (5.0, (4.0, 6.0), 5.0, None, "conforms", "no statement"),
+    (5.0, (4.0, 6.0), None, 4.5, "does not conform", "no statement"),
+    (5.0, (4.0, 6.0), 6.0, None, "does not conform", "no statement"),
+    (5.0, (4.0, 6.0), 6.1, None, "does not conform", "does not conform"),
+    (5.0, (4.0, 6.0), None, 3.9, "does not conform", "does not conform"),
+    # wider than the tolerance: nothing can be shown to conform
+    (5.0, (0.0, 10.0), 4.0, 6.0, "conforms", "no statement"),
+    # not even about the value
+    (5.0, (4.8, 9.0), 4.5, 8.0, "conforms", "no statement"),
+    (5.0, (nan, nan), 4.0, 6.0, "conforms", "no statement"),
+    (nan, (nan, nan), 4.0, 6.0, "no statement", "no statement"),
+]
+
+
+@pytest.mark.parametrize(("value", "interval", "lower", "upper", "simple", "guarded"), CASES)
+def test_each_rule_decides_as_it_says(value, interval, lower, upper, simple, guarded):
+    limits = {"lower": lower, "upper": upper}
+    assert conformity(value, interval, rule="simple acceptance", **limits) == simple
+    assert conformity(value, interval, rule="guard band", **limits) == guarded
