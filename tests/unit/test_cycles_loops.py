@@ -2230,3 +2230,27 @@ def test_the_interval_of_a_single_sine_of_few_readings_is_that_of_its_noise(read
     ):
         z = (getattr(loops, name)[0] - true) / loops.uncertainty[name][0]
         assert 0.4 < np.sqrt(np.mean(z**2)) < 2
+
+
+@pytest.mark.parametrize("settles", [1e9, 6.0])
+def test_each_cycle_of_a_sine_has_the_extremes_of_its_own_wave(settles):
+    # second and third harmonic of tension fall with the cycles, as in a rubber that softens
+    per_cycle, n_cycles = 60, 30
+    phase = 2 * np.pi * np.arange(per_cycle * n_cycles + 1) / per_cycle
+    size = 1 + 2 * np.exp(-(np.minimum(np.arange(phase.size) // per_cycle, 29)) / settles)
+    strain = 1 - 0.2 * np.cos(phase)
+    wave = -np.cos(phase) + 0.05 * size * np.cos(2 * phase) - 0.02 * size * np.cos(3 * phase)
+    tension = 500 + 100 * wave + np.random.default_rng(3).normal(0, 0.1, phase.size)
+    first = per_cycle * np.arange(n_cycles)
+    pair = np.stack([first, first + per_cycle // 2], axis=1)
+    cycles = Cycles(
+        first, first + per_cycle, pair, pair + per_cycle // 2, np.ones((n_cycles, 2)),
+        np.zeros(phase.size, np.int32), np.zeros(phase.size, np.int8),
+        np.zeros(phase.size, bool), 0.1,
+    )  # fmt: skip
+    loops = close_loops(phase, tension[None], strain[None], cycles, waveform="sinusoidal")
+    own = size[first]
+    inside = slice(1, -1)
+    # the second harmonic lifts both extremes, the third moves them apart
+    assert loops.mean_tension[0, inside] == pytest.approx(500 + 5 * own[inside], abs=0.3)
+    assert loops.tension_amplitude[0, inside] == pytest.approx(100 + 2 * own[inside], abs=0.3)

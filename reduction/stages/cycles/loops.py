@@ -399,13 +399,14 @@ MEASURED = (
 class _Shape:
     """Half range and middle of a wave, relative to the amplitude of its fundamental.
 
-    ``missed`` is the width of the interval of the half range, from its change with the
-    number of harmonics, up or down, and from their noise.
+    One of each for every cycle where the wave changes from cycle to cycle.  ``missed`` is the width
+    of the interval of the half range, from its change with the number of harmonics, up or down, and
+    from their noise.
     """
 
-    half: float = 1.0
-    middle: float = 0.0
-    missed: float = 0.0
+    half: Floats | float = 1.0
+    middle: Floats | float = 0.0
+    missed: Floats | float = 0.0
 
 
 _MOST_HARMONICS = 16
@@ -485,16 +486,14 @@ def _shape_of_wave(
         known = known[1:]  # drift after a ramp dies away within the cycle, unlike harmonics
     if not known.size:
         return _Shape()
-    some = known[
-        np.unique(np.linspace(0, known.size - 1, min(known.size, _CYCLES_OF_SHAPE)).astype(int))
-    ]
+    some = _spread(known)
     # growth of a wave within its cycle adds harmonics, which raise its extremes
     before, after = np.diff(amplitude, prepend=np.nan), np.diff(amplitude, append=np.nan)
     lesser = np.where(np.abs(before) < np.abs(after), before, after)
     growth = np.where(before * after > 0, lesser / amplitude, 0.0)
     turns = np.broadcast_to(turned, amplitude.shape)
-    phases, waves = [], []
-    for one in some.tolist():
+
+    def wave_of(one: int) -> tuple[Floats, Floats]:
         first, last = int(cycles.first[one]), int(cycles.last[one])
         part = slice(first, last + 1, max((last - first) // _SAMPLES_OF_SHAPE, 1))
         phase = 2 * np.pi * (time[part] - time[part.start]) / period[one]
@@ -502,8 +501,9 @@ def _shape_of_wave(
         level = (values[part] - mean[one] - drift[one] * place) / (1 + growth[one] * place)
         usable = np.isfinite(level)
         phase += turns[one] * place - np.arctan2(sine[one], cosine[one])
-        phases.append(phase[usable])
-        waves.append(level[usable] / amplitude[one])
+        return phase[usable], level[usable] / amplitude[one]
+
+    phases, waves = zip(*map(wave_of, some.tolist()), strict=True)
     # a log synchronous with the period reads the same few phases of every cycle
     read = np.concatenate(phases) / (2 * np.pi) % 1
     order = min(_MOST_HARMONICS, int(1 / max(step_that_fills(read), _FINEST) - 2) // 2)
@@ -548,7 +548,72 @@ def _shape_of_wave(
     # a third harmonic that the readings do not show may be as large as the second
     not_shown = 2 * float(size[1]) if order == 2 else 0.0
     missed = float(np.linalg.norm([missed, rounded, by_noise, not_shown]))
-    return _Shape(half[-1], (high[-1] + low[-1]) / 2, missed)
+    common = _Shape(half[-1], (high[-1] + low[-1]) / 2, missed)
+    # the shape may change with the specimen; growth between neighbours alters it as well
+    step = np.fmax(np.abs(before), np.abs(after)) / amplitude
+    some = _spread(np.flatnonzero(step < _OF_ONE_WAVE)[1:-1])
+    if not some.size:
+        return common
+    phases, waves = zip(*map(wave_of, some.tolist()), strict=True)
+    own, error = _own_harmonics(phases, waves, of_wave, rounding=rounding / middle)
+    if not own.size:
+        return common
+    of_cycle = np.repeat(weights[:, None], some.size, axis=1)
+    changing = np.arange(2, own.shape[0] // 2 + 2)
+    of_cycle[np.concatenate([changing, order + changing])] += own
+    sums = curve @ (np.append(0.0, np.tile(faded[-1], 2))[:, None] * of_cycle)
+    low, high = sums.min(axis=0), sums.max(axis=0)
+    number = np.arange(cycles.n_cycles)
+    return _Shape(
+        np.interp(number, some, (high - low) / 2),
+        np.interp(number, some, (high + low) / 2),
+        float(np.hypot(missed, WITHIN_STEP * error * np.sqrt(changing.size))),
+    )
+
+
+def _spread(cycles: Integers) -> Integers:
+    """At most a hundred cycles, evenly spread."""
+    at = np.linspace(0, cycles.size - 1, min(cycles.size, _CYCLES_OF_SHAPE))
+    return cycles[np.unique(at.astype(int))]
+
+
+def _own_harmonics(
+    phases: Sequence[Floats], waves: Sequence[Floats], of_wave: Floats, *, rounding: float
+) -> tuple[Floats, float]:
+    """Harmonics of each cycle beyond those of all, from the second on, and their uncertainty.
+
+    Cosines, then sines, by cycle; as many as its readings show well.  None where the cycles are
+    alike but for noise.
+
+    Examples
+    --------
+    >>> phase = [np.linspace(0, 2 * np.pi, 20)] * 4
+    >>> waves = [-np.cos(phase[0]) + size * np.cos(2 * phase[0]) for size in (0.1, 0.2, 0.2, 0.3)]
+    >>> own, error = _own_harmonics(phase, waves, np.array([0, -1, 0.2, 0, 0, 0, 0]), rounding=0.0)
+    >>> print(own[0].round(3) + 0.0, error < 1e-9)
+    [-0.1  0.   0.   0.1] True
+    """
+    order = of_wave.size // 2
+    highest = min(order, min(one.size for one in phases) // _READINGS_OF_ONE)
+    none = np.empty((0, len(phases)))
+    if highest < 2:
+        return none, 0.0
+    fitted = np.arange(1, highest + 1)
+    own, variance = np.empty((2 * highest - 2, len(phases))), np.empty(len(phases))
+    for index, (phase, wave) in enumerate(zip(phases, waves, strict=True)):
+        angle = np.multiply.outer(phase, np.arange(1, order + 1))
+        terms = np.column_stack([np.ones(phase.size), np.cos(angle), np.sin(angle)])
+        design = terms[:, np.concatenate([[0], fitted, order + fitted])]
+        left = wave - terms @ of_wave
+        fit = np.linalg.lstsq(design, left, rcond=None)[0]
+        own[:, index] = np.delete(fit, [0, 1, highest + 1])
+        noise = float(np.sum((left - design @ fit) ** 2)) / (phase.size - fit.size)
+        variance[index] = (noise + rounding**2) * 2 / phase.size
+    error = float(np.sqrt(variance.mean()))
+    return (none, 0.0) if np.mean(own**2) < (_ABOVE_NOISE * error) ** 2 else (own, error)
+
+
+_READINGS_OF_ONE = 8  # of a cycle, for each of its own harmonics
 
 
 _IRREGULAR = 0.03  # median change of amplitude from one cycle to the next
