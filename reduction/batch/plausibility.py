@@ -21,6 +21,7 @@ from reduction.experiments.designs import engineering_levels
 from reduction.experiments.run_sheet import NOT_OF_PLAN
 from reduction.pipeline.extremes import greatest_strain
 from reduction.prediction.hose_comparison import loading_of
+from reduction.prediction.hose_prediction import doubts_of_design
 from reduction.prediction.hose_product import HoseDesign
 from reduction.prediction.hose_tension import predict_hose
 from reduction.quantities.units import Dimension, scale_to_si
@@ -893,17 +894,6 @@ def _pattern(names: list[str], coded: Floats, planned: Floats, reached: Floats) 
     return "; ".join(found)
 
 
-_CORD_STRESS = (0.25e9, 2.2e9)
-
-_CORD_SHARE = (0.15, 1.02)
-
-_RUBBER = (0.5e6, 20e6)
-
-_ANGLE = (np.radians(50), np.radians(85))
-
-_DEAD = 0.3
-
-
 def _of_hoses(campaign: Campaign) -> Iterator[tuple[str, Note]]:
     """Find unrealistic hose designs, reported with the tests compared with them."""
     designs: dict[str, dict[str, set[str]]] = {}
@@ -920,35 +910,12 @@ def _of_hoses(campaign: Campaign) -> Iterator[tuple[str, Note]]:
         if others and not set.intersection(*of_tests):
             yield plan.measured, note("two-designs-of-one", plan.specimen, hose=plan.predicted,
                                       other=" and ".join(others))  # fmt: skip
-        design, name = hose.design, plan.predicted
-        cord, spacing = (
-            float(np.mean(design.cord_diameter)),
-            float(np.mean(design.cords_per_length)),
-        )
-        stress = float(design.cord.load[-1] * np.mean(design.cord_load_scale)) / (
-            np.pi * cord**2 / 4
-        )
-        share = cord * spacing
-        rubber = float(np.mean(design.rubber_modulus))
-        angle = float(np.mean(design.wrap_angle))
-        dead = float(np.mean(design.dead_length_share))
-        if not _CORD_STRESS[0] <= stress <= _CORD_STRESS[1]:
-            yield plan.measured, note("cord-stress-outside-band", name, stress=stress,
-                                      low=_CORD_STRESS[0], high=_CORD_STRESS[1])  # fmt: skip
-        if not _CORD_SHARE[0] <= share <= _CORD_SHARE[1]:
-            yield plan.measured, note("cords-do-not-fit", name, share=share)
-        if not _RUBBER[0] <= rubber <= _RUBBER[1]:
-            yield plan.measured, note("hose-rubber-outside-band", name, modulus=rubber,
-                                      low=_RUBBER[0], high=_RUBBER[1])  # fmt: skip
-        if not _ANGLE[0] <= angle <= _ANGLE[1]:
-            yield plan.measured, note("wrap-angle-outside-band", name, angle=angle)
-        if dead > _DEAD:
-            yield plan.measured, note("dead-length-large", name, share=dead)
+        yield from ((plan.measured, one) for one in doubts_of_design(hose))
         specimen = campaign.specimens[plan.specimen]
         if specimen.diameter:
-            ratio = specimen.mean_diameter / float(np.mean(design.outer_diameter))
+            ratio = specimen.mean_diameter / float(np.mean(hose.design.outer_diameter))
             if not 1 / _BY_DESIGN <= ratio <= _BY_DESIGN:
-                yield plan.measured, note("hose-not-of-design", plan.specimen, hose=name,
+                yield plan.measured, note("hose-not-of-design", plan.specimen, hose=plan.predicted,
                                           ratio=ratio, like=words_of_ratio(ratio))  # fmt: skip
 
 

@@ -151,7 +151,7 @@ _DIMENSIONS: dict[str, Dimension] = {
 
 """Keys that may have a standard uncertainty."""
 
-_MOST_CORD_STRAIN = 1.0
+_MOST_CORD_STRAIN, _MOST_TARGET = 1.0, 10.0
 
 _PARAMETERS = {
     "wrap_diameter": "layer_diameter",
@@ -280,4 +280,10 @@ def load_hose(path: Path) -> tuple[HosePlan, _HoseSpecFile]:
         needed="a SPEC.toml with [hose] and [cord]",
         keys="docs/predictions.md lists every key",
     )
+    if file.target is not None and file.target.strain > _MOST_TARGET:
+        raise in_toml(
+            path, "target.strain is more than a hose can stretch",
+            found=f"{100 * file.target.strain:g} %", needed=f"at most {100 * _MOST_TARGET:g} %",
+            hint='A bare number is a share: 130 % is 1.3 or "130 %".',
+        )  # fmt: skip
     return hose_of(path, path.stem, "hose", file.hose, file.cord), file

@@ -154,6 +154,9 @@ class _ArmourCase:
     tolerance: float
 
 
+_MOST_STRAIN = 0.05
+
+
 def load_armour_case(path: Path) -> _ArmourCase:
     """Read SPEC.toml of an armour."""
     keys = read_toml(
@@ -163,6 +166,12 @@ def load_armour_case(path: Path) -> _ArmourCase:
         needed="a SPEC.toml with [armour] and [[armour.layers]]",
         keys="docs/predictions.md lists every key",
     ).armour
+    if keys.axial_strain > _MOST_STRAIN:
+        raise in_toml(
+            path, "armour.axial_strain is more than a cable can stretch",
+            found=f"{100 * keys.axial_strain:g} %", needed=f"at most {100 * _MOST_STRAIN:g} %",
+            hint='A bare number is a share: 0.1 % is 0.001 or "0.1 %".',
+        )  # fmt: skip
     rows = [
         (
             layer.winding_angle,

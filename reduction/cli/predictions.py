@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +27,7 @@ from reduction.prediction.hose_prediction import (
     HOSE_SERIES,
     HoseTarget,
     PredictedHose,
+    doubts_of_design,
     predict_from_plan,
 )
 from reduction.prediction.hose_product import HoseEvent
@@ -591,6 +592,8 @@ def compare_test(measured: Path, spec: Path, *, out: Path | None, output: Comman
         calibrate=file.comparison.calibrate,
     )
     named = compare_archive(measured, hose, plan)
+    notes = (*doubts_of_design(hose), *named.comparison.notes)
+    named = replace(named, comparison=replace(named.comparison, notes=notes))
     _show_comparison(named, output)
     if out is not None:
         path = out / "comparisons.nc"

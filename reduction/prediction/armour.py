@@ -1147,6 +1147,10 @@ class PredictedArmour:
     notes: tuple[Note, ...]
 
 
+# [Pa]: from aramid and aluminium to steel, with room on both sides
+_MODULUS, _YIELD = (20e9, 250e9), (0.03e9, 3e9)
+
+
 def predict_armour_case(
     layers: ArmourLayers, strain: Floats, *, names: Sequence[str], tolerance: float
 ) -> PredictedArmour:
@@ -1158,7 +1162,16 @@ def predict_armour_case(
     together = _predict_layers(layers, strain)
     known = np.isfinite(layers.yield_stress)
     notes = []
+    modulus = np.broadcast_to(design.elastic_modulus, np.shape(layers.yield_stress))
     for place, name in enumerate(names):
+        for what, one, (low, high) in (
+            ("elastic_modulus", modulus[place], _MODULUS),
+            ("yield_stress", layers.yield_stress[place], _YIELD),
+        ):
+            if one < low or one > high:  # not so where none is stated
+                notes.append(
+                    note("wire-outside-band", name, what=what, value=one, low=low, high=high)
+                )
         if responses["exact"].is_lifted[place, 0]:
             notes.append(note("wires-leave-core", name))
         if together.is_yielding[place, 0]:

@@ -236,9 +236,42 @@ def _says(one: _LayerResponse) -> list[Note]:
     return said
 
 
+# [Pa], 1, [Pa], [rad], 1: outside of these, a unit or a diameter is more likely to be wrong
+_CORD_STRESS, _CORD_SHARE, _RUBBER = (0.25e9, 2.2e9), (0.15, 1.02), (0.5e6, 20e6)
+
+_ANGLE, _DEAD = (np.radians(50), np.radians(85)), 0.3
+
+
+def doubts_of_design(plan: HosePlan) -> list[Note]:
+    """Warnings about numbers of a design that no hose has."""
+    design, name = plan.design, plan.name
+    cord, spacing, scale, rubber, angle, dead = (
+        float(np.mean(one))
+        for one in (
+            design.cord_diameter, design.cords_per_length, design.cord_load_scale,
+            design.rubber_modulus, design.wrap_angle, design.dead_length_share,
+        )
+    )  # fmt: skip
+    stress = float(design.cord.load[-1]) * scale / (np.pi * cord**2 / 4)
+    found = []
+    if not _CORD_STRESS[0] <= stress <= _CORD_STRESS[1]:
+        found.append(note("cord-stress-outside-band", name, stress=stress,
+                          low=_CORD_STRESS[0], high=_CORD_STRESS[1]))  # fmt: skip
+    if not _CORD_SHARE[0] <= cord * spacing <= _CORD_SHARE[1]:
+        found.append(note("cords-do-not-fit", name, share=cord * spacing))
+    if not _RUBBER[0] <= rubber <= _RUBBER[1]:
+        found.append(note("hose-rubber-outside-band", name, modulus=rubber,
+                          low=_RUBBER[0], high=_RUBBER[1]))  # fmt: skip
+    if not _ANGLE[0] <= angle <= _ANGLE[1]:
+        found.append(note("wrap-angle-outside-band", name, angle=angle))
+    if dead > _DEAD:
+        found.append(note("dead-length-large", name, share=dead))
+    return found
+
+
 def _notes_of_design(plan: HosePlan, prediction: HosePrediction) -> list[Note]:
     design: HoseDesign = plan.design
-    notes = []
+    notes = doubts_of_design(plan)
     if float(design.wrap_angle) <= NEUTRAL_ANGLE:
         notes.append(note("no-slack-zone", angle=float(design.wrap_angle)))
     for name, code in (("is_jammed", "cords-touch"), ("is_bore_too_small", "bore-too-small")):

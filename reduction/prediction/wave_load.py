@@ -1041,6 +1041,18 @@ def predict_wave_load(
         inertia_coefficient=inertia_coefficient,
     )
     notes = list(described.reasons)
+    notes += _outside_usual(
+        wall_density=wall_density, water_density=water_density, air_density=air_density,
+        drag_coefficient=drag_coefficient, wind_drag_coefficient=wind_drag_coefficient,
+        inertia_coefficient=inertia_coefficient, current_velocity=abs(current_velocity),
+        wind_velocity=abs(wind_velocity),
+    )  # fmt: skip
+    if abs(described.length_mismatch) > _OTHER_LENGTH:
+        own = described.wave_length / (1 + described.length_mismatch)
+        notes.append(
+            note("wave-length-not-of-period", period=wave_period, own=own,
+                 stated=described.wave_length)
+        )  # fmt: skip
     slender = float(regime.diameter_to_length)
     if slender > GREATEST_DIAMETER_TO_LENGTH:
         notes.append(note("hose-scatters-wave", share=slender, most=GREATEST_DIAMETER_TO_LENGTH))
@@ -1084,6 +1096,27 @@ def predict_wave_load(
         ),
         notes=by_severity(notes),
     )
+
+
+_OTHER_LENGTH = 0.2  # a higher wave, or one by another theory, is longer by less
+
+# in SI: outside of these, a unit or a decimal place is more likely to be wrong
+_USUAL = {
+    "wall_density": (50.0, 9000.0, " kg/m3"), "water_density": (950.0, 1250.0, " kg/m3"),
+    "air_density": (0.9, 1.6, " kg/m3"), "drag_coefficient": (0.2, 4.0, ""),
+    "wind_drag_coefficient": (0.2, 4.0, ""), "inertia_coefficient": (1.0, 3.0, ""),
+    "current_velocity": (0.0, 4.0, " m/s"), "wind_velocity": (0.0, 90.0, " m/s"),
+}  # fmt: skip
+
+
+def _outside_usual(**stated: float) -> list[Note]:
+    """Find numbers that are not those of a hose at sea."""
+    return [
+        note("wave-number-outside-band", name=name, value=one, low=low, high=high, unit=unit)
+        for name, one in stated.items()
+        for low, high, unit in [_USUAL[name]]
+        if not low <= one <= high
+    ]
 
 
 def _error_words(found: _LoadExtremes, true: _LoadExtremes) -> str:

@@ -1626,6 +1626,25 @@ _OF_HOSES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "the layers do not balance: {effect:.0%} of their torque is left, and a cable that is free"
         " to turn stretches further",
     ),
+    "wire-outside-band": (
+        "warning",
+        lambda what, value, low, high: (
+            f"its {what} is {value / 1e9:.3g} GPa, that of wires is {low / 1e9:g} to"
+            f" {high / 1e9:g} GPa: check its unit"
+        ),
+    ),
+    "wave-number-outside-band": (
+        "warning",
+        lambda name, value, low, high, unit: (
+            f"{name} is {value:.4g}{unit}, not between {low:g} and {high:g}: check its unit"
+            + (" and that it is 1 + C_m, not C_m" if name == "inertia_coefficient" else "")
+        ),
+    ),
+    "wave-length-not-of-period": (
+        "warning",
+        "a wave of {period:.4g} s is {own:.4g} m long, not {stated:.4g} m: check wave_period,"
+        " wave_length and water_depth",
+    ),
     "wires-leave-core": ("warning", "the wires leave the core; no theory here holds"),
     "wires-yield": ("warning", "the wires yield; all loads beyond that are too high"),
     "wave-breaks": ("warning", "the wave breaks: {ratio:.2f} of the breaking height"),

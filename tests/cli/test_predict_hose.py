@@ -234,3 +234,23 @@ def test_a_target_that_no_hose_reaches_ends_with_status_2(predict):
     assert done.returncode == 2
     assert "target: no hose of this design reaches it" in done.stderr
     assert "no hose by wrap angle" in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ('"200 psi"', '"200 MPa"', "its rubber_modulus is 200 MPa"),
+        ('wrap_angle = "68 deg"', 'wrap_angle = "22 deg"', "its wrap_angle is 22 degrees"),
+        ('"0.022 in"', '"0.022 mm"', "its cords break at 351 GPa on their section"),
+    ],
+)
+def test_a_number_that_no_hose_has_is_the_first_line(predict, old, new, said):
+    done = predict(spec=SPEC.replace(old, new, 1))
+    assert done.returncode == 0 and done.stdout.startswith(f"warning: gumby: {said}")
+
+
+def test_a_target_in_percent_without_the_sign_is_refused(predict):
+    done = predict(spec=SPEC + "[target]\nstrain = 130\n")
+    assert (
+        done.returncode == 2 and 'A bare number is a share: 130 % is 1.3 or "130 %"' in done.stderr
+    )

@@ -190,6 +190,7 @@ def test_an_armour_has_tables_and_a_page(predict, tmp_path):
         ('"5 mm"', '"-5 mm"', "wire_radius of 1 of 2 designs is not that of an armour"),
         ('"60 mm"', '"-60 mm"', "core_radius of 1 of 2 designs is not that of an armour"),
         ('"0.1 %"', '"-100 %"', "the strain is not that of a cable"),
+        ('"0.1 %"', "0.1", 'A bare number is a share: 0.1 % is 0.001 or "0.1 %"'),
     ],
 )
 def test_no_such_armour(predict, old, new, message):
@@ -202,6 +203,23 @@ def test_no_such_armour(predict, old, new, message):
 def test_a_strain_may_be_a_plain_number_and_yielding_is_told(predict):
     done = predict("armour", changed(ARMOUR, '"0.1 %"', "0.01"))
     assert done.returncode == 0 and done.stdout.startswith("warning: inner: the wires yield")
+
+
+@pytest.mark.parametrize(
+    ("what", "key", "said"),
+    [
+        ("armour", 'elastic_modulus = "210 MPa"', "outer: its elastic_modulus is 0.21 GPa"),
+        ("wave-load", 'water_density = "1.4 g/cm^3"', "water_density is 1400 kg/m3"),
+        ("wave-load", 'current_velocity = "10 knot"', "current_velocity is 5.144 m/s"),
+        ("wave-load", "inertia_coefficient = 0.2", "inertia_coefficient is 0.2"),
+        ("wave-load", 'wave_length = "40 m"', "a wave of 3.57 s is 19.13 m long, not 40 m"),
+    ],
+)
+def test_a_number_that_no_cable_or_sea_has_is_the_first_line(predict, what, key, said):
+    spec = ARMOUR if what == "armour" else LEAST_WAVE
+    assert not predict(what, spec).stdout.startswith("warning")
+    done = predict(what, f"{spec}{key}\n")
+    assert done.returncode == 0 and done.stdout.startswith(f"warning: {said}")
 
 
 @pytest.mark.parametrize("what", ["wave-load", "armour"])
