@@ -2254,3 +2254,31 @@ def test_each_cycle_of_a_sine_has_the_extremes_of_its_own_wave(settles):
     # the second harmonic lifts both extremes, the third moves them apart
     assert loops.mean_tension[0, inside] == pytest.approx(500 + 5 * own[inside], abs=0.3)
     assert loops.tension_amplitude[0, inside] == pytest.approx(100 + 2 * own[inside], abs=0.3)
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.003])
+@pytest.mark.parametrize("readings", [38.7, 120.3, 410.7])
+def test_friction_that_turns_at_once_has_the_range_of_its_readings(readings, noise):
+    """Of a load that is nearly a square wave, harmonics overshoot its corners by 11 %."""
+
+    def load(wave):
+        return 300 * np.tanh(np.sin(wave) / 0.024) - 80 * np.cos(wave) + 30 * np.sin(wave)
+
+    true = np.ptp(load(np.linspace(0, 2 * np.pi, 200_001))) / 2 / 0.1
+    turn = np.arange(int(11 * readings)) / readings
+    wave = 2 * np.pi * turn
+    rng = np.random.default_rng(1)
+    strain = 0.2 - 0.1 * np.cos(wave) + 1e-5 * rng.normal(size=turn.size)
+    tension = 500 + load(wave) + noise * 380 * rng.normal(size=turn.size)
+    first = np.round(np.arange(10) * readings).astype(np.intp)
+    last = np.append(first[1:], round(10 * readings))
+    pair = np.column_stack([first, (first + last) // 2])
+    cycles = Cycles(
+        first, last, pair, np.column_stack([pair[:, 1], last]), np.ones((10, 2)),
+        np.zeros(turn.size, np.int32), np.zeros(turn.size, np.int8), np.zeros(turn.size, bool), 0.1,
+    )  # fmt: skip
+    loops = close_loops(turn, tension[None], strain[None], cycles, waveform="sinusoidal")
+    found = summarise_amplitude(loops, area=[1e-3])
+    spread = found.uncertainty["apparent_spring_constant"][0]
+    assert abs(found.apparent_spring_constant[0] - true) < 2 * spread
+    assert spread < 4.5 / readings * true

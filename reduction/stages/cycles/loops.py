@@ -478,8 +478,8 @@ def _shape_of_wave(
     amplitude = np.hypot(cosine, sine)
     known = np.flatnonzero(np.isfinite(amplitude + mean) & (amplitude > 0))
     # cycles of another amplitude belong to another wave, as the first one behind a ramp may
-    middle = np.median(amplitude[known[known.size > 1 :]]) if known.size else np.nan
-    known = known[np.abs(amplitude[known] - middle) < _OF_ONE_WAVE * middle]
+    usual = np.median(amplitude[known[known.size > 1 :]]) if known.size else np.nan
+    known = known[np.abs(amplitude[known] - usual) < _OF_ONE_WAVE * usual]
     if known.size > _FEWEST_INSIDE:
         known = known[1:-1]  # neighbours of cycles of another amplitude may hold part of them
     elif known.size > 1:
@@ -520,7 +520,7 @@ def _shape_of_wave(
     spread = float(np.std(wave - design @ of_wave)) * np.sqrt(2 / wave.size)
     # with readings at the same phases, every cycle has the same error
     n_phases = min(wave.size, 1 / max(step_that_fills(read), _FINEST))
-    per_harmonic = rounding / middle * np.sqrt(2 / n_phases)
+    per_harmonic = rounding / usual * np.sqrt(2 / n_phases)
     spread = float(np.hypot(spread, per_harmonic))
     size = np.hypot(of_wave[1 : order + 1], of_wave[order + 1 :])
     # each cycle has its own fundamental; harmonics within the noise are dropped, except the third,
@@ -540,28 +540,36 @@ def _shape_of_wave(
     faded = np.clip(2 - 2 * orders / np.arange(max(order // 2, 1) + 1, order + 2)[:, None], 0, 1)
     faded = np.vstack([np.ones(order), faded])
     sums = curve @ (np.column_stack([np.zeros(len(faded)), np.tile(faded, 2)]) * weights).T
-    low, high = sums.min(axis=0), sums.max(axis=0)
-    half = (high - low) / 2
-    missed = 2 * float(np.abs(half[-1] - half).max())
+    half, middle, by_number = _half_range(sums)
     rounded = WITHIN_STEP * per_harmonic * np.sqrt(1 + np.count_nonzero(is_kept))
     by_noise = WITHIN_STEP * spread * np.sqrt(np.count_nonzero(is_kept & (orders % 2 == 1)))
     # a third harmonic that the readings do not show may be as large as the second
     not_shown = 2 * float(size[1]) if order == 2 else 0.0
-    missed = float(np.linalg.norm([missed, rounded, by_noise, not_shown]))
-    common = _Shape(half[-1], (high[-1] + low[-1]) / 2, missed)
+    missed = float(np.linalg.norm([by_number, rounded, by_noise, not_shown]))
+    rest = wave - of_wave[0] - design @ (np.append(0.0, np.tile(faded[-1], 2)) * weights)
+    bins, of_bins = _beside_harmonics(read, rest, n_phases, rounding / usual)
+    beside = np.zeros((bins.shape[0], 1))
+    if of_bins and by_number > max(_NOT_SETTLED, of_bins):
+        of_readings = _half_range(sums[:, -1:] + bins)
+        # bins of half the width would change it as much again
+        may_miss = float(np.hypot(2 * of_readings[2], of_bins))
+        if may_miss < missed or abs(of_readings[0] - half) > missed / 2:
+            half, middle, missed = *of_readings[:2], may_miss
+            beside = bins[:, -1:]
+    common = _Shape(half, middle, missed)
     # the shape may change with the specimen; growth between neighbours alters it as well
     step = np.fmax(np.abs(before), np.abs(after)) / amplitude
     some = _spread(np.flatnonzero(step < _OF_ONE_WAVE)[1:-1])
     if not some.size:
         return common
     phases, waves = zip(*map(wave_of, some.tolist()), strict=True)
-    own, error = _own_harmonics(phases, waves, of_wave, rounding=rounding / middle)
+    own, error = _own_harmonics(phases, waves, of_wave, rounding=rounding / usual)
     if not own.size:
         return common
     of_cycle = np.repeat(weights[:, None], some.size, axis=1)
     changing = np.arange(2, own.shape[0] // 2 + 2)
     of_cycle[np.concatenate([changing, order + changing])] += own
-    sums = curve @ (np.append(0.0, np.tile(faded[-1], 2))[:, None] * of_cycle)
+    sums = curve @ (np.append(0.0, np.tile(faded[-1], 2))[:, None] * of_cycle) + beside
     low, high = sums.min(axis=0), sums.max(axis=0)
     number = np.arange(cycles.n_cycles)
     return _Shape(
@@ -614,6 +622,53 @@ def _own_harmonics(
 
 
 _READINGS_OF_ONE = 8  # of a cycle, for each of its own harmonics
+
+
+def _half_range(curves: Floats) -> tuple[float, float, float]:
+    """Half range and middle of the last of some curves, and twice how far the others differ."""
+    low, high = curves.min(axis=0), curves.max(axis=0)
+    half = (high - low) / 2
+    missed = 2 * float(np.abs(half[-1] - half).max())
+    return float(half[-1]), float(high[-1] + low[-1]) / 2, missed
+
+
+_NOT_SETTLED = 0.01  # of an amplitude: what more harmonics change
+
+_OF_BIN = 4  # readings
+
+_MOST_BINS = 360
+
+_SHOWN = 5.0  # standard errors of the mean of a bin
+
+
+def _beside_harmonics(
+    place: Floats, rest: Floats, n_phases: float, rounding: float
+) -> tuple[Floats, float]:
+    """Means of readings less their harmonics in bins of a cycle, and the width of what they hide.
+
+    A load that turns at once, as of friction, is not a sum of few harmonics: they overshoot beside
+    the turn, where the readings are.  Two columns over the places of `_shape_of_wave`, of bins of
+    twice the width and of single ones; zero, with no width, where no bin differs from the harmonics
+    by more than chance.
+    """
+    curve, width = np.zeros((721, 2)), 0.0
+    n_bins = int(min(rest.size // _OF_BIN, _MOST_BINS, n_phases / 2)) // 2 * 2
+    for column, n in enumerate((n_bins // 2, n_bins)):
+        if n < _MOST_HARMONICS:
+            return np.zeros((721, 2)), 0.0
+        number = np.minimum((place * n).astype(int), n - 1)
+        count = np.maximum(np.bincount(number, minlength=n), 1)
+        mean = np.bincount(number, rest, n) / count
+        scatter = np.bincount(number, (rest - mean[number]) ** 2, n) / np.maximum(count - 1, 1)
+        error = np.sqrt(np.median(scatter) / count + rounding**2)
+        is_shown = np.abs(mean) > _SHOWN * error
+        # what a bin does not show may be anything up to that
+        width = WITHIN_STEP * _SHOWN / np.sqrt(3) * float(np.median(error)) * is_shown.any()
+        middles = (np.arange(n) + 0.5) / n
+        curve[:, column] = np.interp(
+            np.linspace(0, 1, 721), middles, np.where(is_shown, mean, 0.0), period=1
+        )
+    return curve, width
 
 
 _IRREGULAR = 0.03  # median change of amplitude from one cycle to the next
