@@ -10,7 +10,7 @@ from reduction.record.settings import CycleSettings, PhaseSettings, ReductionSet
 from reduction.stages.cycles.cycle_product import Cycles
 from reduction.stages.cycles.cycle_search import find_cycles
 from reduction.stages.cycles.loops import close_loops
-from reduction.stages.cycles.periods import change_of_period, own_periods
+from reduction.stages.cycles.periods import change_of_period, own_periods, periods_alone
 from reduction.stages.standstills import find_standstills
 
 
@@ -135,3 +135,25 @@ def test_each_cycle_of_a_log_with_three_speeds_has_its_own_period():
     period, spread = own_periods(time, wave, cycles, time[end] - time[begin], noise=1e-6)
     assert np.abs(period - own).max() < 0.1
     assert np.all((spread > 0.005) & (spread < 0.05))
+
+
+@pytest.mark.parametrize("creep", [0.0, 0.03])
+@pytest.mark.parametrize("is_sine", [False, True])
+def test_the_count_of_cycles_stored_one_by_one_shows_their_period(is_sine, creep):
+    """Both ends of each are stored; what creeps in a cycle is not a part of the next one."""
+    number = np.array([20, 30, 40, 90, 100, 200])
+    turn = np.concatenate([one + np.arange(51) / 50 for one in number])
+    wave = 1 - np.cos(2 * np.pi * turn) + 0.2 * np.sin(4 * np.pi * turn) + creep * (turn % 1)
+    first = np.arange(6) * 51
+    last = first + 50
+    peak = first + np.array([int(wave[one : one + 51].argmax()) for one in first])
+    begin, end = np.column_stack([first, peak]), np.column_stack([peak, last])
+    none = np.zeros(turn.size, np.int32)
+    cycles = Cycles(
+        first, last, begin, end, np.ones((6, 2)), none, none.astype(np.int8), none.astype(bool),
+        0.1, counted_by="machine counter", count=number,
+    )  # fmt: skip
+    place, period, spread = periods_alone(turn / 2, wave, cycles, is_sine=is_sine, noise=0.0)
+    np.testing.assert_array_equal(place, np.arange(6))
+    np.testing.assert_allclose(period, 0.5, rtol=1e-9)
+    assert (spread <= 0.01 / np.sqrt(12) / 9).all()

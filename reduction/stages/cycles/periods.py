@@ -177,7 +177,8 @@ def periods_alone(
     -----
     The last reading of a stored cycle is up to a sample before its end, the first up to one
     after its beginning.  The levels of ramps show the difference d of the two distances: their sum
-    is between d and two samples less d.
+    is between d and two samples less d.  A machine that counts its cycles, and has run on from one
+    that is stored to the next, shows the period by their number and their time.
 
     Examples
     --------
@@ -210,11 +211,15 @@ def periods_alone(
     is_cut |= is_last & (is_cut.any() | is_alone(cycles, time.size))
     place = np.flatnonzero(~touch & ~np.append(touch[1:], False) & is_cut)
     period, spread = np.empty((2, place.size))
+    counted, n_counted = _periods_by_count(time, cycles)
     for row, one in enumerate(place.tolist()):
         begin, peak, end = cycles.first[one], cycles.branch_last[one, 0], cycles.last[one]
         at, level = time[begin : end + 1] - time[begin], driven[begin : end + 1]
         known = np.isfinite(level)
         duration, step = at[-1], steps[one]
+        if -step / 2 < counted[one] - duration < _OF_STEPS * step:
+            period[row], spread[row] = counted[one], step / np.sqrt(12) / n_counted[one]
+            continue
         if is_sine:
             period[row], spread[row] = _fitted_period(at[known], level[known], duration)
             if abs(period[row] - duration - step / 2) < _OF_STEPS * step:
@@ -228,6 +233,16 @@ def periods_alone(
         period[row] = duration + step
         spread[row] = np.hypot((step - extra) / np.sqrt(3), noise / speed if speed > 0 else step)
     return place, period, spread
+
+
+def _periods_by_count(time: Floats, cycles: Cycles) -> tuple[Floats, Integers]:
+    """Time from each cycle to the next one stored, over their distance in the machine's count."""
+    if cycles.count is None or not cycles.is_count_sure or cycles.n_cycles < 2:
+        return np.full(cycles.n_cycles, np.nan), np.ones(cycles.n_cycles, dtype=np.intp)
+    begins, n_between = take_samples(time, cycles.first), np.diff(cycles.count)
+    # the last one has the period of the one before it
+    pairs = np.append(np.arange(n_between.size), n_between.size - 1)
+    return (np.diff(begins) / n_between)[pairs], n_between[pairs]
 
 
 def _fitted_period(at: Floats, level: Floats, period: float) -> tuple[float, float]:
