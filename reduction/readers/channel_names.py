@@ -43,8 +43,8 @@ _FORCE = (
 )
 
 _LENGTH = (
-    r"\bweg\b|weg$|extension|displace?ment|\bdisp\b|^disp|verschiebung|d[eé]placement|chemin|"
-    r"\bcourse\b|desplazamiento|carrera|recorrido|corsa|spostamento|verplaatsing|位移|變位|変位|"
+    r"\bweg\b|weg$|extensi[oó]n|displace?ment|\bdisp\b|^disp|verschiebung|d[eé]placement|chemin|"
+    r"\bcourse\b|przemieszczenie|desplazamiento|carrera|recorrido|corsa|spostamento|verplaatsing|位移|變位|変位|"
     r"变形|変形|변위|перемещение"
 )
 
@@ -235,6 +235,8 @@ def _candidates(key: str, columns: Sequence[SeenColumn]) -> list[tuple[SeenColum
             plain = _plain(column.name)
             if not re.search(pattern, plain) or re.search(rf"\b({barred})\b", plain):
                 continue
+            if key == "strain" and _is_of_travel(column.name):
+                continue
             unit = _unit(column, dimension)
             if unit == UNKNOWN and (
                 (pattern == _ELONGATION and key == "crosshead_position")
@@ -253,6 +255,13 @@ def _candidates(key: str, columns: Sequence[SeenColumn]) -> list[tuple[SeenColum
     for _, column, unit in found:
         best.setdefault(column.number, (column, unit))
     return list(best.values())
+
+
+def _is_of_travel(name: str) -> bool:
+    """Whether a strain is one that the machine calculates: ``Tensile strain (Extension)``."""
+    return any(
+        re.search(_LENGTH, text.lower()) for text in re.findall(r"\((.*?)\)", _one_width(name))
+    )
 
 
 def _is_of_force(plain: str) -> bool:

@@ -373,6 +373,22 @@ def test_comments_of_labview_are_kept_and_are_no_fields(tmp_path):
     assert said == {"start of part 0": "50.0 N/V", "start of part 5": "50.0 N/V"}
 
 
+@pytest.mark.parametrize(
+    "name",
+    ["Tensile strain (Extension)", "压缩应变 (位移)", "Deformación por tracción (Extensión)"],
+)
+def test_a_strain_that_the_machine_calculates_from_its_travel_is_no_extensometer(tmp_path, name):
+    def log(*names):
+        rows = table([TIME, TRAVEL, LOAD, TRAVEL / 100, TRAVEL / 120][: len(names)])
+        units = ["s", "mm", "N", "mm/mm", "mm/mm"][: len(names)]
+        return f"{','.join(names)}\n({'),('.join(units)})\n{rows}".encode()
+
+    _, layout = draft(tmp_path, "log.csv", log("Time", "Extension", "Load", name))
+    assert "strain" not in layout["channels"]
+    _, layout = draft(tmp_path, "log.csv", log("Time", "Extension", "Load", name, "Strain 1"))
+    assert layout["channels"]["strain"]["1"]["column"] == "Strain 1"
+
+
 def test_columns_without_names_that_rise_may_be_times_of_channels(tmp_path):
     t = np.cumsum(np.full(40, 0.1))
     wave, load = np.sin(t), np.cos(t)
