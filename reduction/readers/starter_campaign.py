@@ -253,7 +253,7 @@ def _texts(folder: Path, logs: list[_Log], marks: list[str], refused: list[str])
         rows.append((_slug(name), log))
     # with one log, its specimens cannot have been in another one
     alone = [f"specimen-{i + 1}" for i in range(logs[0].n_specimens)] if len(logs) == 1 else []
-    has_strain = any(key.startswith("strain.") for log in logs for key in log.sniffed.keys)
+    has_strain = bool(logs) and all("strain.1" in log.sniffed.keys for log in logs)
     lines = [
         "# A first draft. Replace every ?, check every line, then: reduction check campaign.toml",
         "",

@@ -389,6 +389,15 @@ def test_a_strain_that_the_machine_calculates_from_its_travel_is_no_extensometer
     assert layout["channels"]["strain"]["1"]["column"] == "Strain 1"
 
 
+def test_a_gauge_length_is_asked_for_where_any_log_has_no_strain(tmp_path):
+    names, columns = "Time (s),Extension (mm),Load (N)", [TIME, TRAVEL, LOAD]
+    with_strain = f"{names},Strain 1 (mm/mm)\n" + table([*columns, TRAVEL / 100])
+    (tmp_path / "a.csv").write_text(with_strain, "utf-8")
+    assert 'gauge_length = "?"' not in starter_campaign(tmp_path)["campaign.toml"]
+    (tmp_path / "b.csv").write_text(f"{names}\n" + table(columns), "utf-8")
+    assert 'gauge_length = "?"' in starter_campaign(tmp_path)["campaign.toml"]
+
+
 def test_columns_without_names_that_rise_may_be_times_of_channels(tmp_path):
     t = np.cumsum(np.full(40, 0.1))
     wave, load = np.sin(t), np.cos(t)
