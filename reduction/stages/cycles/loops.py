@@ -582,7 +582,8 @@ def _shape_of_wave(
 def _spread(cycles: Integers) -> Integers:
     """At most a hundred cycles, evenly spread."""
     at = np.linspace(0, cycles.size - 1, min(cycles.size, _CYCLES_OF_SHAPE))
-    return cycles[np.unique(at.astype(int))]
+    found: Integers = cycles[np.unique(at.astype(int))]
+    return found
 
 
 def _own_harmonics(

@@ -13,6 +13,7 @@ References
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import sqrt
 
 import numpy as np
 
@@ -129,7 +130,7 @@ def time_to_stop(time: Floats, place: Floats, *, held_at: float) -> float:
     if left <= 0 or abs(speed) >= _SLOWS * abs(mean):
         return 0.0
     # t squared / 2 is left of the stroke, and t plus half of the steps is their mean speed
-    return left + (left**2 + left * lasted) ** 0.5
+    return left + sqrt(left**2 + left * lasted)
 
 
 @dataclass(frozen=True)
