@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
+from types import ModuleType
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -477,12 +479,9 @@ def look_up_values(source: str, wanted: LookupRequest, *, output: CommandOutput)
         line, wanted.quantity, branch=wanted.branch, extrapolate=wanted.extrapolate, **points
     )
     _show(line, found, points, output)
-    files: list[str] = []
-    if wanted.out is not None and form is not None:
-        # imports xarray, which output to the screen does not need
-        from reduction.lines.export_tables import table_of_values
-
-        files = _write_table(table_of_values(line, found, points), wanted.out, form, output)
+    files = _write_table(
+        lambda tables: tables.table_of_values(line, found, points), wanted.out, form, output
+    )
     output.answer(_document(line, found, points, grid=wanted.grid) | {"files": files})
 
 
@@ -507,16 +506,11 @@ def look_up_population(
     if output.is_text:
         output.show(_population_table(kind, found, points[0], unit, factor, output.system))
     _said_of_lines(output, (kind, values))
-    files: list[str] = []
-    if wanted.out is not None and form is not None:
-        from reduction.lines.export_tables import table_of_population
-
-        files = _write_table(table_of_population(kind, found, points[0]), wanted.out, form, output)
-
-    def of(numbers: Any) -> Any:
-        shaped = np.atleast_1d(numbers).ravel()
-        return plain(shaped if wanted.grid else shaped[0])
-
+    files = _write_table(
+        lambda tables: tables.table_of_population(kind, found, points[0]),
+        wanted.out, form, output,
+    )  # fmt: skip
+    of = partial(_at_points, is_grid=wanted.grid)
     output.answer(
         _document(kind, values, points[0], grid=wanted.grid)
         | {
@@ -693,11 +687,20 @@ def _form_of(out: Path | None) -> str | None:
     return format_of_file(out)
 
 
-def _write_table(table: ValueTable, out: Path, form: str, output: CommandOutput) -> list[str]:
-    """Write the table of an answer, and report it."""
+def _write_table(
+    make: Callable[[ModuleType], ValueTable],
+    out: Path | None,
+    form: str | None,
+    output: CommandOutput,
+) -> list[str]:
+    """Write the table of an answer where a file is asked for, and report it."""
+    if out is None or form is None:
+        return []
+    # they import xarray, which output to the screen does not need
+    from reduction.lines import export_tables
     from reduction.lines.deck_formats import export_table
 
-    paths = export_table(table, form, out, units=output.system)
+    paths = export_table(make(export_tables), form, out, units=output.system)
     for path in paths:
         output.say(f"written: {path}")
     return [str(path) for path in paths]
@@ -939,10 +942,7 @@ def _document(
     line: LineSource, found: DesignValues, points: Mapping[str, Floats], *, grid: bool
 ) -> dict[str, Any]:
     """Output of ``--json`` in SI: numbers for a single point, lists for a grid."""
-
-    def of(values: Any) -> Any:
-        return _at_points(values, is_grid=grid)
-
+    of = partial(_at_points, is_grid=grid)
     return {
         "line": line.name,
         "quantity": found.quantity,
@@ -1038,12 +1038,10 @@ def look_up_against(
         found = replace(found, notes=(*pair.notes, *found.notes))
         output.say(pair.notes[0] + "; " + pair.notes[1])
     _show_difference(first, second, found, points, others, output)
-    files: list[str] = []
-    if wanted.out is not None and form is not None:
-        from reduction.lines.export_tables import table_of_difference
-
-        table = table_of_difference(first, second, found, points, others)
-        files = _write_table(table, wanted.out, form, output)
+    files = _write_table(
+        lambda tables: tables.table_of_difference(first, second, found, points, others),
+        wanted.out, form, output,
+    )  # fmt: skip
     document = _difference_document(first, second, found, points, others, grid=wanted.grid)
     output.answer(document | {"files": files})
 
@@ -1181,9 +1179,7 @@ def _difference_document(
     grid: bool,
 ) -> dict[str, Any]:
     """Output of ``--json`` in SI: numbers for a single point, lists for a grid."""
-
-    def of(values: Any) -> Any:
-        return _at_points(values, is_grid=grid)
+    of = partial(_at_points, is_grid=grid)
 
     def side(line: LineSource, one: DesignValues, at: Mapping[str, Floats]) -> dict[str, Any]:
         return {
