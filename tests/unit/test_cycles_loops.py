@@ -2282,3 +2282,23 @@ def test_friction_that_turns_at_once_has_the_range_of_its_readings(readings, noi
     spread = found.uncertainty["apparent_spring_constant"][0]
     assert abs(found.apparent_spring_constant[0] - true) < 2 * spread
     assert spread < 4.5 / readings * true
+
+
+def test_the_first_of_ramps_that_grow_is_measured_from_its_valley():
+    # from a valley of 0.3 to peaks that rise by 0.05 each, after a ramp to the first valley
+    peaks = 0.6 + 0.05 * np.arange(8)
+    knots = np.append(np.column_stack([np.full(8, 0.3), peaks]).ravel(), 0.3)
+    turns = np.append(0.0, np.cumsum(np.abs(np.diff(knots)))) / 0.05
+    time = np.arange(0, turns[-1], 0.0931)
+    strain = np.interp(time, turns, knots)
+    at = np.searchsorted(time, turns)
+    at[-1] = time.size - 1
+    first, peak, last = at[:-1:2], at[1::2], at[2::2]
+    cycles = Cycles(
+        first, last, np.stack([first, peak], axis=1), np.stack([peak, last], axis=1),
+        np.ones((8, 2)), np.zeros(time.size, np.int32), np.zeros(time.size, np.int8),
+        np.zeros(time.size, bool), 0.1,
+    )  # fmt: skip
+    loops = close_loops(time, 500 * strain[None], strain[None], cycles)
+    assert loops.strain_amplitude[0] == pytest.approx((peaks - 0.3) / 2, rel=0.02)
+    assert loops.apparent_spring_constant[0] == pytest.approx(500, rel=1e-3)

@@ -582,8 +582,8 @@ def _shape_of_wave(
 def _spread(cycles: Integers) -> Integers:
     """At most a hundred cycles, evenly spread."""
     at = np.linspace(0, cycles.size - 1, min(cycles.size, _CYCLES_OF_SHAPE))
-    found: Integers = cycles[np.unique(at.astype(int))]
-    return found
+    chosen: Integers = cycles[np.unique(at.astype(int))]
+    return chosen
 
 
 def _own_harmonics(
@@ -809,6 +809,9 @@ def _levels_of_sine(
     return tension._replace(peak=row["peak"], valley=row["valley"]), strain
 
 
+_GROWS = 0.01  # of the range of a cycle
+
+
 def _levels_of_ramps(
     row: Mapping[str, Floats],
     drifts: _Drifts,
@@ -823,18 +826,25 @@ def _levels_of_ramps(
     is_apart = ~(follows | np.append(follows[1:], False))
     on_rise, on_fall = counted_on_flanks(cycles)
     is_by_fall, levels = np.isfinite(drifts.on_fall), []
+    # where the strokes of a machine grow, its valleys do not drift as its means do
+    driven, of_driven = ("force", drifts.tension) if is_load else ("strain", drifts.strain)
+    foot = row[f"{driven}_end_turn"]
+    of_feet = np.append(np.where(follows[1:], np.diff(foot), np.nan), np.nan)
+    grows = ~follows & (np.abs(of_feet - of_driven) > _GROWS * np.abs(row[f"{driven}_top"] - foot))
     for place, (name, drift) in enumerate((("force", drifts.tension), ("strain", drifts.strain))):
         answers = place == int(is_load)
         top, begin, end = (row[f"{name}_{turn}"] for turn in ("top", "begin", "end_turn"))
         missed = row[f"{name}_missed"]
         if is_parted:  # the drift may all take place on one way between the turns
             missed = np.hypot(missed, EITHER_WAY * np.abs(drift) / 4)
+        # the drift of a first cycle beyond its neighbours is not part of its wave
+        drift = drifts.of_neighbours if answers else drift
+        drift = np.where(grows, np.append(np.diff(end), np.nan), drift)
         mean, amplitude = _mean_and_amplitude(
             top,
             begin,
             end,
-            # the drift of a first cycle beyond its neighbours is not part of its wave
-            drifts.of_neighbours if answers else drift,
+            drift,
             rise_shares[place],
             follows & ~ends_alone,
             (on_rise & is_apart, on_fall & is_apart),
