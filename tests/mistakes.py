@@ -1155,6 +1155,10 @@ add("rope-experiment-load-in-n", R, "statement", "The loads were logged in newto
     say((*LOAD, "mean_tension", "mean tension"), ("unit", *N, "factor", "gain"), EXPERIMENT), bare, do(scale, LOADS[R], 4.44822, "{:.2f}"), keep=ALL)
 add("rope-experiment-lbf-declared-n", R, "statement", "The loads are in pounds-force and declared N, which the header does not contradict: mean and amplitude are 0.22 of the plan.",
     say((*LOAD, "mean_tension", "mean tension"), ("unit", *LBF, "factor", "gain"), EXPERIMENT), bare, do(declare, "tension.1", "lbf", "N"), keep=ALL)
+add("rope-gain-of-extensometer-one-run", R, "data", "The extensometer was at another range in R04 alone, by a factor of 1.27.",
+    say("extensometer", ("times", "factor", "ratio"), ("other", "r04")),
+    lambda folder: each(folder, lambda log: log.map("extensometer_pct", lambda v: 1.27 * v), ("R04",)),
+    keep=("R02", "R04", "R06", "R13", "Q01"))
 add("rope-experiment-gain-2", R, "statement", "The load amplifier was set to double gain: mean and amplitude are twice the plan.",
     say((*LOAD, "mean_tension", "mean tension"), ("factor", "gain", "unit", "break", "ratio", "times"), EXPERIMENT), do(scale, ("load_lbf",), 2.0, "{:.2f}"), keep=ALL)
 AMP = ("tension_amplitude", "amplitude")

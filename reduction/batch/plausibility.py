@@ -49,6 +49,9 @@ _AT_SLACK = 0.03  # strain from the extensometer
 
 _STROKE = 1.5  # ratio of extensometer strain to strain from the stroke
 
+# the same ratio in the tests of one specimen: how much they differ, and a test from the others
+_ONE_RATIO, _OTHER_RATIO = 1.1, 1.15
+
 _JUMP = 1.85  # ratio of peak tension over peak strain, between similar tests of one specimen
 
 _JUMP_OF_KINDS = 2.5  # the same between a slow pull and cycles
@@ -126,7 +129,10 @@ def implausible(
         notes += _of_statements(campaign, survey, models)
         notes += _of_columns(campaign, survey)
         notes += _of_absent(campaign, survey)
-    for test, one in (*_of_pairs(campaign, read, models), *_of_swapped(read), *_of_dates(read)):
+    for test, one in (
+        *_of_pairs(campaign, read, models), *_of_swapped(read), *_of_dates(read),
+        *_of_extensometers(read, models),
+    ):  # fmt: skip
         found[test].append(one)
     for plan in campaign.experiments.values():
         for test, one in _off_plan(campaign, plan, read):
@@ -457,6 +463,29 @@ def _of_length(
         if not 1 / _STROKE <= ratio <= _STROKE:
             yield note("extensometer-against-stroke", name, ratio=ratio,
                        like=words_of_ratio(abs(ratio)))  # fmt: skip
+
+
+def _of_extensometers(surveys: Sequence[Survey], models: Models) -> Iterator[tuple[str, Note]]:
+    """Find tests whose extensometer goes with the stroke as in no other test of the specimen."""
+    slopes: dict[tuple[str, str], list[tuple[str, float]]] = {}
+    for survey in surveys:
+        for index, name in enumerate(survey.plan.specimens):
+            model = models.get((survey.plan.id, name))
+            if survey.levels is None or model is None or model.method != "extensometer":
+                continue
+            slope = float(survey.levels.strain_per_length[index])
+            if slope > 0:
+                slopes.setdefault((name, survey.plan.kind), []).append((survey.plan.id, slope))
+    for (name, _), rows in slopes.items():
+        of_tests = np.array([slope for _, slope in rows])
+        for place, (test, slope) in enumerate(rows):
+            others = np.delete(of_tests, place)
+            if others.size < _FEWEST_LIKE or others.max() > _ONE_RATIO * others.min():
+                continue
+            ratio = slope / float(np.median(others))
+            if not 1 / _OTHER_RATIO <= ratio <= _OTHER_RATIO:
+                yield test, note("extensometer-unlike-others", name, ratio=ratio,
+                                 n_others=others.size, like=words_of_ratio(ratio))  # fmt: skip
 
 
 def _of_columns(campaign: Campaign, survey: Survey) -> Iterator[Note]:

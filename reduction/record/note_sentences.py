@@ -2020,6 +2020,14 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             f"{_is_like(like)}. Check the gauge length, its unit and the unit of position"
         ),
     ),
+    "extensometer-unlike-others": (
+        "warning",
+        lambda ratio, n_others, like: (
+            f"for one stroke, its extensometer shows {ratio:.3g} times the strain of the other"
+            f" {n_others} tests of the specimen{_is_like(like)}. Check its range (gain), its gauge"
+            " length, and whether it or a grip slipped in this test"
+        ),
+    ),
     "extensometer-against-stroke": (
         "warning",
         lambda ratio, like: (
@@ -2195,7 +2203,7 @@ CAUSES = (
     "reference-length-elsewhere", "tension-far-below-strength", "extensometer-late",
     "extensometer-ends", "position-ends", "load-in-steps",
     "tape-off-crosshead", "marks-alike", "splices-unlike", "loops-run-backward",
-    "extensometer-against-stroke", "gauge-against-length",
+    "extensometer-against-stroke", "extensometer-unlike-others", "gauge-against-length",
     "modulus-outside-band", "strength-outside-band", "tension-above-strength", "stiffness-jumps",
     "stiffness-off-others", "peak-off-others", "run-off-plan", "mean-tension-ramps",
     "cord-stress-outside-band",
