@@ -205,6 +205,8 @@ def _seen_columns(table: _TableShape, decimal: str, thousands: str = "") -> list
 
 _HEAD = 1 << 18
 
+_TAIL = 1 << 14
+
 _LINES = 20_000  # lines examined
 
 _DELIMITERS = ("\t", ";", ",", "|", " ")
@@ -371,11 +373,26 @@ def _number_settings(
     return settings, remarks
 
 
+def _number_rows(
+    lines: Sequence[str], table: _TableShape, delimiter: str, decimal: str
+) -> list[tuple[str, ...]]:
+    """Rows at the end of a long log that have numbers alone: time may pass 1,000 there first."""
+
+    def is_plain(text: str) -> bool:
+        is_known = not text or _is_number(text, decimal) or _is_time(text)
+        return is_known or _THOUSANDS[decimal].fullmatch(text) is not None
+
+    rows = _split(lines, delimiter)
+    return [tuple(row) for row in rows if len(row) == table.n_fields and all(map(is_plain, row))]
+
+
 def _look_at_text(path: Path) -> _SeenTable:
-    """Find the table in a text file from its first 256 kB."""
+    """Find the table in a text file from its first 256 kB, and thousands marks also in its end."""
     with path.open("rb") as stream:
         head = stream.read(_HEAD)
         is_whole = not stream.read(1)
+        stream.seek(-min(_TAIL, stream.seek(0, 2)), 2)
+        tail = stream.read()
     text, encoding, remark = _decode(path, head)
     lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
     lines = (lines if is_whole else lines[:-1])[:_LINES]
@@ -389,7 +406,11 @@ def _look_at_text(path: Path) -> _SeenTable:
     delimiter, decimal, table = found
     settings: dict[str, object] = {"delimiter": delimiter, "decimal": decimal, "encoding": encoding}
     remarks = [remark, f"sure: delimiter {delimiter!r}, {table.n_fields} fields a row"]
-    more, more_remarks = _number_settings(table, delimiter, decimal)
+    end = [] if is_whole else tail.decode(encoding, errors="ignore").splitlines()[1:]
+    more, more_remarks = _number_settings(
+        replace(table, rows=(*table.rows, *_number_rows(end, table, delimiter, decimal))),
+        delimiter, decimal,
+    )  # fmt: skip
     remarks += more_remarks
     columns = _seen_columns(table, decimal, str(more.get("thousands", "")))
     if comment:

@@ -398,6 +398,18 @@ def test_a_gauge_length_is_asked_for_where_any_log_has_no_strain(tmp_path):
     assert 'gauge_length = "?"' in starter_campaign(tmp_path)["campaign.toml"]
 
 
+def test_thousands_marks_are_found_at_the_end_of_a_long_log(tmp_path):
+    time = np.arange(0, 1100, 0.1)  # synthetic; more than the part that the draft reads
+    times = [f"{one:,.5f}" for one in time]
+    text = '"Time (s)","Extension (mm)","Load (N)"\n' + table(
+        [times, 5 * np.sin(time / 30), 60 * np.sin(time / 30)], quote='"', digits=5
+    )
+    _, layout = draft(tmp_path, "log.csv", text.encode())
+    assert layout["thousands"] == ","
+    _, layout = draft(tmp_path, "log.csv", text.replace('"1,', '"1').encode())
+    assert "thousands" not in layout
+
+
 def test_columns_without_names_that_rise_may_be_times_of_channels(tmp_path):
     t = np.cumsum(np.full(40, 0.1))
     wave, load = np.sin(t), np.cos(t)
