@@ -97,6 +97,25 @@ def test_a_sine_that_is_broken_off_before_the_drive_goes_to_slack_has_no_last_cy
     np.testing.assert_allclose(ends[-1], 9, atol=0.05)
 
 
+@pytest.mark.parametrize(("bends", "n_cycles"), [(0.0, 10), (0.4, 9)])
+def test_the_first_cycle_of_a_sine_joined_by_a_ramp_counts_if_its_rise_is_that_of_a_sine(
+    bends, n_cycles
+):
+    # from slack through the valley without a stop; or the machine gains on the first rise
+    step = np.arange(1000)
+    sine = 2 - np.cos(2 * np.pi * step / 100)
+    sine += bends * np.where(step < 50, np.sin(np.pi * step / 50), 0)
+    position = np.concatenate([np.zeros(60), np.linspace(0, 1, 80)[:-1], sine])
+    position += 1e-4 * np.random.default_rng(2).standard_normal(position.size)
+    time, tension = 0.1 * np.arange(position.size), 100 * position[None]
+    stands = find_standstills(time, position, tension, settings=PhaseSettings())
+    cycles = find_cycles(
+        time, position, tension, stands, settings=CycleSettings(waveform="sinusoidal")
+    )
+    assert cycles.n_cycles == n_cycles
+    assert cycles.first[0] == pytest.approx(139 + 100 * (10 - n_cycles), abs=3)
+
+
 @pytest.mark.parametrize(("n_cycles", "first"), [(7, 0), (8, 1)])
 def test_a_start_is_told_from_the_others_where_five_remain_beside_the_three_it_may_take(
     n_cycles, first

@@ -480,10 +480,8 @@ def _fit_ends(
             far, ranges[end] = int(nodes[end]), neighbour
             if not is_sinusoidal:
                 nodes[end] = _passing(values, nodes[turn], far, values[nodes[beside]])
-            elif side == 1:
+            else:
                 nodes[end] = _end_of_sine(values, nodes[[turn, beside]], far, tolerance)
-            else:  # where an approach joins a sine, its acceleration jumps
-                nodes[end] = nodes[turn]
         if is_sinusoidal and (
             nodes[end] == nodes[turn] or not _keeps_pace(time, nodes, end, turn, beside, at_edge)
         ):
@@ -538,7 +536,7 @@ def _passing(values: Floats, turn: int, end: int, level: float) -> int:
 
 
 def _end_of_sine(values: Floats, nodes: Indices, far: int, tolerance: float) -> int:
-    """Sample where a last half cycle that goes too far from a turn ends, by the one before it.
+    """Sample where a half cycle that goes too far from a turn ends, by the one beside it.
 
     The turn itself where the two are not mirror images beyond the middle of the stroke.
 
@@ -556,10 +554,11 @@ def _end_of_sine(values: Floats, nodes: Indices, far: int, tolerance: float) -> 
     turn, beside = (int(node) for node in nodes)
     stroke, middle = abs(values[turn] - values[beside]), (values[turn] + values[beside]) / 2
     own, other = (_passing(values, turn, end, middle) for end in (far, beside))
-    image = np.arange(other, beside - 1, -1)
-    at = np.minimum(own + other - image, values.size - 1)
+    step = 1 if beside > turn else -1
+    image = np.arange(other, beside + step, step)
+    at = np.clip(own + other - image, 0, values.size - 1)
     # each passes the middle up to half a sample from the one that is taken
-    allowed = max(_SHORT * stroke, 2 * stroke / (turn - beside), tolerance)
+    allowed = max(_SHORT * stroke, 2 * stroke / abs(turn - beside), tolerance)
     apart = np.abs(values[at] - values[image])
     return turn if (apart > allowed).any() else int(at[-1])
 
@@ -666,7 +665,7 @@ def find_half_cycles(
     range.  Between two reversals it is whole, except beside a move away: a sine that begins or
     ends at its mean has moved half a range there.
     In a sinusoidal test an end that takes 25 % more or less time is left out, as is one that goes
-    too far, unless it is the last and a mirror image of its neighbour (`_end_of_sine`).
+    too far, unless it is a mirror image of its neighbour (`_end_of_sine`).
     A wait at an end, too short for a standstill, is not part of the half cycle there
     (`reduction.stages.cycles.cycle_pairing._without_stands`).
 
