@@ -485,6 +485,8 @@ def _show_surfaces(
     output: CommandOutput,
 ) -> None:
     """Print each surface: its terms, analysis of variance and stationary point."""
+    wrong = tuple(map(str, outlying_runs(surfaces)))
+    output.say_each("warning", wrong)
     within = "" if surfaces.blocks is None else " within blocks"
     for index, name in enumerate(surfaces.response_names):
         transform = surfaces.transform[index]
@@ -511,7 +513,7 @@ def _show_surfaces(
         _show_stationary(surfaces, index, shown, runs, output)
         _show_equation(surfaces, index, shown, output)
         output.say("")
-    output.say_each("note", notes)
+    output.say_each("note", (one for one in notes if one not in wrong))
 
 
 def _show_between_runs(surfaces: ResponseSurfaces, index: int, output: CommandOutput) -> None:

@@ -901,6 +901,8 @@ def _written(values: Floats) -> Floats:
 
 _SAME = 1e-9
 
+_OVER_RATED = 1.5  # a rope breaks above its rated strength, but not so far
+
 _GREATEST_FILL = 1.02  # of the diameter: it and the wet mass (fresh water perhaps) are rounded
 
 _LEAST_FILL = 0.6  # of the diameter: a third of the area, where ropes fill two thirds
@@ -944,6 +946,18 @@ def guards_of(line: ExportLine) -> tuple[str, ...]:
     fibre, and no less than a third of it; densities of fibres as in [1]_.
     """
     words = [range_of(line)]
+    most = float(line.tension.max())
+    if most > _OVER_RATED * line.rated_break_strength:  # not so where none is stated
+        words.append(
+            f"DOUBTFUL: the curve goes to {most:.4g} N, above the break strength of"
+            f" {line.rated_break_strength:.4g} N: check its unit"
+        )
+    drag = line.hydrodynamics
+    if drag.axial_drag > drag.normal_drag:
+        words.append(
+            f"DOUBTFUL: the axial drag coefficient, {drag.axial_drag:g}, is above the transverse"
+            f" one, {drag.normal_drag:g}: --drag has the transverse one first"
+        )
     mass, diameter = line.linear_density, line.diameter
     if not (math.isfinite(mass) and math.isfinite(diameter)):
         return tuple(words)

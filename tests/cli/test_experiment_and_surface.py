@@ -225,6 +225,15 @@ def test_specimens_are_blocks_or_draws(fit):
     assert blocks["treatment"] == "random" and blocks["standard_deviation"] > 0
 
 
+def test_a_run_off_the_others_is_the_first_line(fit):
+    rows = table(UNITS).splitlines()
+    assert not fit("\n".join(rows), SPEC).stdout.startswith("warning")
+    cells = rows[13].split(",")  # a centre run, a digit too many
+    rows[13] = ",".join([*cells[:3], repr(10 * float(cells[3]))])
+    said = fit("\n".join(rows), SPEC).stdout
+    assert said.startswith("warning: run 13 ") and said.count("is off the surface") == 1
+
+
 def test_drift_over_the_order_is_told(fit):
     order = np.random.default_rng(5).permutation(15) + 1
     rows = table(UNITS + ",run_order", extra=lambda number: str(order[number])).splitlines()

@@ -9,6 +9,7 @@ from export_lines import line
 from reduction.lines.export_line import (
     LIFT,
     SEA_WATER,
+    Hydrodynamics,
     curve_from_zero,
     guards_of,
     range_of,
@@ -186,3 +187,19 @@ def test_a_name_is_written_without_accents_and_refused_where_no_sign_is_left():
     assert named.name == "\u7d22 \u4e00"
     with pytest.raises(SettingsError, match="no character that a mooring code accepts"):
         assert named.identifier
+
+
+@pytest.mark.parametrize(
+    ("changed", "said"),
+    [
+        ({"rated_break_strength": 80.0}, "above the break strength of 80 N"),  # kN
+        ({"rated_break_strength": 800.0}, ""),  # the curve goes to 900 N: ropes exceed their rating
+        ({"hydrodynamics": Hydrodynamics(0.02, 1.6, 1.0, 0.0, "stated")}, "transverse one first"),
+        ({"hydrodynamics": Hydrodynamics(2.4, 1.15, 1.0, 0.0, "a chain")}, ""),
+    ],
+)
+def test_a_strength_below_the_curve_and_drag_the_wrong_way_round_are_doubtful(changed, said):
+    made = line(**changed)
+    assert float(made.tension.max()) == pytest.approx(900 * (1.5 - 0.45 * 1.5**2 + 0.16 * 1.5**3))
+    doubts = [one for one in guards_of(made) if one.startswith("DOUBTFUL")]
+    assert len(doubts) == bool(said) and all(said in one for one in doubts)
