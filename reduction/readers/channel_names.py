@@ -39,7 +39,7 @@ _ELONGATION = (  # a position if stated in a unit of length, else a strain
 
 _FORCE = (
     r"load|force|tension|kraft|zuglast|^last$|weight|gewicht|effort|\bcharge\b|fuerza|\bcarga\b|"
-    r"forza|carico|kracht|siła|\bforc\b|^f$|力|荷重|载荷|載荷|负荷|負荷|하중|усилие|нагрузка|сила"
+    r"forza|carico|kracht|siła|obciążenie|\bforc\b|^f$|力|荷重|载荷|載荷|负荷|負荷|하중|усилие|нагрузка|сила"
 )
 
 _LENGTH = (
@@ -75,7 +75,7 @@ _NAMES: dict[str, tuple[Dimension, tuple[str, ...], str]] = {
     ),
     "strain": (
         "strain",
-        (r"strain|extensometer|d[eé]formation|deformaci[oó]n|应变|應變|ひずみ|歪|변형률|"
+        (r"strain|extensometer|odkształcenie|d[eé]formation|deformaci[oó]n|应变|應變|ひずみ|歪|변형률|"
          r"деформация|" + _ELONGATION,),
         _NOT_MEASURED + "|true",
     ),
@@ -93,7 +93,7 @@ _NAMES: dict[str, tuple[Dimension, tuple[str, ...], str]] = {
 FOREIGN_WORDS = re.compile(
     r"[時时]間|时间|시간|[位変變变]移|[変變变][位形]|변위|荷重|[试試][験驗验]|[载載负負]荷|[拉张張]?力|하중|"
     r"ストローク|ひずみ|伸[长長び]|毫米|время|перемещение|нагрузка|усилие|деформация|удлинение|"
-    r"prüf|länge|für\b|déplacement|force|é\w+\b|ó\w\b",
+    r"prüf|länge|für\b|déplacement|force|é\w+\b|ó\w\b|siła|obciążeni|odkształceni|prób[ek]",
     re.IGNORECASE,
 )
 """Words of logs that only the right character encoding decodes."""
@@ -590,6 +590,9 @@ class _Start:
         position = -self.position if self._sign("crosshead_position")[0] else self.position
         strain = self.strains[key]
         if not np.ptp(strain) > 0 or not np.corrcoef(position, strain)[0, 1] < _OPPOSED:
+            return "", []
+        # a clip gauge that is taken off in the test falls at once, and rises before
+        if np.median(np.diff(position) * np.diff(strain)) > 0:
             return "", []
         return ", sign = -1", [
             f"guess: sign of {key}: it falls as the position, with its own sign, rises"

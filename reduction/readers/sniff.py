@@ -260,7 +260,7 @@ def _decode(path: Path, head: bytes) -> tuple[str, str, str]:
     return texts["latin-1"], "latin-1", "guess: encoding latin-1, because it is not UTF-8"
 
 
-_ENCODINGS = ("latin-1", "cp1252", "gb18030", "cp932", "euc_kr", "big5", "cp1251")
+_ENCODINGS = ("latin-1", "cp1252", "gb18030", "cp932", "euc_kr", "big5", "cp1251", "cp1250")
 
 
 def _decoded(head: bytes, encoding: str) -> str | None:

@@ -80,6 +80,12 @@ TEXTS = {
     "Russian": (
         "Время, с;Перемещение, мм;Нагрузка, Н\n" + table([TIME, TRAVEL, LOAD], ";", ","), "cp1251",  # noqa: RUF001
     ),
+    "Bluehill, Polish": (
+        'Właściwości próbki : Długość;"25,00000";mm\n\n'
+        "Godzina;Przemieszczenie;Obciążenie;Odkształcenie 1\n(s);(mm);(N);(mm/mm)\n"
+        + table([TIME, TRAVEL, LOAD, TRAVEL / 25], ";", ",", quote='"', digits=5),
+        "cp1250",
+    ),
     "WaveMatrix": (
         '"Total Time (s)","Cycle Elapsed Time (s)","Total Cycles","Position(Linear:Position) (mm)",'
         '"Position(Linear:Digital Position) (mm)","Load(Linear:Load) (kN)",\n'
@@ -329,6 +335,23 @@ def test_a_strain_that_is_counted_in_compression_follows_the_sign_of_the_gap(tmp
     _, layout = draft(tmp_path, "log.csv", log.encode())
     assert layout["channels"]["crosshead_position"]["sign"] == -1
     assert layout["channels"]["strain"]["1"]["sign"] == -1
+
+
+def test_a_clip_gauge_that_is_taken_off_in_a_pull_keeps_its_sign(tmp_path):
+    travel = np.linspace(0, 5, 400)  # synthetic
+    gauge = np.where(travel < 3, travel / 100, -0.15)
+    text = "Time (s),Extension (mm),Load (N),Strain 1 (mm/mm)\n"
+    rows = table([np.arange(400) / 10, travel, 50 * travel, gauge])
+    _, layout = draft(tmp_path, "log.csv", (text + rows).encode())
+    assert "sign" not in layout["channels"]["strain"]["1"]
+
+
+def test_a_polish_log_keeps_its_letters_and_its_strain(tmp_path):
+    text, encoding = TEXTS["Bluehill, Polish"]
+    _, layout = draft(tmp_path, "log.csv", text.encode(encoding))
+    assert layout["encoding"] == "cp1250"
+    assert layout["channels"]["tension"]["1"]["column"] == "Obciążenie"
+    assert layout["channels"]["strain"]["1"]["column"] == "Odkształcenie 1"
 
 
 def test_a_position_far_above_its_travel_is_a_length(tmp_path):
