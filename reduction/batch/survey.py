@@ -436,7 +436,7 @@ def _jumps_of_length(
     measured, is_measured = whole.record.measured_strain, _is_measured(whole, campaign, plan)
     found = {}
     for index, (name, tension) in enumerate(zip(plan.specimens, whole.tension, strict=True)):
-        if campaign.specimens[name].can_push:
+        if campaign.specimens[name].can_push and not is_measured:
             continue
         length, what, unit = (
             (measured[index], f"the extensometer of {name}", "%")

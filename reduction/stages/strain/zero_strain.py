@@ -278,8 +278,10 @@ def jumps_of_length(
         if 4 * pull * abs(way) < reach * abs(pulled):
             # repeated readings stand still, and step, while the load moves
             answered += pulled / 2
+        # a wait may hide motion, but none by which a taut specimen loses half of its stretch
+        is_seen = waits[_BESIDE_JUMP - 1] <= _IN_STEP * np.median(waits) or -2 * size > reach
         if (
-            waits[_BESIDE_JUMP - 1] <= _IN_STEP * np.median(waits)
+            is_seen
             and abs(size - step[place]) < abs(step[place]) / 2
             and abs(answered) < _ANSWER * pull * abs(size) / reach
             and load[around].min() > slack_tension
