@@ -6,7 +6,6 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from reduction.stages.strain.zero_strain import jumps_of_length
 from reduction.archive.test_dataset import _sample_values
 from reduction.pipeline.cyclic_test import _compare_specimens, notes_on_jumps
 from reduction.pipeline.located_test import locate
@@ -19,6 +18,7 @@ from reduction.record.settings import CycleSettings, ReductionSettings
 from reduction.stages.moduli.modulus_product import ModulusCurves
 from reduction.stages.reduced_test import History, TestDescription
 from reduction.stages.strain.strain_model import StrainModel
+from reduction.stages.strain.zero_strain import jumps_of_length
 
 DIAMETER = 0.025
 SPIKE = 700
@@ -45,15 +45,6 @@ def reduced(specimen, load_cell=2.0, zero=1.0, preload=0.0):
     )
     settings = ReductionSettings()
     return reduce_test(
-
-
-@pytest.mark.parametrize(("taken_off", "n_jumps"), [(True, 1), (False, 0)])
-def test_an_extensometer_that_is_taken_off_while_the_machine_waits_is_a_jump(taken_off, n_jumps):
-    """The logger waits too, and the load relaxes by 4 % meanwhile; or the gauge stays on."""
-    time = np.append(np.arange(300) / 10, 60 + np.arange(200) / 10)
-    load = np.interp(time, [0, 29.9, 60, 80], [0, 7000, 6700, 7700])
-    strain = np.where(time < 45, load / 7000 * 0.04, -0.13 if taken_off else 0.0402)
-    assert len(jumps_of_length(time, strain, load, slack_tension=20.0)) == n_jumps
         locate(record, kind="quasi-static", settings=settings),
         description=TestDescription("c", "Q-1", "quasi-static", "position", "triangular", 1, {}),
         specimens=(specimen,),
@@ -414,3 +405,12 @@ def test_another_condition_before_the_campaign_is_an_unequal_history():
     assert told[0] == "ratio b/a: the conditions before the campaign differ: 'used' against 'new'"
     told = remarks(Specimen("a"), Specimen("b", condition="used"), equal)
     assert "'used' against not stated" in told[0]
+
+
+@pytest.mark.parametrize(("taken_off", "n_jumps"), [(True, 1), (False, 0)])
+def test_an_extensometer_that_is_taken_off_while_the_machine_waits_is_a_jump(taken_off, n_jumps):
+    """The logger waits too, and the load relaxes by 4 % meanwhile; or the gauge stays on."""
+    time = np.append(np.arange(300) / 10, 60 + np.arange(200) / 10)
+    load = np.interp(time, [0, 29.9, 60, 80], [0, 7000, 6700, 7700])
+    strain = np.where(time < 45, load / 7000 * 0.04, -0.13 if taken_off else 0.0402)
+    assert len(jumps_of_length(time, strain, load, slack_tension=20.0)) == n_jumps
