@@ -1047,12 +1047,6 @@ def predict_wave_load(
         inertia_coefficient=inertia_coefficient, current_velocity=abs(current_velocity),
         wind_velocity=abs(wind_velocity),
     )  # fmt: skip
-    if abs(described.length_mismatch) > _OTHER_LENGTH:
-        own = described.wave_length / (1 + described.length_mismatch)
-        notes.append(
-            note("wave-length-not-of-period", period=wave_period, own=own,
-                 stated=described.wave_length)
-        )  # fmt: skip
     slender = float(regime.diameter_to_length)
     if slender > GREATEST_DIAMETER_TO_LENGTH:
         notes.append(note("hose-scatters-wave", share=slender, most=GREATEST_DIAMETER_TO_LENGTH))
@@ -1097,8 +1091,6 @@ def predict_wave_load(
         notes=by_severity(notes),
     )
 
-
-_OTHER_LENGTH = 0.2  # a higher wave, or one by another theory, is longer by less
 
 # in SI: outside of these, a unit or a decimal place is more likely to be wrong
 _USUAL = {

@@ -1033,6 +1033,7 @@ _SECONDARY_CREST = 0.25
 _NEGLIGIBLE = 0.05  # ratio of second to first harmonic that the linear theory may neglect
 
 _LENGTH_TOLERANCE = 0.01  # of the given length relative to that from the period
+_OTHER_LENGTH = 0.2  # the same; a higher wave, or one by another theory, is longer by less
 
 
 @dataclass(frozen=True)
@@ -1157,7 +1158,13 @@ def describe_wave(
             "stokes-at-its-end", ursell=ursell, most=GREATEST_URSELL_NUMBER, share=surface,
             most_share=_SECONDARY_CREST,
         ): is_beyond and (asked or theory) in ("airy", "stokes"),
-        note("wave-length-off", off=mismatch): abs(mismatch) > _LENGTH_TOLERANCE,
+        note("wave-length-off", off=mismatch): (
+            _LENGTH_TOLERANCE < abs(mismatch) <= _OTHER_LENGTH
+        ),
+        note(
+            "wave-length-not-of-period", period=wave_period, own=length / (1 + mismatch),
+            stated=length,
+        ): abs(mismatch) > _OTHER_LENGTH,
     }  # fmt: skip
     return WaveTheory(
         theory=theory,
