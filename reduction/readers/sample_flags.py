@@ -326,6 +326,8 @@ def _find_lone_steps(
     array([120])
     >>> _find_lone_steps(tension, tension[np.newaxis], **given).size
     0
+    >>> _find_lone_steps(tension, np.roll(tension, 1)[np.newaxis], **given).size
+    0
     """
     reach = _usual_range(values)
     limit = max(factor * noise, _SHARE_OF_RANGE * reach)
@@ -338,7 +340,10 @@ def _find_lone_steps(
     step = step[_level_change(values, step) * np.sign(change) > _STAYS * np.abs(change)]
     for channel, its_noise in zip(beside, noise_beside, strict=True):
         its_limit = factor * float(its_noise)
-        step = step[~_stands_out(channel, step, its_limit)]
+        # channels that are read in turn show one step in neighbouring samples
+        beside_it = np.clip(step + np.array([[-1], [0], [1]]), 0, values.size - 2)
+        moves = np.stack([_stands_out(channel, at, its_limit) for at in beside_it])
+        step = step[~moves.any(axis=0)]
         # what its noise would hide does not show that it stood still
         change = np.abs(take_samples(values, step + 1) - take_samples(values, step))
         step = step[change * _usual_range(channel) > its_limit * reach]

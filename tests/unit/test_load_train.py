@@ -98,7 +98,8 @@ def test_tension_and_length_of_the_specimen_come_back(train, linear_density, mas
     rope = Specimen("rope", "rope", linear_density=linear_density)
     found = locate(record, kind="cyclic", settings=SETTINGS, specimens=(rope,))
     assert found.cycles.n_cycles >= 11
-    inside = found.cycles.cycle_number > 0
+    # the first cycle begins where the acceleration of the approach ends: between two readings
+    inside = found.cycles.cycle_number > 1
     assert np.abs(found.tension[0] - tension)[inside].max() < 0.002 * (400 + mass * 8)
     assert np.abs(found.position - length)[inside].max() < 1e-5
     assert np.array_equal(found.record.tension, found.tension)

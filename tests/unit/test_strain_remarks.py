@@ -40,6 +40,7 @@ def model(residual=(0.0,) * 6, *, method="marks", ratio=1.0, slack=1, **more):
         mark_position=np.concatenate([np.full(slack, 3.74), np.linspace(5.9, 7.3, n)]),
         mark_strain=np.concatenate([np.zeros(slack), np.linspace(0.76, 1.28, n)]),
         mark_strain_residual=np.concatenate([np.zeros(slack), residual]),
+        mark_tension=np.concatenate([np.zeros(slack), np.linspace(300, 500, n)]),
         strain_slope_ratio=ratio,
         **more,
     )
