@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -817,7 +817,7 @@ def _datum_notes(record: Record, piece: _Piece) -> tuple[Note, ...]:
         passes.append(part.start + np.flatnonzero(away[:-1] * away[1:] <= 0))
     before = np.concatenate(passes)
     if not before.size:
-        return ()
+        return tuple(_never_zero(record, zero, stated))
     begin, span = position[before], position[before] - position[before + 1]
     weight = np.divide(begin - zero, span, out=np.zeros_like(span), where=span != 0)
     notes = []
@@ -836,3 +836,20 @@ def _datum_notes(record: Record, piece: _Piece) -> tuple[Note, ...]:
             code = "reference-length-under-preload" if away[0] > 0 else "reference-length-elsewhere"
             notes.append(note(code, stated=stated, specimen=name, found=float(found[0])))
     return tuple(notes)
+
+
+_NO_SET = 0.2  # of a length: no rope or rubber is left longer by a fifth
+
+
+def _never_zero(record: Record, length: float, stated: float) -> Iterator[Note]:
+    """Say of specimens without load far from displacement zero that it was not set there."""
+    away = np.abs(record.crosshead_position - length)
+    if not np.isfinite(away).any():
+        return
+    nearest = int(np.nanargmin(away))
+    strain = float(record.crosshead_position[nearest]) / length - 1
+    for name, load in zip(record.specimens, record.tension, strict=True):
+        low, high = finite_extremes(load)
+        if strain > _NO_SET and abs(load[nearest] - stated) < _DATUM_SHARE * (high - low):
+            yield note("reference-length-never-read", specimen=name, strain=strain,
+                       displacement=strain * length, load=float(load[nearest]))  # fmt: skip

@@ -196,6 +196,14 @@ _OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "reference_length is stated at {stated:.4g} N, but where displacement is first zero the"
         " tension of {specimen} is {found:.4g} N",
     ),
+    "reference-length-never-read": (
+        "warning",
+        "displacement is never below {displacement:.4g} m, where {specimen} has a load of only"
+        " {load:.3g} N and would be stretched by {strain:.0%} of reference_length: displacement was"
+        " not set to zero at this length. State zero ="
+        ' "{displacement:.4g} m" of crosshead_position, or the length at displacement zero as'
+        " reference_length",
+    ),
     "reference-length-under-preload": (
         "warning",
         "reference_length is stated at {stated:.4g} N, but where displacement is first zero the"
@@ -2200,7 +2208,8 @@ CAUSES = (
     "cycles-in-other-kind", "cycles-unlike", "rate-not-as-stated", "level-not-as-stated",
     "load-never-falls", "load-zero-drifts", "load-zero-wrong", "load-negative",
     "load-steps", "load-falls-with-stretch", "pushed-in-cycles", "reference-length-under-preload",
-    "reference-length-elsewhere", "tension-far-below-strength", "extensometer-late",
+    "reference-length-elsewhere", "reference-length-never-read",
+    "tension-far-below-strength", "extensometer-late",
     "extensometer-ends", "position-ends", "load-in-steps",
     "tape-off-crosshead", "marks-alike", "splices-unlike", "loops-run-backward",
     "extensometer-against-stroke", "extensometer-unlike-others", "gauge-against-length",

@@ -147,6 +147,23 @@ def test_a_damper_that_pulls_and_pushes_at_displacement_zero_is_not_under_preloa
     assert "of used is" in found
 
 
+@pytest.mark.parametrize(("shift", "load", "is_told"), [
+    (9.0, 0.0, True),  # 9 ft without load beside a length of 12 ft
+    (9.0, 60.0, False),  # under load from the first reading on
+    (1.0, 0.0, False),  # as a set may leave it
+])  # fmt: skip
+def test_a_displacement_that_was_not_set_to_zero_is_told(shift, load, is_told):
+    stretch = np.abs(TIME % 10 - 5)
+    columns = {"crosshead_position": shift + stretch, "tension.1": load + 10 * stretch}
+    slack = channels(crosshead_position={"datum": "displacement", "reference_length": "12 ft"})
+    notes = convert((log(columns | {"tension.2": 60 + LOAD}), layout(slack))).notes
+    told = [one for one in notes if one.code == "reference-length-never-read"]
+    assert len(told) == is_told
+    if is_told:
+        assert told[0].numbers["strain"] == pytest.approx(0.75)
+        assert told[0].numbers["displacement"] == pytest.approx(9 * 0.3048)
+
+
 def test_a_displacement_that_is_never_zero_cannot_be_compared():
     declared = channels(crosshead_position={"datum": "displacement", "reference_length": "12 ft"})
     assert tuple(map(str, convert((log(), layout(declared))).notes)) == ()
