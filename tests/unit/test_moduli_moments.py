@@ -397,3 +397,24 @@ def test_curves_that_soften_are_put_on_the_mean_curve_in_proportion():
     expected = np.where(grid.centres < 1.25, 1000, 800) * share.mean()
     assert fits.slope[0, beside] == pytest.approx(expected[beside], rel=1e-3)
     assert np.sqrt(fits.slope_variance[0, beside]).max() < 2.0
+
+
+@pytest.mark.parametrize("n_left", [0, 3])
+def test_a_curve_that_a_gap_has_emptied_is_not_put_on_the_range_of_those_that_soften(n_left):
+    """Each curve 1 % softer than the one before; one has lost all, or all but three readings."""
+    n_curves, n_each = 12, 40
+    places = (np.arange(n_each) + np.mod(0.37 * np.arange(n_curves)[:, None], 1)) / n_each
+    places[5] = 0.5 + 0.01 * places[5]
+    curve = np.repeat(np.arange(n_curves), n_each)
+    strain, share = (1 + 0.5 * places).ravel(), 1 - 0.01 * curve
+    tension = share * (200 + 1000 * strain)
+    curve[(curve == 5) & (np.arange(curve.size) % n_each >= n_left)] = -1
+    grid = StrainGrid(low=1.0, width=0.02, n_bins=25, half_window=2)
+    moments, _ = accumulate_moments(
+        strain, tension, curve=curve, n_curves=n_curves, grid=grid, tension_reference=300.0
+    )
+    fits = fit_windows(moments.pooled(1), minimum_count=4)
+    known = np.isfinite(fits.slope[0])
+    assert known.sum() > 20
+    assert fits.slope[0, known] == pytest.approx(1000 * share[curve >= 0].mean(), rel=2e-3)
+    assert np.sqrt(fits.slope_variance[0, known]).max() < 2.0

@@ -374,7 +374,8 @@ class BranchMoments:
         every cycle has a sample in every bin: if the level of a cycle were not removed, that fall
         would appear as a slope.  Nor are the samples of a bin at one strain: where there are few,
         the slope across the bin must not count as level.  A specimen that softens loses tension in
-        proportion: where the ranges of the curves differ beyond chance, they are removed as well.
+        proportion: where the ranges of the curves differ beyond chance, they are removed as well,
+        as if each curve had one more reading, that of the mean curve.
         """
         sums = self.sums.reshape(_N_SUMS, -1, n_branches, self.sums.shape[-1])
         count, strain, tension = sums[0], sums[1], sums[5]
@@ -385,8 +386,10 @@ class BranchMoments:
         for _ in range(_LEVEL_STEPS):  # the mean of a bin depends on the levels of its curves
             mean = ((tension - count * level) / scale).sum(axis=0) / n_samples
             above = mean - (count * mean).sum(axis=-1, keepdims=True) / of_curve
-            power = np.maximum((count * above**2).sum(axis=-1, keepdims=True), _TINY)
-            grown = (above * tension).sum(axis=-1, keepdims=True) / power
+            power = (count * above**2).sum(axis=-1, keepdims=True)
+            # a curve without readings, or with few in a small part of the range, shows none
+            of_one = np.maximum(power.sum(axis=0) / of_curve.sum(axis=0), _TINY)
+            grown = ((above * tension).sum(axis=-1, keepdims=True) + of_one) / (power + of_one)
             scale = np.where(_is_beyond_chance(tension, count, above, grown), grown, 1.0)
             scale = scale / ((of_curve * scale).sum(axis=0) / of_curve.sum(axis=0))
             level = (tension - count * scale * mean).sum(axis=-1, keepdims=True) / of_curve
