@@ -20,7 +20,7 @@ from reduction.stages.cycles.fundamental import (
 )
 from reduction.stages.cycles.loop_energy import energy_by_chance, loop_energy
 from reduction.stages.cycles.loop_sense import unlike_neighbours
-from reduction.stages.cycles.loops import _mean_drift, _middles, close_loops
+from reduction.stages.cycles.loops import _beside_harmonics, _mean_drift, _middles, close_loops
 from reduction.stages.cycles.reading_noise import reading_noise
 from reduction.stages.cycles.turns import noise_in_extreme
 from reduction.stages.moduli.secant_modulus import summarise_amplitude
@@ -2282,6 +2282,18 @@ def test_friction_that_turns_at_once_has_the_range_of_its_readings(readings, noi
     spread = found.uncertainty["apparent_spring_constant"][0]
     assert abs(found.apparent_spring_constant[0] - true) < 2 * spread
     assert spread < 4.5 / readings * true
+
+
+@pytest.mark.parametrize("share", [0.1, 0.2, 0.5])
+@pytest.mark.parametrize("n_phases", [400.0, 410.8, 460.3])
+def test_bins_beside_harmonics_stand_where_their_readings_are(share, n_phases):
+    """A log in step with its period, of a load that jumps; more phases are found than are read."""
+    place = np.tile((np.arange(400) + 0.5) / 400, 60)
+    rest = share * (place % 0.5 - 0.25)
+    curve, _ = _beside_harmonics(place, rest, n_phases, 0.0)
+    at = np.linspace(0, 1, 721)
+    inside = (np.abs(at % 0.5 - 0.25) < 0.24) & (np.abs(at % 0.5 - 0.25) > 0.05)
+    assert curve[inside, 1] == pytest.approx(share * (at % 0.5 - 0.25)[inside], abs=1e-4 * share)
 
 
 def test_the_first_of_ramps_that_grow_is_measured_from_its_valley():

@@ -665,10 +665,11 @@ def _beside_harmonics(
         is_shown = np.abs(mean) > _SHOWN * error
         # what a bin does not show may be anything up to that
         width = WITHIN_STEP * _SHOWN / np.sqrt(3) * float(np.median(error)) * is_shown.any()
-        middles = (np.arange(n) + 0.5) / n
-        curve[:, column] = np.interp(
-            np.linspace(0, 1, 721), middles, np.where(is_shown, mean, 0.0), period=1
-        )
+        # where few phases are read, those of a bin are not about its middle
+        filled = np.unique(number)
+        at = (np.bincount(number, place, n) / count)[filled]
+        shown = np.where(is_shown, mean, 0.0)[filled]
+        curve[:, column] = np.interp(np.linspace(0, 1, 721), at, shown, period=1)
     return curve, width
 
 
