@@ -742,9 +742,9 @@ def _on_unlike_splices(marks: SpliceMarks) -> tuple[Note, ...]:
     relaxed = lengths[:, marks.is_slack].mean(axis=1)
     grown = lengths[:, ~marks.is_slack].mean(axis=1) - relaxed
     little, much = np.sort(grown / relaxed)
+    beyond = _OUTLIER_NOTICE * max(marks.reading_uncertainty, TAPE_UNCERTAINTY)
     # a grip in place of a splice does not stretch
-    reading = max(marks.reading_uncertainty, TAPE_UNCERTAINTY)
-    if _UNLIKE * little >= much or np.abs(grown).min() <= _OUTLIER_NOTICE * reading:
+    if _UNLIKE * little + beyond / relaxed.min() >= much or np.abs(grown).min() <= beyond:
         return ()
     return (note("splices-unlike", marks.specimen, near=grown[0] / relaxed[0],
                  far=grown[1] / relaxed[1]),)  # fmt: skip
