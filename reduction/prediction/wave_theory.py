@@ -1068,7 +1068,7 @@ class WaveTheory:
     is_second_order_small : bool
         Second harmonics below 5 % of the first.
     reasons : tuple of Note
-        Objections to the theory, in words; empty where there are none.
+        Objections to the theory; empty where there are none.
     """
 
     theory: WaveTheoryName
