@@ -310,6 +310,8 @@ _STAYS = 0.5  # minimum fraction of the step that remains between the levels on 
 
 _OUTER = (0.01, 0.99)
 
+_STIFFENS = 4.0  # greatest stiffness of a specimen over the mean of its range
+
 
 def _find_lone_steps(
     values: Floats, beside: Floats, *, noise: float, noise_beside: Floats, factor: float
@@ -342,11 +344,12 @@ def _find_lone_steps(
         its_limit = factor * float(its_noise)
         # channels that are read in turn show one step in neighbouring samples
         beside_it = np.clip(step + np.array([[-1], [0], [1]]), 0, values.size - 2)
-        moves = np.stack([_stands_out(channel, at, its_limit) for at in beside_it])
-        step = step[~moves.any(axis=0)]
-        # what its noise would hide does not show that it stood still
+        steps_too = np.stack([_stands_out(channel, at, its_limit) for at in beside_it]).any(axis=0)
+        # what its noise would hide, or its motion explains, does not show that it stood still
+        moved = np.abs(take_samples(channel, beside_it + 1) - take_samples(channel, beside_it))
+        hides = np.fmax(its_limit, _STIFFENS * np.nan_to_num(np.median(moved, axis=0)))
         change = np.abs(take_samples(values, step + 1) - take_samples(values, step))
-        step = step[change * _usual_range(channel) > its_limit * reach]
+        step = step[~steps_too & (change * _usual_range(channel) > hides * reach)]
     return step
 
 

@@ -61,6 +61,16 @@ def test_a_step_whose_motion_the_noise_of_the_position_hides_is_none():
     assert steps(tension, 6.0 + (POSITION - 6.0) / 1e3, noise=TENSION_NOISE) == []
 
 
+@pytest.mark.parametrize("readings", [3.3, 4.4, 6.3])
+def test_the_end_of_a_quick_ramp_of_a_stiffening_rope_is_no_step(readings):
+    """Three to six readings a ramp: the load rises most in the last, the position evenly."""
+    time = np.arange(400.0) + 0.3
+    away = np.interp(time, [0, 99, 99 + readings, 250, 250 + readings, 400], [0, 0, 1, 1, 0, 0])
+    position = 6.0 + away + RANDOM.normal(0, POSITION_NOISE, time.size)
+    tension = 200 * np.expm1(3.5 * away) / np.expm1(3.5) + RANDOM.normal(0, 0.05, time.size)
+    assert steps(tension, position, noise=0.05) == []
+
+
 def test_what_comes_back_at_once_is_no_step_that_stays():
     tension = TENSION.copy()
     tension[912] += 80.0
