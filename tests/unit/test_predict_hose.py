@@ -315,15 +315,9 @@ def test_the_net_tension_of_steep_hoses_rises_all_the_way():
         assert np.all(np.diff(tension) > 0), angle
 
 
-HOSE = HoseDesign(
-    wrap_angle=np.radians(68.0),
+HOSE = replace(
+    GUMBY,
     layer_diameter=(0.0813, 0.0965),
-    inner_diameter=0.0635,
-    outer_diameter=0.127,
-    cords_per_length=34 / 0.0254,
-    cord_diameter=0.000559,
-    rubber_modulus=1.379e6,
-    cord=CORD,
     cord_load_scale=0.9,
     cord_strain_scale=1.1,
     dead_length_share=0.08,
