@@ -2119,6 +2119,56 @@ def test_a_run_that_ends_before_its_last_valley_lacks_as_much_of_the_tension_as_
     assert loops.apparent_spring_constant[0, 2] == pytest.approx(3e5, rel=0.01)
 
 
+@pytest.mark.parametrize("early", [0.0, 0.3, 0.6, 0.9])
+@pytest.mark.parametrize("grows", [0.0, 0.03])
+def test_the_last_of_many_ramps_may_end_a_part_of_a_reading_before_its_valley(early, grows):
+    """A spring of 500 N whose strokes have one length or grow by 3 % each; corners are logged."""
+    per_cycle, n = 60, 8
+    peaks = 0.3 + 0.1 * (1 + grows * np.arange(n))
+    knots = np.append(np.column_stack([np.full(n, 0.3), peaks]).ravel(), 0.3)
+    at = np.arange(0, 2 * n + 1) * per_cycle // 2
+    turn = np.arange(at[-1] + 1.0)
+    turn[-1] -= early
+    strain = np.interp(turn, at, knots)
+    if early:  # the reading before the last one is the one that would have been the last
+        strain[-1] = np.interp(at[-1] - early, at, knots)
+    none = np.zeros(turn.size, np.int8)
+    first, peak, last = at[:-1:2], at[1::2], at[2::2]
+    cycles = Cycles(
+        first, last, np.column_stack([first, peak]), np.column_stack([peak, last]),
+        np.ones((n, 2)), none, none, none > 0, 0.1,
+    )  # fmt: skip
+    loops = close_loops(turn, 500 * strain[None], strain[None], cycles)
+    assert loops.strain_amplitude[0, -1] == pytest.approx((peaks[-1] - 0.3) / 2, rel=0.003)
+    assert loops.apparent_spring_constant[0, -1] == pytest.approx(500, rel=0.003)
+
+
+@pytest.mark.parametrize("offset", [1, 3, 5, 7, 9])
+def test_corners_between_readings_are_in_the_interval_of_each_cycle(offset):
+    """A rubber that relaxes at each corner of its ramps, which the log, in step, has not."""
+    per_cycle, n, within = 60, 8, 10
+    turn = np.arange(n * per_cycle * within + 1) / (per_cycle * within)
+    strain = 0.25 + 0.12 * (1 - 4 * np.abs(turn % 1 - 0.5))
+    kept = np.exp(-(turn[1] - turn[0]) / 0.075)
+    relaxing = lfilter([250 * kept], [1, -kept], np.append(0, np.diff(strain)))
+    tension = 900 * (strain + 0.35 * strain**3) + relaxing
+    whole = slice(2 * per_cycle * within, 3 * per_cycle * within)
+    true = np.ptp(tension[whole]) / np.ptp(strain[whole])
+    log = slice(offset, None, within)
+    first = per_cycle * np.arange(n - 1)
+    pair = np.column_stack([first, first + per_cycle // 2])
+    none = np.zeros(n * per_cycle, np.int8)
+    cycles = Cycles(
+        first, first + per_cycle, pair, pair + per_cycle // 2, np.ones((n - 1, 2)),
+        none, none, none > 0, 0.1,
+    )  # fmt: skip
+    loops = close_loops(8 * turn[log], tension[None, log], strain[None, log], cycles)
+    error = loops.apparent_spring_constant[0, 2:] - true
+    stated = loops.uncertainty["apparent_spring_constant"][0, 2:]
+    # by noise alone, 0.5 % of it lay 3 and more standard uncertainties away
+    assert np.abs(error / stated).max() < 2
+
+
 @pytest.mark.parametrize("readings", [11.3, 24.04, 59.8])
 @pytest.mark.parametrize("second", [0.08, -0.05])
 def test_a_cycle_with_one_reading_more_has_the_same_fundamental(readings, second):

@@ -832,9 +832,17 @@ def _levels_of_ramps(
     foot = row[f"{driven}_end_turn"]
     of_feet = np.append(np.where(follows[1:], np.diff(foot), np.nan), np.nan)
     grows = ~follows & (np.abs(of_feet - of_driven) > _GROWS * np.abs(row[f"{driven}_top"] - foot))
+    early = 0.0
+    if follows[-2:].all() and cycles.last[-1] == cycles.branch.size - 1:
+        # the log may end before its last valley, by a part of a reading for both channels
+        step = (row[f"{driven}_top"] - foot)[-1] / (cycles.last - cycles.branch_last[:, 0])[-1]
+        early = np.clip((foot[-1] - foot[-2] - of_feet[-3]) / step, 0.0, 1.0)
     for place, (name, drift) in enumerate((("force", drifts.tension), ("strain", drifts.strain))):
         answers = place == int(is_load)
         top, begin, end = (row[f"{name}_{turn}"] for turn in ("top", "begin", "end_turn"))
+        if early:
+            step = (top[-1] - end[-1]) / (cycles.last[-1] - cycles.branch_last[-1, 0])
+            end = np.append(end[:-1], end[-1] - early * step)
         missed = row[f"{name}_missed"]
         if is_parted:  # the drift may all take place on one way between the turns
             missed = np.hypot(missed, EITHER_WAY * np.abs(drift) / 4)
@@ -982,9 +990,8 @@ def _quantities_of_cycles(
             # in a single cycle the turn lies anywhere between two samples
             u_half = np.hypot(noise / np.sqrt(2), tension.missed / np.sqrt(12))
             u_strain = np.hypot(strain_noise / np.sqrt(2), strain.missed / np.sqrt(12))
-            # a missed turn reduces both amplitudes by the same fraction; only noise is left
-            u_apparent = apparent * np.hypot(noise / amplitude, strain_noise / strain_amplitude)
-            u_apparent /= np.sqrt(2)
+            # a corner between two readings need not take the same share off both
+            u_apparent = apparent * np.hypot(u_half / amplitude, u_strain / strain_amplitude)
             drift, own = (
                 (drifts.strain, amplitude) if is_load else (drifts.tension, strain_amplitude)
             )

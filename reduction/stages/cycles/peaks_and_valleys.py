@@ -163,6 +163,9 @@ def _at_sharp_turns(
         last, below = (last, below) if lower is None else (-lower[0], 0 * below)
     # the readings of a rounded turn are its lower bound, not its middle
     missed = missed + (above + below) / 2 + bow
+    if end.size > 1 and end[-1] == values.size - 1:
+        # no way up shows what the readings of the last valley miss
+        missed[-1] = missed[-2:].max()
     return top + above / 2, first, last - below / 2, missed
 
 
