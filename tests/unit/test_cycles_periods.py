@@ -36,6 +36,37 @@ def test_a_dwell_that_is_a_rest_behind_some_cycles_alone_is_part_of_all_periods(
     assert period[:-1] == pytest.approx(np.full(n_cycles - 1, per * step), rel=1e-3)
 
 
+def test_rests_that_differ_by_one_reading_are_parts_of_all_periods():
+    """Nearly square waves of 23.13 readings, whose rests at the valley have 4 or 5 of them."""
+    per, n_cycles = 23.13, 40
+    turn = np.arange(int(per * n_cycles)) / per
+    wave = np.interp(turn % 1, [0, 0.1, 0.45, 0.55, 1], [0, 1, 1, 0, 0])
+    begin = np.ceil(per * np.arange(n_cycles)).astype(int)[:-1]
+    end = np.append(begin[1:], int(per * (n_cycles - 1))) - 4 - np.arange(n_cycles - 1) % 2
+    peak = np.ceil(per * (np.arange(n_cycles - 1) + 0.3)).astype(int)
+    cycles = Cycles(
+        begin, end, np.stack([begin, peak], axis=1), np.stack([peak, end], axis=1),
+        np.ones((n_cycles - 1, 2)), *np.zeros((3, turn.size)), 0.1,
+    )  # fmt: skip
+    time = np.arange(turn.size) * 1.0
+    period, _ = own_periods(time, wave, cycles, time[end] - time[begin], noise=1e-6)
+    # from turn to turn, half of them lasted 18 to 19 readings
+    assert period[:-1] == pytest.approx(np.full(n_cycles - 2, per), abs=0.2)
+
+
+def test_a_cycle_that_was_not_counted_is_no_part_of_a_period():
+    """Of three cycles, the one in the middle is missing: the others have their own periods."""
+    turn = np.arange(3 * 20 + 1) / 20
+    wave = 1 - np.abs(2 * (turn % 1) - 1)
+    begin = np.array([0, 40])
+    pair = np.stack([begin, begin + 10], axis=1)
+    cycles = Cycles(begin, begin + 20, pair, pair + 10, np.ones((2, 2)),
+                    *np.zeros((3, turn.size)), 0.1)  # fmt: skip
+    time = np.arange(turn.size) * 1.0
+    period, _ = own_periods(time, wave, cycles, np.full(2, 20.0), noise=1e-6)
+    assert period == pytest.approx([20, 20])
+
+
 SINES = CycleSettings(waveform="sinusoidal")
 
 

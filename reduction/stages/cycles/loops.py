@@ -819,6 +819,7 @@ def _levels_of_ramps(
     cycles: Cycles,
     is_load: bool,
     rise_shares: tuple[Floats | float, Floats | float],
+    may_dwell: bool,
 ) -> tuple[_Levels, _Levels]:
     """Levels of tension and of strain of waves that are not sines, by their turns."""
     follows, is_parted = touching(cycles), _are_parted(cycles)
@@ -843,6 +844,11 @@ def _levels_of_ramps(
         if early:
             step = (top[-1] - end[-1]) / (cycles.last[-1] - cycles.branch_last[-1, 0])
             end = np.append(end[:-1], end[-1] - early * step)
+        elif may_dwell and is_load and answers and follows[-1]:
+            # creep in the dwell after the last valley is not part of it, as of the others
+            side = np.sign(top[-1] - end[-1])
+            as_before = begin[-1] + drift[-1]
+            end = np.append(end[:-1], side * np.fmin(side * end[-1], side * as_before))
         missed = row[f"{name}_missed"]
         if is_parted:  # the drift may all take place on one way between the turns
             missed = np.hypot(missed, EITHER_WAY * np.abs(drift) / 4)
@@ -963,7 +969,9 @@ def _quantities_of_cycles(
             row, fundamentals, shapes or (_Shape(), _Shape()), is_load
         )
     else:
-        tension, strain = _levels_of_ramps(row, drifts, cycles, is_load, rise_shares)
+        tension, strain = _levels_of_ramps(
+            row, drifts, cycles, is_load, rise_shares, waveform == "other"
+        )
     amplitude, strain_amplitude = tension.amplitude, strain.amplitude
     energy, at_peaks, u_placed = _energy_of_cycles(
         row, drifts, touching(cycles), amplitude * strain_amplitude, is_load
@@ -980,7 +988,12 @@ def _quantities_of_cycles(
         both = np.hypot(noise, apparent * strain_noise)
         u_over_time = np.sqrt(2 / n_samples) * both / np.sqrt(square)
         u_energy = row["strain_step_norm"] * both
-        u_extreme = np.hypot(noise, tension.missed / np.sqrt(12))
+        # noise hides what one corner misses, not what most of them do
+        lost, lost_strain = (
+            np.fmax(one.missed, np.median(np.nan_to_num(one.missed)) / 2) / np.sqrt(12)
+            for one in (tension, strain)
+        )
+        u_extreme = np.hypot(noise, lost)
         if waveform == "sinusoidal":
             u_extreme = np.hypot(noise, _missed_turn(amplitude, n_samples))
             u_half, u_strain = np.sqrt(2 / n_samples) * noise, np.sqrt(2 / n_samples) * strain_noise
@@ -988,8 +1001,8 @@ def _quantities_of_cycles(
             u_storage = u_loss = u_apparent = u_over_time
         else:
             # in a single cycle the turn lies anywhere between two samples
-            u_half = np.hypot(noise / np.sqrt(2), tension.missed / np.sqrt(12))
-            u_strain = np.hypot(strain_noise / np.sqrt(2), strain.missed / np.sqrt(12))
+            u_half = np.hypot(noise / np.sqrt(2), lost)
+            u_strain = np.hypot(strain_noise / np.sqrt(2), lost_strain)
             # a corner between two readings need not take the same share off both
             u_apparent = apparent * np.hypot(u_half / amplitude, u_strain / strain_amplitude)
             drift, own = (

@@ -100,7 +100,7 @@ def peaks_and_valleys(
         above = missed_by_extreme(values, peak, top, sign=1)
         below = missed_by_extreme(values, end, last, sign=-1)
         # the readings are its lower bound, not its middle
-        missed = np.full(top.size, np.nanmedian(above + below))
+        missed = np.nan_to_num(above + below, nan=float(np.nanmedian(above + below)))
     return way * top, way * first, way * last, missed
 
 

@@ -322,12 +322,16 @@ def own_periods(
     period, spread = np.array(duration), time_of_sample(duration, cycles)
     alone, *of_alone = periods_alone(time, driven, cycles, is_sine=False, noise=noise)
     period[alone], spread[alone] = of_alone
-    follows = _follow(time, cycles, duration)
+    follows = _follow(time, driven, cycles, duration)
     if follows.any() and not follows[1:].all():
         follows[1:] |= _last_as_long(time, driven, cycles)
     touch = np.flatnonzero(follows)
     if not touch.size:
         return period, spread
+    # a rest before the next cycle is part of the wave
+    begins = take_samples(time, cycles.first)
+    duration = np.append(np.where(follows[1:], np.diff(begins), duration[:-1]), duration[-1:])
+    period[touch - 1] = duration[touch - 1]
     flanks = partial(_flank_to_flank, time, driven, noise)
 
     def between(column: int) -> tuple[Floats, Floats, Bools]:
@@ -376,6 +380,8 @@ _OF_LAST = np.sqrt(5)  # ratio of a sum that ends with its fall only to one with
 
 _ALIKE = 0.02  # of a cycle with its rest: spread of rests that are a part of the wave
 
+_ONE_MORE = 1.1  # readings, of a log whose steps are not quite equal
+
 
 def _last_as_long(time: Floats, driven: Floats, cycles: Cycles) -> Bools:
     """Mark cycles that last, from rise to rise, as long as those that touch the next one.
@@ -391,14 +397,23 @@ def _last_as_long(time: Floats, driven: Floats, cycles: Cycles) -> Bools:
     return np.asarray(np.abs(step - usual) <= _ALIKE * usual)
 
 
-def _follow(time: Floats, cycles: Cycles, duration: Floats) -> Bools:
+def _follow(time: Floats, driven: Floats, cycles: Cycles, duration: Floats) -> Bools:
     """Mark cycles that touch the one before, or follow a rest that all of them have."""
     rest = take_samples(time, cycles.first[1:]) - take_samples(time, cycles.last[:-1])
     usual = float(np.median(rest)) if rest.size else 0.0
-    alike = np.abs(rest - usual) <= _ALIKE * (usual + float(np.median(duration)))
+    step = float(np.median(duration / (cycles.last - cycles.first)))
+    # of equal rests, some have a reading more than others
+    spread = max(_ALIKE * (usual + float(np.median(duration))), _ONE_MORE * step)
+    alike = np.abs(rest - usual) <= spread
     # a wait without readings is a gap of the log, which may contain other cycles
-    n_steps = np.maximum(cycles.first[1:] - cycles.last[:-1], 1)
-    alike &= rest / n_steps <= _GAP * float(np.median(duration / (cycles.last - cycles.first)))
+    alike &= rest / np.maximum(cycles.first[1:] - cycles.last[:-1], 1) <= _GAP * step
+    # nor is a time in which the machine moves, through a cycle that was not counted
+    begin, end = cycles.last[:-1], cycles.first[1:]
+    stroke = np.ptp(take_samples(driven, cycles.branch_last), axis=1)[1:]
+    for share in (0.25, 0.5, 0.75):
+        place = begin + (share * (end - begin)).astype(begin.dtype)
+        moved = np.abs(take_samples(driven, place) - take_samples(driven, begin))
+        alike &= ~(moved > _STEEP * stroke)
     return np.asarray(touching(cycles) | np.concatenate([[False], alike]))
 
 
