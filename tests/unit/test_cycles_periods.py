@@ -132,6 +132,14 @@ def test_noise_sampling_and_one_cycle_that_waits_are_no_change_of_period(step, n
     assert change_of_period(time, wave, cycles_of(time, wave)) == 0
 
 
+@pytest.mark.parametrize("seed", range(8))
+def test_noise_of_more_than_a_step_at_the_middle_of_a_rise_is_no_change_of_period(seed):
+    time = np.arange(0, 20, 0.01)
+    noise = 0.0105 * np.random.default_rng(seed).normal(size=time.size)
+    wave = -np.cos(0.4 * np.pi * time)
+    assert change_of_period(time, wave + noise, cycles_of(time, wave)) == 0
+
+
 def test_amplitudes_of_a_sweep_are_those_of_its_cycles():
     time, wave = sweep(-0.01, step=0.1)
     cycles = cycles_of(time, wave)

@@ -15,6 +15,7 @@ import numpy as np
 from reduction.record.measurement import Bools, Floats, Integers
 from reduction.record.samples import take_samples
 from reduction.stages.cycles.cycle_product import Cycles
+from reduction.stages.cycles.reading_noise import reading_noise
 
 _FLANK = 8  # divisor of a branch: part on either side of its middle that gives its speed
 
@@ -503,7 +504,7 @@ def change_of_period(time: Floats, driven: Floats, cycles: Cycles) -> float:
     -----
     For times :math:`t` at which a rise is half way up, ten cycles before a cycle and ten after
     it (fewer in a short test): :math:`t_{k+m} - 2 t_k + t_{k-m} = m^2 \dot P`.  Each is known to
-    a sample.
+    a sample, and to the noise of a reading over the speed of the rise.
 
     Examples
     --------
@@ -534,7 +535,12 @@ def change_of_period(time: Floats, driven: Floats, cycles: Cycles) -> float:
     period = (after - before) / (2 * reach)
     change = (after - 2 * half_way + before) / (reach**2 * period)
     step = (take_samples(time, at) - take_samples(time, np.maximum(at - 1, 0))).max(axis=0)
-    goes_on = np.abs(change) > _STEADY + 2 * step / (reach**2 * period)
+    begin, end = (one[rows[1]] for one in rise)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        speed = np.subtract(*(take_samples(driven, one) for one in (end, begin)))
+        speed /= np.subtract(*(take_samples(time, one) for one in (end, begin)))
+        spread = 2 * step + _BEYOND_NOISE * reading_noise(driven) / np.abs(speed)
+    goes_on = np.abs(change) > _STEADY + spread / (reach**2 * period)
     # a cycle with a wait is met from before and from behind, with opposite signs
     share = abs(np.sum(np.sign(change[goes_on]))) / goes_on.size
     return float(np.median(change[goes_on])) if share > _ODD else 0.0
