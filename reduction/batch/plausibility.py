@@ -285,6 +285,9 @@ def _of_statements(campaign: Campaign, survey: Survey, models: Models) -> Iterat
         levels.n_strokes > _MOST_STROKES and not is_set_up
     ):
         yield note("cycles-in-other-kind", n_cycles=levels.n_strokes // 2, kind=plan.kind)
+    at_stop, held = levels.stood_tension
+    if np.isfinite(held):
+        yield note("hold-of-position", at_stop=at_stop, held=held, kind=plan.kind)
     break_in = plan.settings.cycles.break_in_cycles
     if 0 < survey.n_cycles <= break_in:
         yield note("break-in-is-all", n_cycles=survey.n_cycles, break_in=break_in)

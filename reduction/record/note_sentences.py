@@ -1970,6 +1970,14 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "warning",
         "the log contains about {n_cycles} cycles, but its kind is {kind}. Check the kind",
     ),
+    "hold-of-position": (
+        "warning",
+        lambda at_stop, held, kind: (
+            f"the crosshead stands while the tension goes from {at_stop:.4g} N to the"
+            f" {held:.4g} N of the hold: the machine held the position, not the load. "
+            + ('State kind = "relaxation"' if kind == "creep" else "Check control")
+        ),
+    ),
     "break-in-is-all": (
         "warning",
         "break_in_cycles is {break_in}, but the log has only {n_cycles} cycles: none is left",
@@ -2205,7 +2213,8 @@ CAUSES = (
     "log-used-twice", "readings-used-twice", "marks-of-another", "marks-of-absent",
     "channels-alike", "specimens-swapped", "date-against-order",
     "column-of-another", "diameter-readings-apart", "stretched-diameters-apart",
-    "cycles-in-other-kind", "cycles-unlike", "rate-not-as-stated", "level-not-as-stated",
+    "cycles-in-other-kind", "hold-of-position", "cycles-unlike",
+    "rate-not-as-stated", "level-not-as-stated",
     "load-never-falls", "load-zero-drifts", "load-zero-wrong", "load-negative",
     "load-steps", "load-falls-with-stretch", "pushed-in-cycles", "reference-length-under-preload",
     "reference-length-elsewhere", "reference-length-never-read",

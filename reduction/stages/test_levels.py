@@ -13,7 +13,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from reduction.record.measurement import Bools, Floats, Integers, read_only_arrays
-from reduction.record.samples import finite_extremes, first_sample, sample_blocks, take_samples
+from reduction.record.samples import (
+    finite_extremes,
+    first_sample,
+    last_sample,
+    sample_blocks,
+    take_samples,
+)
 from reduction.stages.cycles.cycle_product import Cycles
 from reduction.stages.cycles.loop_sense import waveform_of_log
 from reduction.stages.cycles.reversals import find_reversals
@@ -76,6 +82,10 @@ class TestLevels:
         Median over the cycles, if most have the same; NaN for a log of several levels. [m]
     valley_tension, valley_strain : ndarray, shape (n_specimens,)
         Tension and measured strain there. [N] and [1]
+    stood_tension : ndarray, shape (2,)
+        Mean tension of the specimens when the crosshead came to stand, and in the longest hold at
+        constant tension, if it stood from then to that hold while the tension changed; else NaN.
+        [N]
     """
 
     __test__ = False  # a test of a tether, not of this software
@@ -99,6 +109,7 @@ class TestLevels:
     valley_position: float
     valley_tension: Floats
     valley_strain: Floats
+    stood_tension: Floats
 
 
 def levels_of_test(
@@ -222,7 +233,38 @@ def levels_of_test(
         valley_position=valley_position,
         valley_tension=valley_tension,
         valley_strain=valley_strain,
+        stood_tension=_stood_tension(position, tension, standstills),
     )  # fmt: skip
+
+
+_OF_HOLD = 0.02  # of the tension of the hold: a controller comes to its load within this
+
+_SEEN = 4.0  # times the tolerance of position: a rope at its peak is stiffer than on average
+
+
+def _stood_tension(position: Floats, tension: Floats, standstills: Standstills) -> Floats:
+    """Tension at the stop of the crosshead and in the hold, where only the position was held."""
+    nothing = np.full(2, np.nan)
+    if standstills.tension_tolerance is None or standstills.is_rest.all():
+        return nothing
+    samples = standstills.last - standstills.first
+    hold = int(np.argmax(np.where(standstills.is_rest, -1, samples)))
+    place, tolerance = standstills.mean_position[hold], standstills.position_tolerance
+    before = int(standstills.first[hold])
+    moved = last_sample(
+        lambda part: np.abs(position[part] - place) > tolerance, 0, before, position
+    )
+    stopped = 0 if moved is None else moved + 1
+    at_stop = tension[:, stopped : stopped + 4]
+    if not np.isfinite(at_stop).any():
+        return nothing
+    pair = np.array([np.nanmean(at_stop), np.nanmean(standstills.mean_tension[:, hold])])
+    change = abs(pair[1] - pair[0])
+    # what the crosshead would have moved to change the load by as much
+    ranges = [np.subtract(*finite_extremes(load)[::-1]) for load in tension]
+    travel = np.subtract(*finite_extremes(position)[::-1])
+    is_seen = change * travel > _SEEN * tolerance * np.nanmean(ranges)
+    return pair if is_seen and change > _OF_HOLD * pair[1] else nothing
 
 
 def _is_copy(one: Floats, other: Floats) -> bool:

@@ -80,6 +80,7 @@ def creep():
 def test_creep_at_constant_tension_has_its_rate(command, tmp_path, creep):
     lines = ['kind = "creep"', 'control = "load"']
     tables = run(command, tmp_path, *creep, *lines)
+    assert not [row for row in table(tables, "notes") if row["note_code"] == "hold-of-position"]
     (hold,) = table(tables, "relaxation")
     assert hold["hold_kind"] == "creep"
     assert float(hold["hold_start_time [s]"]) == pytest.approx(40, abs=0.5)
@@ -101,6 +102,19 @@ def test_creep_at_constant_tension_has_its_rate(command, tmp_path, creep):
     assert at["600.0"] - at["60.0"] == pytest.approx(
         float(np.diff(creep_strain(np.array([100.0, 640.0]), 20, 20, 300.0))[0]), rel=0.01
     )
+
+
+def test_a_relaxation_test_stated_as_creep_is_a_check(command, tmp_path):
+    # the load of the "hold" is what is left after most of the relaxation
+    time = np.arange(0, 2000, 0.5)
+    strain = np.interp(time, [0, 20, 24], [0, 0, 0.3])
+    tension = np.interp(time, [20, 24], [0, 1]) * (300 + 200 * np.exp(-(time - 24) / 100))
+    run(command, tmp_path, time, 1 + strain, tension, 'kind = "creep"')
+    with (tmp_path / "processed/load-control/status.csv").open(encoding="utf-8") as file:
+        (row,) = csv.DictReader(file)
+    assert row["status"] == "check"
+    assert "the machine held the position" in row["message"]
+    assert 'kind = "relaxation"' in row["message"]
 
 
 def sine(time):
