@@ -16,8 +16,10 @@ from pydantic import (
     AfterValidator,
     BaseModel,
     ConfigDict,
+    Discriminator,
     Field,
     StringConstraints,
+    Tag,
     ValidationInfo,
     field_validator,
 )
@@ -146,6 +148,13 @@ class _StatedLimits(_UncertaintySection):
     shape: Literal["rectangular", "triangular", "arcsine"] = "rectangular"
 
 
+def _form_of(stated: object) -> str:
+    """Form that is meant; faults are then those of this form alone."""
+    if not isinstance(stated, dict):
+        return "plain"
+    return "certificate" if stated.keys() & {"expanded", "k"} else "data sheet"
+
+
 @dataclass(frozen=True)
 class _Standard(ReadKey):
     """Reads a standard uncertainty: stated as such, as an expanded one, or as limits."""
@@ -156,7 +165,14 @@ class _Standard(ReadKey):
     @property
     def written(self) -> Any:
         """A plain value, or one of the two tables."""
-        return Number | _Expanded | _StatedLimits if self.has_tables else Number
+        if not self.has_tables:
+            return Number
+        return Annotated[
+            Annotated[Number, Tag("plain")]
+            | Annotated[_Expanded, Tag("certificate")]
+            | Annotated[_StatedLimits, Tag("data sheet")],
+            Discriminator(_form_of),
+        ]
 
     def value(self, stated: Number | _Expanded | _StatedLimits) -> float:
         """Standard uncertainty in SI."""
@@ -697,7 +713,7 @@ class StepSection(_SpecSection):
     """A time with its unit, or a cycle number of the whole log."""
     end: str | int = Field(alias="to")
     kind: TestKind | None = None
-    target_strain: tuple[float, ...] = ()
+    target_strain: tuple[Strain, ...] = ()
     n_cycles: int | None = Field(default=None, ge=1, le=_MOST)
     failed: bool | None = None
     """As for a test."""
@@ -725,7 +741,7 @@ class TestSection(_Kept):
     date: Date = ""
     rest: Text = ""
     """Rest time before this test."""
-    target_strain: tuple[float, ...] = ()
+    target_strain: tuple[Strain, ...] = ()
     n_cycles: int | None = Field(default=None, ge=1, le=_MOST)
     unlogged_cycles: int | None = Field(default=None, ge=0, le=_MOST)
     """Tension cycles without a log between the previous test and this one."""

@@ -231,7 +231,8 @@ def _known_keys(
         yield from _known_keys(entry, definitions, (*at, name))
     for entry in schema.get("patternProperties", {}).values():
         yield from _known_keys(entry, definitions, (*at, "NAME"))
-    for entry in (*schema.get("anyOf", ()), *([schema["items"]] if "items" in schema else ())):
+    choices = (*schema.get("anyOf", ()), *schema.get("oneOf", ()))
+    for entry in (*choices, *([schema["items"]] if "items" in schema else ())):
         yield from _known_keys(entry, definitions, at)
 
 
@@ -305,6 +306,7 @@ def faults_of(
             place += (str(cause.facts["key"]),) if "key" in cause.facts else ()
             values[place] = [(str(cause), "")]
         needed = _WORDS.get(entry["type"], entry["msg"].removeprefix("Value error, "))
+        needed = needed.replace("valid tuple", "list")
         if entry["type"] == "string_pattern_mismatch":
             needed = _name_words(str(entry["ctx"]["pattern"]))
         if entry["type"] == "extra_forbidden":

@@ -111,11 +111,12 @@ def _unknown_compliance(compliance: float, usual: float, effect: float) -> str:
 
 def _unknown_hysteresis(reversibility: float, play: float | None, lag: float | None) -> str:
     """Effect of a load cell or a position that reads other values on the way down."""
-    or_play = "" if play is None else f", or {1000 * play:.2g} mm of play in the position,"
-    or_lag = "" if lag is None else f", or {1000 * lag:.2g} ms between the two channels,"
+    or_play = "" if play is None else f", or {1000 * play:.2g} mm of play in the position"
+    or_lag = "" if lag is None else f", or {1000 * lag:.2g} ms between the two channels"
+    comma = "," if or_play or or_lag else ""
     return (
-        f"the hysteresis of the load cell is not stated: {reversibility:.2%} at half its"
-        f" load{or_play}{or_lag} would change the hysteresis energy by one standard uncertainty."
+        f"the hysteresis of the load cell is not stated: {reversibility:.2%} at half its load"
+        f"{or_play}{or_lag}{comma} would change the hysteresis energy by one standard uncertainty."
         " State reversibility in [uncertainty.tension], from the calibration"
         + ("" if lag is None else ", and lag in [uncertainty]")
     )

@@ -168,7 +168,7 @@ def test_tension_channels_are_read_from_nested_toml(folder):
 
 def test_one_row_a_test_in_a_table(folder):
     (folder / "tests.csv").write_text(
-        "id,file,kind,order,target_strain,note\nT,T.csv,fatigue,2,0.75;1.25,slow\nU,T.csv,,,,\n"
+        "id,file,kind,order,target_strain,note\nT,T.csv,fatigue,2,75 %;1.25,slow\nU,T.csv,,,,\n"
     )
     campaign = load(folder, BASE.replace('title = "t"', 'title = "t"\ntests = "tests.csv"'))
     assert campaign.tests["T"].kind == "fatigue"
@@ -392,7 +392,7 @@ def test_all_faults_are_told_one_a_line(folder):
     ]
     assert sorted(below[4:]) == [
         f"tests.U.control: Input should be 'position' or 'load'; found '{55 * 'x'}...'",
-        "tests.U.file: Input should be a valid string or a valid tuple; found 3",
+        "tests.U.file: Input should be a valid string or a list; found 3",
     ]
 
 

@@ -4,9 +4,10 @@ import json
 from pathlib import Path
 
 import pytest
+from pydantic import ValidationError
 
 from reduction.campaign.model import CampaignFile, UncertaintySection, stated_errors
-from reduction.campaign.toml_file import read_toml
+from reduction.campaign.toml_file import faults_of, read_toml
 from reduction.record.errors import SettingsError
 from reduction.record.measurement import Specimen
 
@@ -89,6 +90,23 @@ def test_a_temperature_moves_the_stiffness():
 def test_what_cannot_be_meant_is_refused_with_its_key(section, words):
     with pytest.raises(SettingsError, match=words):
         errors(**section)
+
+
+@pytest.mark.parametrize(
+    ("stated", "fault"),
+    [
+        ({"expanded": "2 mm"}, "tape.k: is required"),
+        (
+            {"half_width": "2 mm", "shape": "rectangle"},
+            "tape.shape: Input should be 'rectangular', 'triangular' or 'arcsine'; found 'rectangle'",
+        ),
+    ],
+)
+def test_a_fault_in_one_form_is_not_told_of_the_other(stated, fault):
+    table = {"tape": stated}
+    with pytest.raises(ValidationError) as refused:
+        UncertaintySection.model_validate(table)
+    assert [str(one) for one in faults_of(refused.value, table, UncertaintySection)] == [fault]
 
 
 def test_an_error_of_a_diameter_is_small_against_it():
