@@ -20,6 +20,7 @@ from reduction.campaign.toml_file import (
     at_place,
     in_toml,
     listed,
+    not_utf8,
     read_small_text,
     read_toml,
     split_row,
@@ -455,7 +456,7 @@ def _text(path: Path) -> str:
     try:
         return read_small_text(path)
     except UnicodeDecodeError as error:
-        raise LogError(path, "the table of runs is not UTF-8 text", found=str(error)) from error
+        raise LogError(path, "the table of runs is not UTF-8 text", **not_utf8(error)) from error
     except OSError as error:
         raise LogError(
             path, "the table of runs cannot be read", found=error.strerror or str(error)

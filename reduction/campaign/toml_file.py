@@ -59,16 +59,25 @@ def read_small_text(path: Path) -> str:
     return content.decode("utf-8-sig")
 
 
+def not_utf8(error: UnicodeDecodeError) -> dict[str, str]:
+    """What is wrong with a text in another encoding, and where."""
+    row = error.object[: error.start].count(b"\n") + 1
+    return {
+        "found": f"the byte 0x{error.object[error.start]:02x} in row {row}",
+        "needed": "a file saved as UTF-8",
+    }
+
+
 def read_csv_rows(
     path: Path, what: str, *, fault: Callable[..., ReductionError] = LogError
 ) -> tuple[list[str], Iterator[tuple[int, list[str]]]]:
-    """Read a small CSV table."""
+    """Read a small CSV table, separated by commas."""
     try:
         text = read_small_text(path)
     except LogError as error:
         raise fault(path, error.problem, found=error.found, needed=error.needed) from error
     except UnicodeDecodeError as error:
-        raise fault(path, f"{what} is not UTF-8 text", found=str(error)) from error
+        raise fault(path, f"{what} is not UTF-8 text", **not_utf8(error)) from error
     except OSError as error:
         raise fault(path, f"{what} cannot be read", found=error.strerror or str(error)) from error
     lines = split_rows(text)
@@ -84,6 +93,12 @@ def read_csv_rows(
         return cells
 
     header = [name.strip() for name in split(1, lines[0])]
+    if len(header) == 1 and (mark := re.search("[;\t]", header[0])):
+        raise fault(
+            path, f"the columns of {what} are not separated by commas", row=1,
+            found=f"{mark[0]!r} in {cut(lines[0], 60)!r}",
+            needed="commas between the columns, and points in the numbers",
+        )  # fmt: skip
 
     def rows() -> Iterator[tuple[int, list[str]]]:
         for number, line in enumerate(lines[1:], start=2):
@@ -280,14 +295,17 @@ def _name_words(pattern: str) -> str:
     Examples
     --------
     >>> _name_words("^[A-Za-z0-9][A-Za-z0-9_ -]{0,99}$").split(",")[0]
-    'a name has unaccented letters'
+    'Input should be a name of unaccented letters'
     """
     if not pattern.startswith("^[A-Za-z0-9]"):
-        return "a name has at most 100 characters, without [ ] * ^ , ; and without # or space first"
+        return (
+            "Input should be a name of at most 100 characters, without [ ] * ^ , ; and without #"
+            " or space first"
+        )
     space = ", spaces" if " " in pattern else ""
     return (
-        f"a name has unaccented letters, digits, - and _{space}, at most 100, the first a letter"
-        " or digit; write it in another script in a note or title"
+        f"Input should be a name of unaccented letters, digits, - and _{space}, at most 100, the"
+        " first a letter or digit; write it in another script in a note or title"
     )
 
 
@@ -436,6 +454,8 @@ def read_toml(
         raise in_toml(
             path, f"{what} cannot be read", found=error.strerror or str(error), needed=needed
         ) from error
+    except UnicodeDecodeError as error:
+        raise in_toml(path, f"{what} is not TOML in UTF-8", **not_utf8(error)) from error
     except (ValueError, RecursionError) as error:  # too many digits are not a TOML error
         raise in_toml(path, f"{what} is not TOML", found=str(error), hint=hint(path)) from error
     places = _open_questions(path.parent, table)

@@ -431,6 +431,11 @@ def parse_quantity(
             else f'text such as "1.5 {DIMENSIONS[dimension]}"',
         )
     number, unit = _finite(match[1], text), match[2]
+    if re.match(r",\d", unit):
+        raise SettingsError(
+            "a number has a comma", found=repr(cut(str(text), 60)),
+            needed="a decimal point, and no mark of thousands",
+        )  # fmt: skip
     if re.fullmatch(r"%\s*(RBS|MBS|MBL)", unit) and dimension == "force":
         if rated_break_strength is None:
             raise SettingsError(

@@ -300,7 +300,10 @@ def test_a_value_that_cannot_be_used_is_told_with_file_and_key(folder, old, new,
             r"; found 'fixed'\. It belongs in \[layouts\.NAME\]$",
         ),
         (BASE, r"the campaign has no tests; needed at least one \[tests.NAME\], or results"),
-        (BASE + '[tests."a/b"]\nfile = "T.csv"\n', r"tests.a/b: a name has unaccented letters,"),
+        (
+            BASE + '[tests."a/b"]\nfile = "T.csv"\n',
+            r"tests.a/b: Input should be a name of unaccented letters,",
+        ),
         (BASE + TEST + "layout = 'm'\n", "test 'T' has no layout; found 'm'; needed one of"),
         (BASE + TEST + "specimens = ['b']\n", "names no known specimen; found b"),
         (BASE + TEST + "specimens = ['a', 'a']\n", "names a specimen twice; found a, a"),
@@ -695,9 +698,16 @@ def test_a_header_can_be_refused_before_a_row_is(tmp_path):
         next(rows)
 
 
+@pytest.mark.parametrize("mark", [";", "\t"])
+def test_a_table_of_another_separator_is_told(tmp_path, mark):
+    (tmp_path / "t.csv").write_text(f"test{mark}hold\nT{mark}min\n")
+    with pytest.raises(LogError, match=r"t.csv:1: the columns of the table are not separated by"):
+        read_csv_rows(tmp_path / "t.csv", "the table")
+
+
 def test_a_file_that_is_no_text_or_is_not_there_is_told(tmp_path):
     (tmp_path / "t.csv").write_bytes(b"a\xff,b\n")
-    with pytest.raises(LogError, match="the table is not UTF-8 text"):
+    with pytest.raises(LogError, match="the table is not UTF-8 text; found the byte 0xff in row 1"):
         read_csv_rows(tmp_path / "t.csv", "the table")
     with pytest.raises(LogError, match="the table cannot be read; found No such file"):
         read_csv_rows(tmp_path / "none.csv", "the table")

@@ -84,6 +84,12 @@ def test_share_of_break_strength_needs_a_break_strength():
         parse_quantity("12 %RBS", "force")
 
 
+@pytest.mark.parametrize("text", ["3,0 m", "3,000 mm", "1.000,5 m"])
+def test_a_comma_in_a_number_is_told_as_such(text):
+    with pytest.raises(SettingsError, match="a number has a comma.*needed a decimal point"):
+        parse_quantity(text, "length")
+
+
 @pytest.mark.parametrize(
     ("unit", "shown", "factor"),
     [
