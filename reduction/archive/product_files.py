@@ -42,17 +42,24 @@ def campaign_of(folder: Path) -> Path | None:
     return Path(os.path.normpath(folder.absolute() / text)) if text else None
 
 
-def record_campaign(folder: Path, campaign: Path) -> None:
-    """Record in a folder of archives which campaign.toml made them."""
+def record_campaign(folder: Path, campaign: Path) -> Path | None:
+    """Record in a folder of archives which campaign.toml made them.
+
+    Returns the campaign whose results were there, if it is another one that still exists.
+    """
     try:
         place = os.path.relpath(campaign.absolute(), folder.absolute())
     except ValueError:  # another drive
         place = str(campaign.absolute())
-    if campaign_of(folder) == Path(os.path.normpath(folder.absolute() / place)):
-        return
+    earlier = campaign_of(folder)
+    if earlier == Path(os.path.normpath(folder.absolute() / place)):
+        return None
     # optional: the campaign is also found in its usual place
     with suppress(OSError), atomic_file(folder / CAMPAIGN_PLACE) as begun:
         begun.write_text(Path(place).as_posix() + "\n", encoding="utf-8")
+    # a campaign that was moved, or is named by another path, is the same one
+    is_other = earlier is not None and earlier.is_file() and not earlier.samefile(campaign)
+    return earlier if is_other else None
 
 
 def failure_words(archive: Path) -> tuple[str, ...]:

@@ -148,8 +148,9 @@ class CampaignResult:
 
     ``parts`` are ``experiments``, ``hoses`` and ``comparisons``, as opposed to tests.
     ``superseded`` are archives of earlier runs that the campaign no longer makes, at their new
-    location; ``stray`` are those left in place because a log could not be read.  ``results`` is the
-    content of the table of results, ``read`` the SHA-256 of each campaign file read, by name.
+    location; ``replaced`` is the other campaign of the same id whose results they were; ``stray``
+    are those left in place because a log could not be read.  ``results`` is the content of the
+    table of results, ``read`` the SHA-256 of each campaign file read, by name.
     """
 
     tests: tuple[TestStatus, ...]
@@ -159,6 +160,7 @@ class CampaignResult:
     results: dict[str, Any] | None = None
     stray: tuple[str, ...] = ()
     superseded: tuple[Path, ...] = ()
+    replaced: Path | None = None
     tables: tuple[Path, ...] = ()
     read: Mapping[str, str] = field(default_factory=dict)
     answers: ShownAnswers = field(default_factory=lambda: ShownAnswers((), (), ()))

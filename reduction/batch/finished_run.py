@@ -39,7 +39,8 @@ def keep_finished(result: CampaignResult, choices: Mapping[str, str]) -> None:
     ``choices`` are the options of the run that affect a product.
     """
     path = result.processed / _NAME
-    if result.exit_status or result.stray or result.superseded or result.report is None:
+    is_told_once = result.stray or result.superseded or result.replaced
+    if result.exit_status or is_told_once or result.report is None:
         take_away(path)
         return
     tests = [asdict(replace(one, seconds=0.0, worker="")) for one in result.tests]

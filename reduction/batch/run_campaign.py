@@ -382,8 +382,7 @@ def _run(
     if workers is not None:
         workers.executor.shutdown()  # frees the memory of the tests for the products of all tests
     lock.confirm()  # before products of all tests are written
-    if archives_of_tests(folder):
-        record_campaign(folder, campaign.path)
+    replaced = record_campaign(folder, campaign.path) if archives_of_tests(folder) else None
     failed = {status.test for status in statuses if status.status == "failed"}
     failed |= set(wanted.failed)
     asked = {survey.plan.id for survey in chosen}
@@ -447,6 +446,7 @@ def _run(
         report=report,
         results=results_found(campaign),
         superseded=tuple(superseded),
+        replaced=replaced,
         stray=tuple(stray),
         tables=tuple(tables),
         read=campaign.small_files | read,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -80,8 +81,15 @@ def start_campaign(folder: Path, output: CommandOutput) -> None:
             file.write(text)
         output.say(f"wrote {folder / name}")
     output.say("next: replace every ? in these files, then run:")
-    output.say(f"reduction check {folder / 'campaign.toml'}")
+    # quoted, so that it can be copied
+    output.say(f"reduction check {_quoted(folder / 'campaign.toml')}")
     output.answer({"written": [str(folder / name) for name in texts]})
+
+
+def _quoted(path: Path) -> str:
+    """A path as a shell reads it."""
+    text = str(path)
+    return f'"{text}"' if re.search(r"[^\w./\\:-]", text) else text
 
 
 _NAMES = (
@@ -520,6 +528,12 @@ def _say_run(result: CampaignResult, output: CommandOutput) -> None:
     for stray in result.stray:
         output.error(
             f"{result.processed / stray}: a step of a log that failed in this run; left where it is"
+        )
+    if result.replaced is not None:
+        output.error(
+            f"{result.processed}: the results of {result.replaced} were here, which has the same"
+            " id, and are replaced. Give each campaign its own id, or another --processed and"
+            " --reports"
         )
     for path in result.superseded:
         output.error(

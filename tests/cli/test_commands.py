@@ -196,6 +196,28 @@ def test_a_product_of_no_test_is_named_and_put_aside(reduced, command):
     assert not (reduced / "processed" / "small" / "B.nc").exists()
 
 
+@pytest.mark.slow
+def test_a_campaign_of_the_same_id_is_told_that_it_replaces_another(reduced, command):
+    shutil.copytree(reduced / "raw", reduced / "other" / "raw")
+    campaign = reduced / "other" / "raw" / "campaign.toml"
+    campaign.write_text(campaign.read_text().replace("n_cycles = 10", "n_cycles = 9"))
+    done = command("run", campaign, "--quiet", cwd=reduced)
+    assert done.returncode == 0
+    assert f"the results of {reduced / 'raw' / 'campaign.toml'} were here" in done.stderr
+    # the same campaign, moved
+    shutil.move(reduced / "other", reduced / "moved")
+    done = command("run", reduced / "moved" / "raw" / "campaign.toml", "--quiet", cwd=reduced)
+    assert done.returncode == 0 and "were here" not in done.stderr
+
+
+def test_init_quotes_a_path_with_a_blank(small, command):
+    (small / "raw" / "campaign.toml").unlink()
+    folder = small / "my logs"
+    shutil.move(small / "raw", folder)
+    done = command("init", folder)
+    assert f'reduction check "{folder / "campaign.toml"}"' in done.stdout
+
+
 def test_sniff_proposes_a_layout_that_a_person_completes(small, command):
     done = command("sniff", small / "raw" / "A.csv")
     assert done.returncode == 0, done.stderr
