@@ -137,7 +137,7 @@ def implausible(
     for plan in campaign.experiments.values():
         for test, one in _off_plan(campaign, plan, read):
             found[test].append(one)
-    for test, one in (*_of_hoses(campaign), *_of_predictions(campaign, read)):
+    for test, one in (*_of_hoses(campaign), *_of_predictions(campaign, read, models)):
         if test in found:
             found[test].append(one)
     return {test: tuple(notes) for test, notes in found.items()}
@@ -951,7 +951,9 @@ def _of_hoses(campaign: Campaign) -> Iterator[tuple[str, Note]]:
                                           ratio=ratio, like=words_of_ratio(ratio))  # fmt: skip
 
 
-def _of_predictions(campaign: Campaign, surveys: Sequence[Survey]) -> Iterator[tuple[str, Note]]:
+def _of_predictions(
+    campaign: Campaign, surveys: Sequence[Survey], models: Models
+) -> Iterator[tuple[str, Note]]:
     """Find hoses that differ from their design by a factor more likely due to an input error."""
     read = {one.plan.id: one for one in surveys}
     for plan in campaign.comparisons.values():
@@ -970,9 +972,11 @@ def _of_predictions(campaign: Campaign, surveys: Sequence[Survey]) -> Iterator[t
             yield plan.measured, note("hose-length-not-tested", plan.specimen, hose=hose.name,
                                       ratio=length, like=words_of_ratio(length))  # fmt: skip
         samples = survey.extremes.all_over.get(plan.specimen)
-        if samples is None or not survey.extremes.position_is_length:
+        model = models.get((plan.measured, plan.specimen))
+        if samples is None or model is None or model.method == "extensometer":
             continue
-        strain = samples.position / gauge - 1
+        # the pins may be farther apart than the hose is long
+        strain = strain_by_model(model, position=samples.position, tension=samples.tension)
         nodes, tension = _curve_at_nodes(strain, samples.tension)
         off = _misfit(hose.design, nodes, tension)
         if not off.size or not np.isfinite(off).all():

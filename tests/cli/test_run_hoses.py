@@ -45,6 +45,17 @@ def comparisons(run):
     return pd.read_csv(run.processed / "tables" / "comparisons.csv").set_index("comparison")
 
 
+def test_pins_beyond_the_flanges_do_not_put_a_hose_off_its_design(command, tmp_path):
+    shutil.copytree(RAW, tmp_path, dirs_exist_ok=True)
+    campaign = tmp_path / "campaign.toml"
+    text = campaign.read_text(encoding="utf-8")
+    longer = text.replace('datum = "pin-to-pin"', 'datum = "pin-to-pin", zero = "-20 in"', 1)
+    campaign.write_text(longer, encoding="utf-8")
+    done = command("check", campaign)
+    assert done.returncode == 0, done.stderr
+    assert "times that of its design" not in done.stdout
+
+
 @pytest.mark.parametrize(("test", "hose"), [("S-64", "hose-64"), ("S-68", "hose-68")])
 def test_a_slow_pull_states_the_load_and_strain_that_it_reached(run, truth, test, hose):
     row = pd.read_csv(run.processed / "tables" / "tensile.csv").set_index("test").loc[test]
