@@ -121,6 +121,9 @@ class _LimitsSection(BaseModel):
 _HALF = 0.5
 """Larger relative errors are beyond first-order propagation, which would not hold."""
 
+_MOST_BARE = 0.05
+"""A larger share without its sign was probably meant in percent."""
+
 _OF_DIAMETER = 0.2
 """Limit for a diameter: 40 % of its area, and of every stress and modulus."""
 
@@ -146,6 +149,14 @@ class _StatedLimits(_UncertaintySection):
 
     half_width: Number
     shape: Literal["rectangular", "triangular", "arcsine"] = "rectangular"
+
+
+def _is_bare(text: Number) -> bool:
+    """Whether a value is a number alone."""
+    try:
+        return math.isfinite(float(text))
+    except ValueError:
+        return False
 
 
 def _form_of(stated: object) -> str:
@@ -181,7 +192,7 @@ class _Standard(ReadKey):
         elif isinstance(stated, _StatedLimits):
             found = of_half_width(self._part("half_width", stated.half_width), stated.shape)
         else:
-            found = value_in_si(stated, self.dimension)
+            found = self._value(stated)
         # a temperature in degC would be one above freezing
         most, words = _GREATEST_OF.get(self.dimension, (math.inf, ""))
         if not 0 <= found <= most:
@@ -194,10 +205,20 @@ class _Standard(ReadKey):
 
     def _part(self, key: str, text: Number) -> float:
         try:
-            return value_in_si(text, self.dimension)
+            return self._value(text)
         except SettingsError as error:
             error.facts["key"] = key
             raise
+
+    def _value(self, text: Number) -> float:
+        value = value_in_si(text, self.dimension)
+        if self.dimension == "strain" and _MOST_BARE < value <= _HALF and _is_bare(text):
+            raise SettingsError(
+                "a share this large needs its sign",
+                found=f"{text}, which is {100 * value:g} %",
+                needed=f'"{100 * value:g} %", or "{text} %" if that is meant',
+            )
+        return value
 
 
 _Relative = Annotated[float, _Standard("strain")]

@@ -75,6 +75,11 @@ def test_a_temperature_moves_the_stiffness():
         ({"lag": {"half_width": "2 m"}}, r"uncertainty\.lag\.half_width: unit 'm'"),
         ({"tension": {"gain": "-0.1 %"}}, "not a standard uncertainty.*zero or more"),
         ({"tension": {"gain": 60}}, "at most 50 %"),
+        ({"tension": {"gain": 0.25}}, r"gain: a share .*which is 25 %; needed .25 %., or .0\.25 %"),
+        (
+            {"strain": {"half_width": "0.2"}},
+            r"strain\.half_width: a share this large needs its sign",
+        ),
         ({"lag": {"expanded": "2 ms", "k": 0}}, r"uncertainty\.lag.*coverage_factor"),
         (
             {"temperature": {"value": "2 degC", "stiffness_per_kelvin": "0.3 %"}},
