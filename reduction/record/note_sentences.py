@@ -1207,7 +1207,8 @@ _OF_HOLDS: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "refusal",
         lambda motion, worth: (
             f"drop, rate per decade and Prony series not given: the crosshead moves by {motion:.2g}"
-            f" m in the hold{f', equivalent to {worth:.3g} N' if worth == worth else ''}"
+            f" m in the hold{f', equivalent to {worth:.3g} N' if worth == worth else ''}."
+            ' If the machine held the load, state kind = "creep"'
         ),
     ),
     "hold-settles": (
