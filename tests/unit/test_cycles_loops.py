@@ -494,6 +494,27 @@ def triangles(per_cycle, n_cycles, phase, *, height=1.0):
     )  # fmt: skip
 
 
+@pytest.mark.parametrize("per_cycle", [20.3, 33.3])
+def test_what_relaxes_at_a_corner_between_readings_is_in_the_interval_of_each_cycle(per_cycle):
+    # a term with a time constant of 0.8 readings; tension falls before the next reading, not strain
+    fine, decay, n_cycles, phase = 100, 0.8, 30, 2.3
+    time, wave, cycles = triangles(per_cycle, n_cycles, phase, height=200.0)
+    turn = (np.arange(time.size * fine) / fine - phase) / per_cycle
+    exact = 200 * (1 - np.abs((2 * turn) % 2 - 1))
+    keep = np.exp(-1 / fine / decay)
+    rate = np.diff(exact, prepend=exact[0])
+    tension = 300 + exact + lfilter([12 * (1 - keep) * decay * fine], [1, -keep], rate)
+    later = tension[int(3 * per_cycle * fine) :]
+    true = (later.max() - later.min()) / 2
+    loops = close_loops(time, tension[::fine][None], 1 + wave[None] / 200, cycles)
+    inner = slice(2, -1)
+    error = loops.apparent_spring_constant[0, inner] / (true / 0.5) - 1
+    stated = loops.uncertainty["apparent_spring_constant"] / loops.apparent_spring_constant
+    # the error is up to 2.5 %, and was not in the interval
+    assert np.abs(error).max() > 0.002
+    assert (np.abs(error) < 1.96 * stated[0, inner]).mean() > 0.9
+
+
 @pytest.mark.parametrize("per_cycle", [20, 50])
 @pytest.mark.parametrize("phase", [0.1, 0.3, 0.45])
 def test_a_turn_between_samples_lies_within_what_is_stated_as_missed(per_cycle, phase):

@@ -1003,8 +1003,11 @@ def _quantities_of_cycles(
             # in a single cycle the turn lies anywhere between two samples
             u_half = np.hypot(noise / np.sqrt(2), lost)
             u_strain = np.hypot(strain_noise / np.sqrt(2), lost_strain)
-            # a corner between two readings need not take the same share off both
-            u_apparent = apparent * np.hypot(u_half / amplitude, u_strain / strain_amplitude)
+            # a corner that both channels miss by the same fraction cancels in their ratio
+            apart = (tension.missed / amplitude) ** 2 - (strain.missed / strain_amplitude) ** 2
+            by_noise = np.hypot(noise / amplitude, strain_noise / strain_amplitude)
+            u_apparent = apparent * np.sqrt(by_noise**2 / 2 + np.abs(apart) / 12)
+            u_energy = np.hypot(u_energy, row["energy_missed"] / np.sqrt(12))
             drift, own = (
                 (drifts.strain, amplitude) if is_load else (drifts.tension, strain_amplitude)
             )
