@@ -498,8 +498,8 @@ def _said_of_value(found: DesignValues) -> str:
     is_vague = known and float(found.surface_low) < 0
     of = (
         found.surface_interval_of
-        if found.surface_interval_of.startswith("the tests")
-        else ("the surface")
+        if found.surface_interval_of.startswith(("the tests", "the curve"))
+        else "the surface"
     )
     return (
         f"{found.source}: {found.quantity} {plain_number(float(found.value), 6)} {found.unit}, "
