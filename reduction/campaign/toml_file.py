@@ -59,7 +59,7 @@ def read_small_text(path: Path) -> str:
     return content.decode("utf-8-sig")
 
 
-def not_utf8(error: UnicodeDecodeError) -> dict[str, str]:
+def not_utf8(error: UnicodeDecodeError) -> dict[str, Any]:
     """What is wrong with a text in another encoding, and where."""
     row = error.object[: error.start].count(b"\n") + 1
     return {

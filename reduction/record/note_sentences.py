@@ -256,9 +256,9 @@ _OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "rows-flagged": (
         "warning",
-        "{n_read} rows read, {n_kept} kept, flagged: {flags}. Saturated and stuck readings and"
-        " spikes are not used. Look at them (quality_flag of the archive): where they are sound,"
-        " raise reduction.quality.spike_factor or stuck_samples",
+        "flagged, of {n_kept} rows: {flags}. Saturated and stuck readings and spikes are not used,"
+        " and a cycle that loses its peak or valley has no EA. Look at them (quality_flag of the"
+        " archive): where they are sound, raise reduction.quality.spike_factor or stuck_samples",
     ),
     "rows-set-aside": (
         "note", "{n_read} rows read, {n_kept} kept, flagged: {flags}",

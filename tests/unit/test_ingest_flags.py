@@ -127,7 +127,7 @@ def test_every_fault_gets_its_mask_and_a_line_in_the_notes():
     assert where(along, Quality.GAP) == [1500]
     assert where(along, Quality.REPEATED_OR_BACKWARD_TIME) == [1700]
     assert str(result.notes[-1]).startswith(
-        "2000 rows read, 2000 kept, flagged: crosshead_position missing 1, gap 1, "
+        "flagged, of 2000 rows: crosshead_position missing 1, gap 1, "
         "repeated_or_backward_time 1; tension of new missing 1, stuck 100, spike 1. Saturated and "
     )
 

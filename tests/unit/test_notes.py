@@ -30,9 +30,9 @@ FACTS = {
     "Prony series not given: the drop, 0.03 %, is less than three times its standard uncertainty, "
     "0.11 %": (REFUSED, "refusal"),
     "the printed diameters contradict each other": (SAID, "note"),
-    "400 rows read, 400 kept, flagged: tension of new spike 3. Saturated and stuck readings and "
-    "spikes are not used. Look at them (quality_flag of the archive): where they are sound, raise "
-    "reduction.quality.spike_factor or stuck_samples": (
+    "flagged, of 400 rows: tension of new spike 3. Saturated and stuck readings and spikes are not "
+    "used, and a cycle that loses its peak or valley has no EA. Look at them (quality_flag of the "
+    "archive): where they are sound, raise reduction.quality.spike_factor or stuck_samples": (
         note("rows-flagged", n_read=400, n_kept=400, flags="tension of new spike 3"), "warning",
     ),
     "400 rows read, 400 kept, flagged: tension of new resampled 400": (

@@ -241,7 +241,7 @@ def test_a_load_that_repeats_one_value_in_a_hold_of_it_is_no_fault():
     # at rest the flag stays: nothing is held there
     assert (flags[5:30] == Quality.STUCK).all()
     rows, freed = map(str, located.record.notes)
-    assert "flagged: tension of cord stuck 55. Saturated" in rows
+    assert "flagged, of 600 rows: tension of cord stuck 55. Saturated" in rows
     assert "520 samples in holds at constant tension repeat one value" in freed
     still = locate(record(repeats=True), kind="relaxation", settings=ReductionSettings())
     assert np.isnan(still.tension[0, 80:]).all()
