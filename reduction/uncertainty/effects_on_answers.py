@@ -117,8 +117,8 @@ def _sag(
 ) -> Iterator[Note]:
     r"""Note where the sag of a horizontal specimen would move K_ap beyond its interval.
 
-    The chord of a shallow catenary of weight w a length is shorter than the line by
-    :math:`w^2 \ell^3 / 24 T^2`, of which a cycle takes out the difference of its turns.
+    The chord of a catenary is :math:`\operatorname{arsinh}(x) / x` of the line, with x half of its
+    weight over the tension; a cycle takes out the difference of its turns.
     """
     specimen = test.specimens[index]
     mean, amplitude = (
@@ -130,10 +130,11 @@ def _sag(
     if density is None or not mean > amplitude:
         return
     weight = STANDARD_GRAVITY * density * length
-    low, high = mean - amplitude, mean + amplitude
-    taken_out = weight**2 / 24 * (1 / low**2 - 1 / high**2)
+    low, high = (weight / (2 * turn) for turn in (mean - amplitude, mean + amplitude))
+    taken_out = float(np.arcsinh(high) / high - np.arcsinh(low) / low)
     effect = taken_out / (2 * float(summary.strain_amplitude[index]))
-    if effect > _EXPANDED * spread:
+    # a sag that takes out more than the stroke was not there: the specimen hung or was supported
+    if _EXPANDED * spread < effect < 1.0:
         found = note(
             "specimen-sags", specimen.name, effect=-effect, density=density,
             is_stated=specimen.linear_density is not None, length=length,

@@ -273,3 +273,13 @@ def test_the_sag_of_a_horizontal_rope_is_that_of_a_catenary(density, strength, s
     assert [one.severity for one in found] == ([] if severity is None else [severity])
     for one in found:
         assert one.numbers["effect"] == pytest.approx(own / seen - 1, rel=0.01)
+
+
+def test_a_sag_of_more_than_the_stroke_was_not_there():
+    # 2 m of a rope of 0.11 kg/m, unloaded to a tenth of a newton: it hung, or was supported
+    test = SimpleNamespace(specimens=[Specimen("line", kind="rope", linear_density=0.11)])
+    summary = SimpleNamespace(
+        mean_tension=np.array([1000.1]), tension_amplitude=np.array([1000.0]),
+        strain_amplitude=np.array([0.03]),
+    )  # fmt: skip
+    assert list(_sag(test, summary, 0, 2.0, 1e-3)) == []
