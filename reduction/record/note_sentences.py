@@ -649,8 +649,13 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "cycles-of-starting-machine": (
         "note",
         lambda n_first, n_last: (
-            f"the machine was not at full amplitude in the first {n_first} and the last {n_last}"
-            " cycles; these are left out, and counted only in slopes per decade of cycles"
+            "the machine was not at full amplitude in the "
+            + " and the ".join(
+                f"{end} cycle" if number == 1 else f"{end} {number} cycles"
+                for end, number in (("first", n_first), ("last", n_last))
+                if number
+            )
+            + ", left out here and counted only in slopes per decade of cycles"
         ),
     ),
     "counter-constant": (

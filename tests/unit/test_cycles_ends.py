@@ -116,6 +116,20 @@ def test_the_first_cycle_of_a_sine_joined_by_a_ramp_counts_if_its_rise_is_that_o
     assert cycles.first[0] == pytest.approx(139 + 100 * (10 - n_cycles), abs=3)
 
 
+@pytest.mark.parametrize("seed", range(12))
+def test_a_first_cycle_behind_a_hold_is_as_high_as_the_others_in_noise(seed):
+    # the hold ends some readings into the rise, which is 2 % short
+    wave = 1 - np.cos(2 * np.pi * np.arange(3000) / 100)
+    position = np.concatenate([np.zeros(400), wave, np.zeros(100)]) + 1.0
+    position += 0.008 * np.random.default_rng(seed).standard_normal(position.size)
+    time, tension = 0.1 * np.arange(position.size), 100 * position[None]
+    stands = find_standstills(time, position, tension, settings=PhaseSettings())
+    cycles = find_cycles(
+        time, position, tension, stands, settings=CycleSettings(waveform="sinusoidal")
+    )
+    assert cycles.n_cycles == 30
+
+
 @pytest.mark.parametrize(("n_cycles", "first"), [(7, 0), (8, 1)])
 def test_a_start_is_told_from_the_others_where_five_remain_beside_the_three_it_may_take(
     n_cycles, first

@@ -54,7 +54,7 @@ from reduction.stages.cycles.reversals import (
     reversals_of_typical_cycles,
     turning_points,
 )
-from reduction.stages.standstills import Standstills, median_step
+from reduction.stages.standstills import Standstills, estimate_noise, median_step
 
 FEWEST_SAMPLES = 4
 """Per cycle, not counting the last, which belongs to the next: two turns, a sample per branch."""
@@ -373,6 +373,10 @@ _STARTING = 0.25  # of a range: a larger difference is another level, not a mach
 
 _OTHER_LENGTH = 0.1
 
+_OF_HOLD = 12.0  # standard deviations of noise: tolerance of a standstill, which ends in the rise
+
+_TELLS_NOISE = 14
+
 _MOST_STARTING = 3
 
 _LEFT_STEADY = 5
@@ -380,11 +384,14 @@ _LEFT_STEADY = 5
 _READ_CLOSELY = 0.5  # of the cycles: a lower fraction is a log that goes on at the turns only
 
 
-def _steady_span(values: Floats, branch_first: Indices, branch_last: Indices) -> slice:
+def _steady_span(
+    values: Floats, branch_first: Indices, branch_last: Indices, *, noise: float = 0.0
+) -> slice:
     """Cycles without those at either end in which the machine starts or stops.
 
     A controller takes one or a few cycles to reach its set amplitude, and the phase of those
-    cycles differs from that of the others.
+    cycles differs from that of the others.  A range beside a hold lacks what the wave moved
+    before the hold ended, in ``noise``, and what noise adds to the extremes of the others.
 
     Examples
     --------
@@ -404,7 +411,8 @@ def _steady_span(values: Floats, branch_first: Indices, branch_last: Indices) ->
         """Relative distance of ranges from the median; zero within their scatter."""
         middle = np.median(of)
         far = np.abs(of - middle)
-        return np.where(far > 6 * 1.5 * np.median(far), far / middle, 0.0)
+        scatter = max(6 * 1.5 * np.median(far), _OF_HOLD * noise)
+        return np.where(far > scatter, far / middle, 0.0)
 
     of_rise, of_fall = apart(rises), apart(falls)
     # one branch with the range of the others shows that the level is the same
@@ -515,7 +523,10 @@ def _between_reversals(
     n_starting = 0
     # a stroke of constant speed has its full amplitude from the start, a sine grows into it
     if settings.waveform == "sinusoidal":
-        steady = _steady_span(values, branch_first, branch_last)
+        # of few readings a cycle, the wave itself looks like noise
+        n_readings = np.median(branch_last[:, 1] - branch_first[:, 0])
+        noise = estimate_noise(values)[0] if n_readings >= _TELLS_NOISE else 0.0
+        steady = _steady_span(values, branch_first, branch_last, noise=noise)
         n_last = branch_first.shape[0] - steady.stop
         if steady.start or n_last:
             code = "cycles-of-starting-machine"
