@@ -95,6 +95,9 @@ def _slice(record: Record, first: int, stop: int) -> Record:
     )
 
 
+_LATE_END = 0.01  # of a step: a stated end this far behind that of the log is rounded
+
+
 def _step_record(record: Record, step: StepPlan, plan: TestPlan) -> Record:
     """The rows of one step of a log."""
     if step.time_range is not None:
@@ -106,7 +109,11 @@ def _step_record(record: Record, step: StepPlan, plan: TestPlan) -> Record:
                 found=f"{record.time[0]:g} to {record.time[-1]:g} s in the log",
                 needed=f"rows from {low:g} to {high:g} s",
             )
-        return _slice(record, int(inside[0]), int(inside[-1]) + 1)
+        part = _slice(record, int(inside[0]), int(inside[-1]) + 1)
+        end = float(record.time[-1])
+        if high - end <= max(_LATE_END * (high - low), 2 * median_step(record.time)):
+            return part
+        return replace(part, notes=(*part.notes, note("log-ends-in-step", end=end, stated=high)))
     whole = locate(record, kind="cyclic", settings=plan.settings)
     first, last = step.cycle_range or (1, 1)
     if whole.cycles is None or not 1 <= first <= last <= whole.cycles.n_cycles:

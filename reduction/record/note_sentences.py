@@ -127,6 +127,9 @@ _OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "misprint-corrected": (
         "note", "length at {reading} is {length}, printed {printed} ({erratum})",
     ),
+    "log-ends-in-step": (
+        "note", "the log ends at {end:.6g} s, before the stated end of the step at {stated:.6g} s",
+    ),
     "counter-missing": (
         "note", "the cycle counter is missing in {n_rows} rows; it is set to -1 there",
     ),

@@ -182,6 +182,14 @@ def test_a_log_in_steps_gives_one_product_a_step(small, command):
     assert '"braided, one core"' in specimens
 
 
+def test_a_log_that_ends_before_its_last_step_is_told(small, command):
+    campaign = small / "raw" / "campaign.toml"
+    steps = '[[tests.A.steps]]\nname = "hold"\nfrom = "150 s"\nto = "9000 s"\nkind = "relaxation"\n'
+    campaign.write_text(campaign.read_text() + steps)
+    done = command("check", campaign, cwd=small)
+    assert "before the stated end of the step at 9000 s" in done.stdout
+
+
 @pytest.mark.slow
 def test_a_product_of_no_test_is_named_and_put_aside(reduced, command):
     campaign = reduced / "raw" / "campaign.toml"
