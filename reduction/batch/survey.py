@@ -95,7 +95,7 @@ def _slice(record: Record, first: int, stop: int) -> Record:
     )
 
 
-_LATE_END = 0.01  # of a step: a stated end this far behind that of the log is rounded
+_OF_STEP = 0.01  # an end behind that of the log or of the next step by less is rounded
 
 
 def _step_record(record: Record, step: StepPlan, plan: TestPlan) -> Record:
@@ -111,9 +111,17 @@ def _step_record(record: Record, step: StepPlan, plan: TestPlan) -> Record:
             )
         part = _slice(record, int(inside[0]), int(inside[-1]) + 1)
         end = float(record.time[-1])
-        if high - end <= max(_LATE_END * (high - low), 2 * median_step(record.time)):
-            return part
-        return replace(part, notes=(*part.notes, note("log-ends-in-step", end=end, stated=high)))
+        least = max(_OF_STEP * (high - low), 2 * median_step(record.time))
+        notes = [
+            note("steps-overlap", other=other.name)
+            for other in plan.steps
+            if other.time_range is not None
+            and other.name != step.name
+            and min(high, other.time_range[1]) - max(low, other.time_range[0]) > least
+        ]
+        if high - end > least:
+            notes.append(note("log-ends-in-step", end=end, stated=high))
+        return replace(part, notes=(*part.notes, *notes))
     whole = locate(record, kind="cyclic", settings=plan.settings)
     first, last = step.cycle_range or (1, 1)
     if whole.cycles is None or not 1 <= first <= last <= whole.cycles.n_cycles:

@@ -127,6 +127,11 @@ _OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "misprint-corrected": (
         "note", "length at {reading} is {length}, printed {printed} ({erratum})",
     ),
+    "steps-overlap": (
+        "note",
+        "the step overlaps the step '{other}': rows in both are used in both, and their cycles"
+        " count twice in the history of the specimen",
+    ),
     "log-ends-in-step": (
         "note", "the log ends at {end:.6g} s, before the stated end of the step at {stated:.6g} s",
     ),

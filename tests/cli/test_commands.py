@@ -182,12 +182,18 @@ def test_a_log_in_steps_gives_one_product_a_step(small, command):
     assert '"braided, one core"' in specimens
 
 
-def test_a_log_that_ends_before_its_last_step_is_told(small, command):
+def test_a_step_that_ends_behind_the_log_or_overlaps_another_is_told(small, command):
     campaign = small / "raw" / "campaign.toml"
     steps = '[[tests.A.steps]]\nname = "hold"\nfrom = "150 s"\nto = "9000 s"\nkind = "relaxation"\n'
     campaign.write_text(campaign.read_text() + steps)
     done = command("check", campaign, cwd=small)
     assert "before the stated end of the step at 9000 s" in done.stdout
+    assert "overlaps" not in done.stdout
+    steps = '[[tests.A.steps]]\nname = "next"\nfrom = "200 s"\nto = "320 s"\nkind = "relaxation"\n'
+    campaign.write_text(campaign.read_text() + steps)
+    done = command("check", campaign, cwd=small)
+    assert "A.hold: the step overlaps the step 'next'" in done.stdout
+    assert "A.next: the step overlaps the step 'hold'" in done.stdout
 
 
 @pytest.mark.slow
