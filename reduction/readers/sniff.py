@@ -45,6 +45,7 @@ from reduction.readers.raw_log import check_not_empty, unchanged, unreadable
 from reduction.readers.spreadsheet import open_workbook, read_rows
 from reduction.readers.tdms import WAVEFORM_COLUMN, open_tdms, tdms_table
 from reduction.record.errors import LogError
+from reduction.record.measurement import Bools
 from reduction.record.plain_text import toml_text
 from reduction.record.settings import Limits
 
@@ -63,6 +64,8 @@ class _SeenTable:
 _ROWS = 4000
 
 _RUN = 3  # minimum number of consecutive rows in a table
+
+_FILLED = 0.5  # of the rows: a column with fewer values need not have a name
 
 _NUMBER = {
     mark: re.compile(rf"[+-]?(\d+({re.escape(mark)}\d*)?|{re.escape(mark)}\d+)([eE][+-]?\d+)?")
@@ -121,12 +124,15 @@ def _look_at_table(rows: Sequence[Sequence[str]], decimal: str) -> _TableShape |
         return None
     above = [i for i in range(start) if any(rows[i])]
     name_row, unit_row = None, None
-    if above and _is_header(rows[above[-1]], n_fields):
+    # not those of an author's own numbers, which stand beside a few rows of a log, without a name
+    filled = np.mean([[*map(bool, rows[i])] for i in np.flatnonzero(data)], axis=0) > _FILLED
+    is_named = filled if filled.any() else np.ones(n_fields, np.bool_)
+    if above and _is_header(rows[above[-1]], is_named):
         name_row = above[-1]
         if (
             len(above) > 1
             and _is_unit_row(rows[name_row])
-            and _is_header(rows[above[-2]], n_fields)
+            and _is_header(rows[above[-2]], is_named)
         ):
             name_row, unit_row = above[-2], name_row
     names = rows[name_row] if name_row is not None else ()
@@ -173,10 +179,12 @@ UNSCALED = re.compile(
 """A preamble line of a table of readings that still need a factor."""
 
 
-def _is_header(fields: Sequence[str], n_fields: int) -> bool:
-    """Whether the fields can be names or units: one per column, apart from trailing blanks."""
-    beyond = without_comment_name(fields)[n_fields:]
-    return 1 < len(fields) and not any(beyond) and sum(map(bool, fields)) * 2 > n_fields
+def _is_header(fields: Sequence[str], is_named: Bools) -> bool:
+    """Whether the fields can be names or units: of most columns, and of none beyond them."""
+    beyond = without_comment_name(fields)[is_named.size :]
+    names = np.zeros(is_named.size, np.bool_)
+    names[: len(fields)] = [*map(bool, fields[: is_named.size])]
+    return 1 < len(fields) and not any(beyond) and 2 * (names & is_named).sum() > is_named.sum()
 
 
 def _is_unit_row(fields: Sequence[str]) -> bool:

@@ -12,6 +12,7 @@ import scipy.io
 from measured_logs import LOGS, needs_measured_logs
 from nptdms import ChannelObject, TdmsWriter
 from pydantic import ValidationError
+from workbook import write_xlsx
 
 from reduction.readers.layout import Layout
 from reduction.readers.read_log import read_log
@@ -285,6 +286,20 @@ def test_a_distance_of_grips_or_a_travel_is_the_position(tmp_path, name):
     rows = "".join(f"{i},{50 + i},{i}\n" for i in range(9))
     path = write(tmp_path, f"Time (s),{name} (mm),Standard force (N)\n{rows}")
     assert columns(proposed(path))["crosshead_position"] == (f"{name} (mm)", "mm")
+
+
+def test_the_names_of_a_log_are_seen_beside_the_numbers_that_an_author_added(tmp_path):
+    rows = [[0.1 * i, 5.0 * i, 20.0 + i, None, None, None] for i in range(30)]
+    rows[0][4:], rows[1][4:] = [0.0, 22.0], [3.0, 24.5]
+    head = [["Step time", "Axial force", "Gap"], ["s", "N", "mm"]]
+    write_xlsx(tmp_path / "log.xlsx", {"Sheet1": [*head, *rows]})
+    found = proposed(tmp_path / "log.xlsx")
+    assert "preamble_rows" not in found and found["has_name_row"] and found["has_unit_row"]
+    assert columns(found) == {
+        "time": ("Step time", "s"),
+        "tension.1": ("Axial force", "N"),
+        "crosshead_position": ("Gap", "mm"),
+    }
 
 
 def test_a_table_of_extremes_is_no_log_of_loops(tmp_path):
