@@ -29,6 +29,7 @@ from reduction.readers.text_rows import (
     line_starts,
     open_text,
     split_line,
+    without_outer_quotes,
 )
 from reduction.record.errors import LogError
 from reduction.record.notes import note
@@ -168,7 +169,9 @@ def _fields(head: _Head, rows: TextRows) -> Fields:
 
 
 def _tidy(text: memoryview, layout: Layout) -> memoryview:
-    """Single blanks between blank-separated fields, without blank lines at the end."""
+    """Rows without quotes around the whole of each; single blanks between fields parted by them."""
+    if layout.quote:
+        text = without_outer_quotes(text, layout.quote)
     if layout.delimiter != " ":
         return text
     single = re.sub(rb"[ \t]+", b" ", text)

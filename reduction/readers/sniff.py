@@ -44,6 +44,7 @@ from reduction.readers.parquet import open_parquet, parquet_table
 from reduction.readers.raw_log import check_not_empty, unchanged, unreadable
 from reduction.readers.spreadsheet import open_workbook, read_rows
 from reduction.readers.tdms import WAVEFORM_COLUMN, open_tdms, tdms_table
+from reduction.readers.text_rows import without_outer_quotes
 from reduction.record.errors import LogError
 from reduction.record.measurement import Bools
 from reduction.record.plain_text import toml_text
@@ -404,6 +405,8 @@ def _look_at_text(path: Path) -> _SeenTable:
     text, encoding, remark = _decode(path, head)
     lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
     lines = (lines if is_whole else lines[:-1])[:_LINES]
+    rows = memoryview("\n".join(lines).rstrip("\n").encode())
+    lines = str(without_outer_quotes(rows, '"'), "utf-8").split("\n")
     comment = _comment(lines)
     found = _best_table(_without_comments(lines, comment))
     if found is None:

@@ -355,6 +355,19 @@ def test_quoted_fields_may_hold_the_mark_that_parts_them(read):
     np.testing.assert_array_equal(log.columns["tension.1"], [998.2, 1004.80328, -11044.03516])
 
 
+ROWS = ['t,"x",F', "0,10,1", '"0.1",11,"2"', "0.2,12,3"]
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n"])
+def test_rows_that_a_spreadsheet_saved_as_one_quoted_field_each_are_read(read, end):
+    saved = ['"' + row.replace('"', '""') + '"' for row in ROWS]
+    log = read(end.join(["a preamble", *saved]) + end, preamble_rows=1)
+    assert log.columns["crosshead_position"].tolist() == [10.0, 11.0, 12.0]
+    assert log.columns["tension.1"].tolist() == [1.0, 2.0, 3.0]
+    with pytest.raises(LogError, match=r"log\.csv:4 \[F\]: a value is not a number; found 'x'"):
+        read(end.join(["a preamble", *saved[:2], '"0.1,11,x"', saved[3]]), preamble_rows=1)
+
+
 @pytest.mark.parametrize(
     ("found", "more", "advice"),
     [

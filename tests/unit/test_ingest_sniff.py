@@ -302,6 +302,14 @@ def test_the_names_of_a_log_are_seen_beside_the_numbers_that_an_author_added(tmp
     }
 
 
+def test_rows_quoted_as_a_whole_are_drafted_and_read(tmp_path):
+    rows = "".join(f'"{i / 10},{50 + i},{i}"\r\n' for i in range(9))
+    path = write(tmp_path, f'"Time (s),Position (mm),Load (N)"\r\n{rows}')
+    found = proposed(path)
+    assert columns(found)["tension.1"] == ("Load (N)", "N")
+    assert read_log(path, filled(found), name="x").n_rows_read == 9
+
+
 def test_a_table_of_extremes_is_no_log_of_loops(tmp_path):
     rows = [f"{one},{900 + one},{300 - one},{20 + one / 9:.2f},{10:.2f}" for one in range(1, 30)]
     text = "Cycle,Max Load (N),Min Load (N),Max Position (mm),Min Position (mm)\n"
