@@ -471,6 +471,13 @@ def test_a_single_pull_is_refused():
         find(*path([(0, 3), (10, 3), (20, 5), (60, 5)]))
 
 
+def test_a_pull_that_bounces_where_the_specimen_parts_is_said_to_be_one():
+    time, position = path([(0, 3), (10, 3), (100, 5), (120, 5.4)], noise=0)
+    position[1000:1016] += 0.4 * np.tile([1, -1], 8)
+    with pytest.raises(DataError, match='too few samples .* bounced .* kind = "tensile"'):
+        find(time, position)
+
+
 def test_movements_that_never_repeat_are_refused():
     points = [(0, 3), (10, 3), (20, 5), (50, 5), (60, 4), (90, 4), (100, 6), (130, 6), (140, 3)]
     with pytest.raises(

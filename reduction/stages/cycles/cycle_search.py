@@ -190,6 +190,11 @@ _ONE_WAY_HINT = (
     " machine cycled, check the column of crosshead_position in the layout."
 )
 
+_BOUNCE_HINT = (
+    'The crosshead ends at its furthest: if it only bounced as the specimen parted, give kind ='
+    ' "tensile". '
+)
+
 _ONE_WAY = 0.95  # of the range: least distance from the first reading to the last
 
 _CUT_OFF = 0.03  # of the samples, at the top of the range: a sine has 2 % of them there
@@ -656,7 +661,8 @@ def find_cycles(
             needed="an ascending and a descending half cycle of similar range",
             hint=_let_back(tension, settings) + _hint(time, values),
         )
-    notes += _refuse_coarse(time, first, branch_first[:, 1], last)
+    is_pull = settings.control == "position" and _goes_one_way(values)
+    notes += _refuse_coarse(time, first, branch_first[:, 1], last, is_pull=is_pull)
     is_sure = count is not None and bool(np.all(np.diff(count) > 0))  # it may restart at 1
     if not is_sure:
         count = count_over_gaps(time, first, last, standstills)
@@ -737,8 +743,12 @@ def _own_begin(
     return np.minimum(begin, branch_last)  # for a count that ends at its peak
 
 
-def _refuse_coarse(time: Floats, first: Indices, leaves_peak: Indices, last: Indices) -> list[Note]:
+def _refuse_coarse(
+    time: Floats, first: Indices, leaves_peak: Indices, last: Indices, *, is_pull: bool = False
+) -> list[Note]:
     """Refuse a log with too few samples in its cycles; a note where they are few.
+
+    A pull bounces a few times when the specimen parts.
 
     Examples
     --------
@@ -759,7 +769,8 @@ def _refuse_coarse(time: Floats, first: Indices, leaves_peak: Indices, last: Ind
             "too few samples in a cycle",
             found=f"{counts[least]} in cycle {least + 1}, which lasts {duration[least]:.4g} s",
             needed=f"{FEWEST_SAMPLES} or more, and {ENOUGH_SAMPLES} for sound peaks and loops",
-            hint=f"Log every {wanted}, or take the log that was not thinned.",
+            hint=(_BOUNCE_HINT if is_pull else "")
+            + f"Log every {wanted}, or take the log that was not thinned.",
         )
     if usual < ENOUGH_SAMPLES:
         return [note("few-samples-a-cycle", n_samples=usual, needed=ENOUGH_SAMPLES, step=wanted)]
