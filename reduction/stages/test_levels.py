@@ -62,7 +62,8 @@ class TestLevels:
         Tension at the end of the record, still stretched, over the greatest. [1]
     n_strokes : int
         Number of consecutive rises and falls of position by more than a quarter of its range,
-        except where there are as many holds: a line pulled from hold to hold does not cycle.
+        less the holds where these take most of the time: a line pulled from hold to hold does not
+        cycle, one that dwells at its turns does.
     ends_in_pull : bool
         Whether the last rise of position leads to a quarter more tension than any before it: the
         cycles before it were bedding-in.
@@ -221,7 +222,7 @@ def levels_of_test(
             for one in measured_strain
         ]),
         final_share=_final_share(position, tension),
-        n_strokes=max(turns.size - 1 - int(np.count_nonzero(~standstills.is_rest)), 0),
+        n_strokes=_n_strokes(time, turns, standstills),
         ends_in_pull=_ends_in_pull(position, tension, turns),
         is_copy=np.array([
             any(_is_copy(tension[index], tension[before]) for before in range(index))
@@ -453,6 +454,19 @@ def _turns(position: Floats, *, least: float) -> Integers:
         return known
     stroke = position[known]
     return known[find_reversals(stroke, band=max(np.ptp(stroke) / 4, least))]
+
+
+_MOSTLY_HELD = 0.5  # of the time between the first and the last turn
+
+
+def _n_strokes(time: Floats, turns: Integers, standstills: Standstills) -> int:
+    if turns.size < 2:
+        return 0
+    start, end = float(time[turns[0]]), float(time[turns[-1]])
+    is_between = (standstills.start_time < end) & (standstills.end_time > start)
+    held = float((standstills.end_time - standstills.start_time)[is_between].sum())
+    n_holds = int((~standstills.is_rest).sum()) if held > _MOSTLY_HELD * (end - start) else 0
+    return max(turns.size - 1 - n_holds, 0)
 
 
 _MORE_IN_PULL = 1.25

@@ -38,6 +38,15 @@ def test_a_sine_whose_tension_leads_by_a_known_time():
     assert found.n_strokes == 24
 
 
+@pytest.mark.parametrize(("ramp", "stand", "n_strokes"), [(40, 10, 24), (20, 300, 0)])
+def test_dwells_at_the_turns_of_cycles_are_told_from_holds(ramp, stand, n_strokes):
+    lasts = np.tile([ramp, stand], 24)
+    time = np.arange(0, lasts.sum(), 0.5)
+    position = np.interp(time, np.cumsum([0, *lasts]), [20.0, *[40, 40, 20, 20] * 12])
+    found = levels(position / 1000, 5 * position, waveform="other", step=0.5)
+    assert found.n_strokes == pytest.approx(n_strokes, abs=1)
+
+
 @pytest.mark.parametrize(
     ("stated", "is_missed"),
     [((0.5, 1.5), False), ((0.45, 1.5), False), ((0.75, 1.5), True), ((0.2, 1.5), True),
