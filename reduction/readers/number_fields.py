@@ -252,6 +252,11 @@ def _what_to_set(found: str, want: DeclaredColumn, layout: Layout) -> str:
     parted = "," if layout.decimal == "." else "."
     is_parted = not layout.thousands and _GROUPS[parted].fullmatch(found) is not None
     has_comma = layout.decimal == "." and _COMMA.fullmatch(found) is not None
+    if found.count(layout.decimal) > 1 and _GROUPS[layout.decimal].fullmatch(found):
+        return (
+            "It has two decimal marks: a program took that of the log for a mark between thousands,"
+            " and wrote it elsewhere. No setting restores the number: export the log again."
+        )
     if is_parted and has_comma:
         return 'Set thousands = "," if the comma separates groups, or decimal = "," if it does not.'
     if is_parted:

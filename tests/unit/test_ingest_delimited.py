@@ -355,6 +355,15 @@ def test_quoted_fields_may_hold_the_mark_that_parts_them(read):
     np.testing.assert_array_equal(log.columns["tension.1"], [998.2, 1004.80328, -11044.03516])
 
 
+@pytest.mark.parametrize(("mark", "found"), [(",", "1,000,292"), (".", "1.000.292")])
+def test_a_decimal_mark_taken_for_one_of_thousands_is_told(read, mark, found):
+    text = f"t;x;F\n0;99{mark}98;1\n1;{found};1\n"
+    with pytest.raises(
+        LogError, match=r"log\.csv:3 \[x\]: .*two decimal marks.*export the log again"
+    ):
+        read(text, delimiter=";", decimal=mark)
+
+
 ROWS = ['t,"x",F', "0,10,1", '"0.1",11,"2"', "0.2,12,3"]
 
 
