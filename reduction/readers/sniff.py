@@ -66,6 +66,8 @@ _ROWS = 4000
 
 _RUN = 3  # minimum number of consecutive rows in a table
 
+_PART_OF = 8  # a part of a table is longer than its longest part divided by this
+
 _FILLED = 0.5  # of the rows: a column with fewer values need not have a name
 
 _NUMBER = {
@@ -120,14 +122,14 @@ def _look_at_table(rows: Sequence[Sequence[str]], decimal: str) -> _TableShape |
     # a preamble line with a number in it has fewer numbers than a row of the table
     good = [is_data and 2 * count > usual for count, is_data in zip(counts, data, strict=True)]
     run = max(2, min(_RUN, sum(good)))
-    start = next((i for i in range(len(rows)) if sum(good[i : i + run]) == run), None)
+    # not those of an author's own numbers, which stand beside a few rows of a log, without a name
+    filled = np.mean([[*map(bool, rows[i])] for i in np.flatnonzero(data)], axis=0) > _FILLED
+    is_named = filled if filled.any() else np.ones(n_fields, np.bool_)
+    start = _first_row(rows, good, run, is_named)
     if start is None:
         return None
     above = [i for i in range(start) if any(rows[i])]
     name_row, unit_row = None, None
-    # not those of an author's own numbers, which stand beside a few rows of a log, without a name
-    filled = np.mean([[*map(bool, rows[i])] for i in np.flatnonzero(data)], axis=0) > _FILLED
-    is_named = filled if filled.any() else np.ones(n_fields, np.bool_)
     if above and _is_header(rows[above[-1]], is_named):
         name_row = above[-1]
         if (
@@ -152,6 +154,27 @@ def _look_at_table(rows: Sequence[Sequence[str]], decimal: str) -> _TableShape |
             if is_data
         ),
     )
+
+
+def _first_row(
+    rows: Sequence[Sequence[str]], good: Sequence[bool], run: int, is_named: Bools
+) -> int | None:
+    """First row of the table: below the results of the test, which are a short table above it.
+
+    A spreadsheet that saves a log gives both as many fields.
+    """
+    starts, sizes, headed = [], [], False
+    for row, is_good in enumerate(good):
+        if is_good and (headed or not starts) and sum(good[row : row + run]) == run:
+            starts.append(row)
+            sizes.append(0)
+        if is_good and starts:
+            sizes[-1] += 1
+        headed = not is_good and any(rows[row]) and _is_header(rows[row], is_named)
+    long = [
+        start for start, size in zip(starts, sizes, strict=True) if size > max(sizes) / _PART_OF
+    ]
+    return long[0] if long else None
 
 
 def _without_texts(rows: Sequence[Sequence[str]]) -> Sequence[Sequence[str]]:
@@ -325,7 +348,7 @@ def _best_of(
     lines: Sequence[str], delimiters: Sequence[str]
 ) -> tuple[str, str, _TableShape] | None:
     """The best table for the given delimiters."""
-    best, best_score = None, (0.0, 0)
+    best, best_score = None, (0.0, 0.0, 0.0)
     for delimiter in delimiters:
         rows = _split(lines, delimiter)
         for decimal in ".,":
@@ -335,7 +358,8 @@ def _best_of(
                 continue
             fields = [text for row in table.rows for text in row if text]
             numbers = sum(_is_number(text, decimal) or _is_time(text) for text in fields)
-            score = (round(numbers / len(fields), 2), numbers)
+            share = numbers / max(len(fields), 1)
+            score = round(share, 2), round(math.log(max(numbers, 1)), 1), share
             if score > best_score and score[0] > _LEAST_SHARE[delimiter == " "]:
                 best, best_score = (delimiter, decimal, table), score
     return best

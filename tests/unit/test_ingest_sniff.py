@@ -302,6 +302,44 @@ def test_the_names_of_a_log_are_seen_beside_the_numbers_that_an_author_added(tmp
     }
 
 
+def test_a_table_of_results_above_the_log_is_not_taken_for_it(tmp_path):
+    results = "".join(f"{i},{3000 + i},{20 + i},\n" for i in range(1, 6))
+    rows = "".join(f",{i / 10},{50 + i},{i}\n" for i in range(60))
+    path = write(
+        tmp_path,
+        f"Results Table 1,,,\n,Maximum Force,Width,Note\n,(N),(mm),\n{results},,,\n"
+        f"1,Time,Displacement,Force\n,(s),(mm),(N)\n{rows}",
+    )
+    found = proposed(path)
+    assert found["preamble_rows"] == 9 and found["has_unit_row"]
+    assert columns(found) == {
+        "time": ("Time", "s"),
+        "crosshead_position": ("Displacement", "mm"),
+        "tension.1": ("Force", "N"),
+    }
+    assert read_log(path, filled(found), name="x").n_rows_read == 60
+
+
+def test_a_short_first_part_of_a_log_is_taken_for_its_beginning(tmp_path):
+    rows = [f"{i / 10},{50 + i},{i}" for i in range(60)]
+    path = write(tmp_path, "\n".join(["t [s],x [mm],F [N]", *rows[:4], "halt,,", *rows[4:]]))
+    found = proposed(path)
+    assert found["has_name_row"] and "preamble_rows" not in found
+
+
+def test_a_header_of_labview_with_numbers_in_it_is_no_part_of_the_table(tmp_path):
+    head = (
+        "LabVIEW Measurement\t\nSeparator\tTab\n***End_of_Header***\t\n\t\nChannels\t2\t\t\n"
+        "Samples\t1000\t1000\t\nDate\t2023/10/19\t2023/10/19\t\nX_Dimension\tTime\tTime\t\n"
+        "X0\t0.0E+0\t0.0E+0\t\nDelta_X\t1.0E-5\t1.0E-5\t\n***End_of_Header***\t\t\t\n"
+        "X_Value\tStroke\tLoad\tComment\n0.0\t50.0\t0.0\tSpecimen 3, rate 100000\n"
+    )
+    rows = "".join(f"{i / 10}\t{50 + i}\t{i}\n" for i in range(1, 1000))
+    found = proposed(write(tmp_path, head + rows))
+    assert found["delimiter"] == "\t" and "missing" not in found
+    assert columns(found)["time"] == ("X_Value", "s")
+
+
 def test_rows_quoted_as_a_whole_are_drafted_and_read(tmp_path):
     rows = "".join(f'"{i / 10},{50 + i},{i}"\r\n' for i in range(9))
     path = write(tmp_path, f'"Time (s),Position (mm),Load (N)"\r\n{rows}')
