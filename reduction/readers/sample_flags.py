@@ -1163,8 +1163,40 @@ def find_spikes(values: Floats, settings: QualitySettings, time: Floats) -> Bool
         back = take_samples(time, np.minimum(last + 1, time.size - 1)) - take_samples(time, last)
         # a signal moves further in longer steps, on both sides of the rows; one is a gap
         is_slow = np.minimum(out, back) > _OTHER_RATE * usual
-        found[rows[np.repeat(is_slow, last + 1 - first)]] = False
+        is_code = _are_codes(values, first, last, most=_SMALL_CODE * (high - low))
+        found[rows[np.repeat(is_slow | is_code, last + 1 - first)]] = False
     return found
+
+
+def _are_codes(values: Floats, first: Integers, last: Integers, *, most: float) -> Bools:
+    """Whether excursions are one step of the digits that a channel is written with around them.
+
+    A log with four digits steps by 0.0001 below 1 and by 0.001 above.  Where nothing else moves,
+    any small excursion is one step.
+
+    Examples
+    --------
+    >>> written = np.round(2 + 0.0002 * np.arange(100), 3)
+    >>> written[[40, 70]] += [0.001, 0.003]
+    >>> print(_are_codes(written, np.array([40, 70]), np.array([40, 70]), most=0.01))
+    [ True False]
+    """
+    size = np.abs(take_samples(values, first) - take_samples(values, np.maximum(first - 1, 0)))
+    small = np.flatnonzero(size <= most)
+    beside = first[small, np.newaxis] + np.arange(-_AROUND, _AROUND + 1)
+    steps = np.abs(np.diff(take_samples(values, np.clip(beside, 0, values.size - 1)), axis=1))
+    is_own = (beside[:, 1:] >= first[small, np.newaxis]) & (
+        beside[:, :-1] <= last[small, np.newaxis]
+    )
+    steps[is_own | ~(steps > 0)] = np.inf
+    is_code = np.zeros(first.size, np.bool_)
+    is_code[small] = size[small] <= _MORE_THAN_A_CODE * steps.min(axis=1)
+    return is_code
+
+
+_SMALL_CODE = 2e-3  # of the range: a step of four digits is at most a thousandth of the reading
+
+_AROUND = 64  # samples
 
 
 _SPIKE_OF_RANGE = 1e-4

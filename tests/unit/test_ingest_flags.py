@@ -282,6 +282,16 @@ def test_a_coarse_converter_and_a_rest_are_no_repeated_readings():
         assert flagged(record(position=position, load=load)).n_samples == TIME.size
 
 
+@pytest.mark.parametrize(("jump", "spikes"), [(0.0, []), (0.004, [1500])])
+def test_one_step_of_a_channel_written_with_four_digits_is_no_spike(jump, spikes):
+    noise = np.random.default_rng(1).normal(0, 1e-4, TIME.size)
+    moved = np.interp(TIME, [0, 20, 100, 130], [0.3, 0.9, 0.9, 1.15728]) + noise
+    written = np.array([float(f"{one:.4g}") for one in moved])  # by 0.0001 below 1, 0.001 above
+    written[1500] += jump
+    found = flagged(record(position=5 + written))
+    assert where(found.crosshead_position_quality_flag, Quality.SPIKE) == spikes
+
+
 @pytest.mark.parametrize(("dip", "spikes"), [(0.09, []), (0.9, [600])])
 def test_a_dip_of_less_than_a_ten_thousandth_of_the_range_is_no_spike(dip, spikes):
     """A plateau that a good load cell reads to 4 mN: the dip is twenty times that."""

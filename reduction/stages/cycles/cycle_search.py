@@ -191,7 +191,7 @@ _ONE_WAY_HINT = (
 )
 
 _BOUNCE_HINT = (
-    'The crosshead ends at its furthest: if it only bounced as the specimen parted, give kind ='
+    "The crosshead ends at its furthest: if it only bounced as the specimen parted, give kind ="
     ' "tensile". '
 )
 
