@@ -182,7 +182,8 @@ def _stored(stream: BinaryIO, watch: Watch) -> Iterator[tuple[str, tuple[int, in
         # an object of one of MATLAB's own classes has no shape, and the library fails on it
         with suppress(TypeError):
             for name, _, _ in scipy.io.whosmat(_alone(stream, begin, min(length, _LONGEST_HEAD))):
-                yield name, (begin, length)
+                if not name.startswith("_"):  # no variable: what such objects keep in the file
+                    yield name, (begin, length)
         begin += length
 
 

@@ -34,6 +34,7 @@ from reduction.readers.hdf5 import data_set, group_table, open_hdf5, read_texts
 from reduction.readers.json_matrix import json_content
 from reduction.readers.layout import UNKNOWN, Format, Layout, Watch
 from reduction.readers.matlab import (
+    OF_MATLAB_ALONE,
     matlab_table,
     open_matlab,
     read_cell_texts,
@@ -901,7 +902,10 @@ def sniff_layout(path: Path, *, name: str = "log", sheet: str | None = None) -> 
         check_not_empty(path, n_bytes)
         seen = _look(path, sheet, watch)
     if not seen.columns:
-        raise LogError(path, "no columns of numbers are found", needed="a log")
+        raise LogError(
+            path, "no columns of numbers are found", needed="a log",
+            hint=OF_MATLAB_ALONE if seen.format == "matlab" else None,
+        )  # fmt: skip
     proposal = propose_channels_table(seen.columns)
     lines = [f"[layouts.{name}]", f'format = "{seen.format}"']
     lines += [f"{key} = {toml_text(value)}" for key, value in seen.settings.items()]

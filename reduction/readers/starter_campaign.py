@@ -147,7 +147,7 @@ def starter_campaign(folder: Path) -> dict[str, str]:
                 continue
             found = _logs_of(path)
         except LogError as error:
-            refused.append(f"{path.name}: {error.problem}")
+            refused.append(". ".join(filter(None, (f"{path.name}: {error.problem}", error.hint))))
             if path.suffix.lower() not in _NO_LOGS:
                 blind.append(path)
             continue

@@ -577,6 +577,15 @@ def test_a_binary_file_without_columns_is_refused(tmp_path):
         sniff_layout(tmp_path / "log")
 
 
+def test_what_objects_of_matlab_keep_in_a_file_is_no_column(tmp_path):
+    path = tmp_path / "log.mat"
+    scipy.io.savemat(path, {"x": np.arange(300) % 256})
+    named, nameless = b"\x01\x00\x01\x00x\x00\x00\x00", b"\x01" + bytes(7)
+    path.write_bytes(path.read_bytes().replace(named, nameless))
+    with pytest.raises(LogError, match="no columns of numbers are found; .*table2struct"):
+        sniff_layout(path)
+
+
 @pytest.mark.parametrize("name", ["Disp (mm)", "disp_mm", "Axial Disp (mm)", "Displacement (mm)"])
 def test_a_short_word_for_displacement_is_a_position(tmp_path, name):
     path = write(tmp_path, f"Time (s),{name},Load (N)\n0,1,2\n1,2,3\n2,3,4\n")
