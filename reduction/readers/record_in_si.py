@@ -454,31 +454,35 @@ def _shared_time(log: RawLog, layout: Layout) -> Floats | None:
 def _check_restart(piece: _Piece) -> None:
     """Refuse a log in which time restarts; a clock slip is brief or small."""
     time, low, high = piece.time, np.inf, -np.inf
-    for part in sample_blocks(time.size, time, overlap=1):
-        block = time[part]
+    for part in sample_blocks(time.size, time, overlap=_RESTART_OVERLAP):
+        known = np.flatnonzero(np.isfinite(time[part]))  # blank rows may part two runs
+        block, known = time[part][known], known + part.start
         falls = np.flatnonzero(np.diff(block) < 0)
         if falls.size:  # from the latest time so far: a clock may slip at every hundredth sample
             first = np.fmin(np.fmin.accumulate(block)[falls], low)
             top = np.fmax(np.fmax.accumulate(block)[falls], high)
             is_far = top - block[falls + 1] > (top - first) / 2
-            for last, reached in zip(part.start + falls[is_far], top[is_far], strict=True):
-                _check_slip(piece, int(last), reached)
+            for last, reached in zip(falls[is_far], top[is_far], strict=True):
+                _check_slip(piece, int(known[last]), int(known[last + 1]), reached)
         low, high = np.fmin.reduce(block, initial=low), np.fmax.reduce(block, initial=high)
 
 
-def _check_slip(piece: _Piece, last: int, top: float) -> None:
+_RESTART_OVERLAP = 8  # samples: more blank rows between two runs, at the seam of blocks, hide one
+
+
+def _check_slip(piece: _Piece, last: int, fallen: int, top: float) -> None:
     """Refuse a fall in time that then runs on for some samples below its earlier maximum."""
     time = piece.time
-    after = time[last + 1 : last + 2 + _RESTART_SAMPLES]
+    after = time[fallen : fallen + 1 + _RESTART_SAMPLES]
     if after.size <= _RESTART_SAMPLES or after[-1] >= top or not np.all(np.diff(after) > 0):
         return
-    place = piece.place_of(last + 1, "time")
+    place = piece.place_of(fallen, "time")
     step = float(after[1] - after[0])
     wraps = [one for one in _WRAPS if 0 <= one - time[last] < 2 * step and 0 <= after[0] < 2 * step]
     raise DataError(
         "the log has two time bases: time starts again",
         found=f"{after[0]:g} s after {time[last]:g} s"
-        + ("" if place else f" at {piece.row_of(last + 1)}"),
+        + ("" if place else f" at {piece.row_of(fallen)}"),
         needed="one time that keeps rising",
         hint=f"The clock restarts every {wraps[0]:g} s: at each restart, add that much to the time "
         "of all later rows."

@@ -377,6 +377,13 @@ def test_time_that_starts_again_is_two_time_bases():
         convert((log({"time": again}, row=np.arange(200) + 1000), layout()))
 
 
+@pytest.mark.parametrize("n_blank", [1, 2, 5])
+def test_blank_rows_between_two_runs_hide_no_second_time_base(n_blank):
+    again = np.concatenate([TIME[:150], np.full(n_blank, np.nan), TIME[: 50 - n_blank]])
+    with pytest.raises(DataError, match=f"T-1.csv:{154 + n_blank} .*time starts again; found 0 s"):
+        convert((log({"time": again}), layout()))
+
+
 def test_a_slip_of_the_clock_is_flagged_and_no_second_time_base():
     time = TIME.copy()
     time[-1] = 18.0
