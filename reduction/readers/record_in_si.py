@@ -589,6 +589,8 @@ def _check_channels(layout: Layout, test_id: str, n_specimens: int) -> dict[str,
             f"test '{test_id}': its layout has no crosshead_position channel",
             found=", ".join(layout.channels),
             needed="crosshead_position",
+            hint="Add it to the layout. Where `reduction init` found no column for it, the comments"
+            " of the draft say why: a table of the extremes of each cycle has none.",
         )
     counts = {}
     for kind in _OF_SPECIMENS:
