@@ -27,6 +27,7 @@ from reduction.readers.layout import CLOCK, UNKNOWN
 from reduction.record.errors import SettingsError
 from reduction.record.measurement import Floats
 from reduction.record.plain_text import toml_comment, toml_text
+from reduction.stages.cycles.reversals import find_reversals
 
 _NOT_MEASURED = (
     r"sollwert|set ?point|command|cmd|target|maximum|minimum|max|min|rate|speed|velocity|"
@@ -129,11 +130,12 @@ class SeenColumn:
 
 @dataclass(frozen=True)
 class _Proposal:
-    """Channels as lines of TOML, whether any was found, and the guesses among them."""
+    """Channels as lines of TOML, whether any was found, the guesses among them, kind of test."""
 
     lines: tuple[str, ...]
     keys: tuple[str, ...]
     remarks: tuple[str, ...]
+    kind: str
 
 
 _EXTREME = re.compile(r"\b(max|min|maximum|minimum|peak|valley)\b", re.IGNORECASE)
@@ -420,7 +422,45 @@ def propose_channels_table(columns: Sequence[SeenColumn]) -> _Proposal:
         for column in seen
         if column.number not in used
     ]
-    return _Proposal(tuple(lines), tuple(chosen), tuple(remarks))
+    kind = (
+        _kind_of(chosen["crosshead_position"][0].values) if "crosshead_position" in chosen else ""
+    )
+    return _Proposal(tuple(lines), tuple(chosen), tuple(remarks), kind)
+
+
+def _kind_of(position: Floats) -> str:
+    """Kind of a test whose position moves one way, or goes to one length and stands; else empty.
+
+    Examples
+    --------
+    >>> pull = np.linspace(0.0, 10.0, 100)
+    >>> _kind_of(pull), _kind_of(np.append(pull, np.full(300, 10.0)))
+    ('tensile', 'relaxation')
+    >>> _kind_of(np.tile(np.append(pull, pull[::-1]), 3))
+    ''
+    """
+    known = position[np.isfinite(position)]
+    if known.size < _LEAST_OF_PULL or not np.ptp(known):
+        return ""
+    turns = known[find_reversals(known, band=_TURN * float(np.ptp(known)))]
+    if not 2 <= turns.size <= 3:  # a move out, or out and back
+        return ""
+    stands = np.abs(known - turns[1]) <= _STANDS * np.ptp(known)
+    if np.mean(stands) > _MOSTLY:
+        return "relaxation"
+    lag = max(known.size // _PARTS, 1)
+    moved = np.abs(known[lag:] - known[:-lag])
+    pauses = np.mean(moved < _SLOW * moved.mean()) > _PAUSES
+    return "tensile" if turns.size == 2 and not pauses else ""
+
+
+_LEAST_OF_PULL = 10  # readings
+
+_PARTS, _SLOW, _PAUSES = 50, 0.2, 0.4  # a part of a log is a pause below a fifth of the mean rate
+
+_TURN, _STANDS = 0.05, 0.01  # of the range
+
+_MOSTLY = 0.5  # of the rows
 
 
 def _choose_columns(

@@ -61,9 +61,13 @@ class _SeenTable:
     settings: dict[str, object] = field(default_factory=dict)
     remarks: tuple[str, ...] = ()
     preamble: tuple[str, ...] = ()
+    is_cut: bool = False
+    """Whether only the beginning of the file was looked at."""
 
 
 _ROWS = 4000
+
+_NEARLY = 0.9  # of the rows: a table with fewer is seen as a whole
 
 _RUN = 3  # minimum number of consecutive rows in a table
 
@@ -482,6 +486,7 @@ def _look_at_text(path: Path) -> _SeenTable:
     return _SeenTable(
         "blocks" if is_blocks else "delimited", columns, settings, tuple(remarks),
         preamble=tuple(filter(None, map(_tidy, lines[: table.start])))[:_HEADER],
+        is_cut=not is_whole,
     )  # fmt: skip
 
 
@@ -831,12 +836,15 @@ class SniffedLayout:
         Channels found.
     preamble : tuple of str
         Lines above the table.
+    kind : str
+        Kind of the test, if the position shows one that does not cycle.
     """
 
     toml: str
     remarks: tuple[str, ...]
     keys: tuple[str, ...]
     preamble: tuple[str, ...] = ()
+    kind: str = ""
 
     @property
     def settings(self) -> str:
@@ -916,7 +924,10 @@ def sniff_layout(path: Path, *, name: str = "log", sheet: str | None = None) -> 
         said = [line for line in seen.preamble if _RATES.search(line) and _OWN_NUMBER.search(line)]
         remarks += [f"unknown: the log says about it: {line}" for line in said[:_MOST_SAID]]
     lines += [f"[layouts.{name}.channels]", *proposal.lines, ""]
-    return SniffedLayout("\n".join(lines), tuple(remarks), proposal.keys, seen.preamble)
+    # what follows the first rows may be another kind of test
+    is_whole = not seen.is_cut and seen.columns[0].values.size < _NEARLY * _ROWS
+    kind = proposal.kind if is_whole else ""
+    return SniffedLayout("\n".join(lines), tuple(remarks), proposal.keys, seen.preamble, kind)
 
 
 def unknown_layout() -> SniffedLayout:

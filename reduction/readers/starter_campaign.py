@@ -57,6 +57,11 @@ _GAUGE = """\
 gauge_length = "?"  # length that stretches: "2.5 m"; delete this line if you have marks.csv
 """
 
+_KIND = """\
+# guess: the kinds in tests.csv of short logs: tensile where the position moves one way, relaxation
+# where it goes to one length and mostly stands there
+"""
+
 _NO_MARKS = """\
 # How strain is computed. With splices: from tape readings at their toes, in a table with columns
 # test,specimen,hold,near_toe_mm,far_toe_mm,far_thimble_mm
@@ -270,6 +275,7 @@ def _texts(folder: Path, logs: list[_Log], marks: list[str], refused: list[str])
         "[defaults]",
         'kind = "cyclic"  # bedding-in, fatigue, snap, relaxation, creep, quasi-static, tensile,',
         "# stepwise",
+        *([_KIND.rstrip()] if any(log.sniffed.kind for log in logs) else []),
         'control = "position"  # or load',
     ]
     if not marks:
@@ -290,5 +296,6 @@ def _texts(folder: Path, logs: list[_Log], marks: list[str], refused: list[str])
     for wish, log in rows:
         specimens = ";".join(alone or [UNKNOWN] * log.n_specimens)
         layout, _ = layouts[_form(log)]
-        writer.writerow((_unique(wish, ids), "", safe_cell(log.file), layout, "", specimens))
+        row = (_unique(wish, ids), log.sniffed.kind, safe_cell(log.file), layout, "", specimens)
+        writer.writerow(row)
     return {"campaign.toml": "\n".join(lines) + "\n", "tests.csv": table.getvalue()}

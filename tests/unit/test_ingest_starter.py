@@ -3,6 +3,7 @@ import io
 import tomllib
 from pathlib import Path
 
+import numpy as np
 import pytest
 from workbook import write_xlsx
 
@@ -161,6 +162,30 @@ def test_the_draft_loads_once_every_question_is_answered(folder):
     specimens = {name: plan.specimens for name, plan in campaign.tests.items()}
     assert list(specimens) == ["T-1", "T-2", "T-10", "ber-5"]
     assert specimens["T-1"] == ("new", "used") and specimens["ber-5"] == ("used",)
+
+
+@pytest.mark.parametrize(
+    ("knots", "kind"),
+    [
+        ([(0, 0), (100, 10)], "tensile"),
+        ([(0, 0), (15, 0), (90, 10), (100, 10)], "tensile"),
+        ([(0, 0), (10, 10), (100, 10)], "relaxation"),
+        ([(0, 0), (10, 10), (90, 10), (100, 0)], "relaxation"),
+        ([(0, 0), (10, 5), (45, 5), (55, 8), (70, 8), (80, 10), (100, 10)], ""),
+        ([(0, 0), (50, 10), (100, 0)], ""),
+        ([(time, 10 * (time % 20 > 0)) for time in range(0, 110, 10)], ""),
+    ],
+)
+@pytest.mark.parametrize("n_rows", [60, 3000])
+def test_the_kind_of_a_test_that_does_not_cycle_is_drafted(tmp_path, knots, kind, n_rows):
+    time = np.linspace(0, 100, n_rows)
+    position = np.interp(time, *zip(*knots, strict=True))
+    position += np.random.default_rng(1).normal(0, 0.002, n_rows)
+    lines = [f"{t:.3f},{x:.4f},{3 * x:.3f}\n" for t, x in zip(time, position, strict=True)]
+    (tmp_path / "T-1.csv").write_text("".join(["Time (s),Position (mm),Load (N)\n", *lines]))
+    files = starter_campaign(tmp_path)
+    assert [row["kind"] for row in rows(files)] == [kind]
+    assert ("# guess: the kinds in tests.csv" in files["campaign.toml"]) is bool(kind)
 
 
 def test_each_sheet_of_a_workbook_that_holds_a_table_is_a_log(tmp_path):
