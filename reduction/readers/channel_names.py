@@ -141,6 +141,13 @@ class _Proposal:
 _EXTREME = re.compile(r"\b(max|min|maximum|minimum|peak|valley)\b", re.IGNORECASE)
 
 
+_RESULT = re.compile(
+    r"\b(storage|loss|speicher|verlust)|\btan[\W_]*(delta|δ)|\bphase\b|^\W*[EG]['\"*]",
+    re.IGNORECASE,
+)
+"""Names of what a machine computes from the cycles at one frequency or temperature."""
+
+
 @lru_cache(maxsize=4096)
 def is_unit(text: str, dimension: Dimension | None = None) -> bool:
     """Whether a text is a unit of one dimension, or of any."""
@@ -407,24 +414,30 @@ def propose_channels_table(columns: Sequence[SeenColumn]) -> _Proposal:
             lines.append(f"# {text}" if is_commented else text)
             remarks.append(f"unknown: which column is {key}, if one is")
     extremes = [column for column in columns if _EXTREME.search(column.name)]
-    if len(extremes) > 1 and all(
+    results = [column for column in columns if _RESULT.search(column.name)]
+    are_extremes = len(extremes) > 1 and all(
         _EXTREME.search(column.name)
         for key, (column, _) in chosen.items()
         if key == "crosshead_position" or key.startswith("tension.")
+    )
+    for is_table, named, of in (
+        (are_extremes, extremes, "extremes of each cycle"),
+        (len(results) > 1, results, "results of each frequency or temperature"),
     ):
-        remarks.append(
-            f"guess: by their names, {_label(extremes[0])} and {_label(extremes[1])} are extremes"
-            " of each cycle: such a table has no loops, so use the log of the readings"
-        )
+        if is_table:
+            remarks.append(
+                f"guess: by their names, {_label(named[0])} and {_label(named[1])} are {of}: such a"
+                " table has no loops, so use the log of the readings"
+            )
     used = {column.number for column, _ in chosen.values()}
     lines += [
         f"# not used: column {column.number}{_described(column)}"
         for column in seen
         if column.number not in used
     ]
-    kind = (
-        _kind_of(chosen["crosshead_position"][0].values) if "crosshead_position" in chosen else ""
-    )
+    kind = ""
+    if "crosshead_position" in chosen and not are_extremes and len(results) < 2:
+        kind = _kind_of(chosen["crosshead_position"][0].values)
     return _Proposal(tuple(lines), tuple(chosen), tuple(remarks), kind)
 
 

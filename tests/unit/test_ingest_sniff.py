@@ -359,6 +359,18 @@ def test_a_table_of_extremes_is_no_log_of_loops(tmp_path):
     assert "extremes of each cycle" not in " ".join(sniff_layout(path).remarks)
 
 
+@pytest.mark.parametrize(
+    "names", [("Storage modulus", "Loss modulus"), ("E'", 'E""'), ("Phase", "tan_delta")]
+)
+def test_a_table_of_results_at_each_frequency_is_no_log_of_loops(tmp_path, names):
+    rows = [f"{10 * i},{1 + i / 9:.3f},{2 + i / 50:.3f},{3 + i},{i / 5}" for i in range(40)]
+    head = f'Time (s),x (mm),F (N),"{names[0]}","{names[1]}"'
+    path = write(tmp_path, "\n".join([head, *rows]))
+    found = sniff_layout(path)
+    assert "are results of each frequency or temperature" in " ".join(found.remarks)
+    assert found.kind == ""
+
+
 @pytest.mark.parametrize(("unit", "datum"), [("mm", "displacement"), ("cm", "pin-to-pin")])
 def test_a_length_of_less_than_five_millimetres_is_no_specimen(tmp_path, unit, datum):
     rows = [f"{i / 10},{1 + abs(i % 40 - 20) / 10:.2f},{abs(i % 40 - 20)}" for i in range(200)]
