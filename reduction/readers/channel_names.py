@@ -140,7 +140,6 @@ class _Proposal:
 
 _EXTREME = re.compile(r"\b(max|min|maximum|minimum|peak|valley)\b", re.IGNORECASE)
 
-
 _RESULT = re.compile(
     r"\b(storage|loss|speicher|verlust)|\btan[\W_]*(delta|δ)|\bphase\b|^\W*[EG]['\"*]",
     re.IGNORECASE,

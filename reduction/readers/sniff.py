@@ -128,7 +128,8 @@ def _look_at_table(rows: Sequence[Sequence[str]], decimal: str) -> _TableShape |
     good = [is_data and 2 * count > usual for count, is_data in zip(counts, data, strict=True)]
     run = max(2, min(_RUN, sum(good)))
     # not those of an author's own numbers, which stand beside a few rows of a log, without a name
-    filled = np.mean([[*map(bool, rows[i])] for i in np.flatnonzero(data)], axis=0) > _FILLED
+    numbers = [[*map(bool, row)] for row, is_data in zip(rows, data, strict=True) if is_data]
+    filled = np.mean(numbers, axis=0) > _FILLED
     is_named = filled if filled.any() else np.ones(n_fields, np.bool_)
     start = _first_row(rows, good, run, is_named)
     if start is None:
@@ -168,7 +169,9 @@ def _first_row(
 
     A spreadsheet that saves a log gives both as many fields.
     """
-    starts, sizes, headed = [], [], False
+    starts: list[int] = []
+    sizes: list[int] = []
+    headed = False
     for row, is_good in enumerate(good):
         if is_good and (headed or not starts) and sum(good[row : row + run]) == run:
             starts.append(row)
