@@ -2431,3 +2431,22 @@ def test_the_first_of_ramps_that_grow_is_measured_from_its_valley():
     loops = close_loops(time, 500 * strain[None], strain[None], cycles)
     assert loops.strain_amplitude[0] == pytest.approx((peaks - 0.3) / 2, rel=0.02)
     assert loops.apparent_spring_constant[0] == pytest.approx(500, rel=1e-3)
+
+
+def test_a_cycle_between_valleys_alike_does_not_grow_with_the_next_level():
+    # as a column of concrete is, to one level after the other
+    knots = np.array([-0.2, 0.2, -0.2, 0.2, -0.4, 0.4, -0.4])
+    turns = np.append(0.0, np.cumsum(np.abs(np.diff(knots)))) / 0.05
+    time = np.arange(0, turns[-1], 0.0931)
+    strain = np.interp(time, turns, knots)
+    at = np.searchsorted(time, turns)
+    at[-1] = time.size - 1
+    first, peak, last = at[:-1:2], at[1::2], at[2::2]
+    cycles = Cycles(
+        first, last, np.stack([first, peak], axis=1), np.stack([peak, last], axis=1),
+        np.ones((3, 2)), np.zeros(time.size, np.int32), np.zeros(time.size, np.int8),
+        np.zeros(time.size, bool), 0.1,
+    )  # fmt: skip
+    loops = close_loops(time, 500 * strain[None], strain[None], cycles)
+    assert loops.strain_amplitude[0, 0] == pytest.approx(0.2, rel=0.01)
+    assert loops.apparent_spring_constant[0] == pytest.approx(500, rel=1e-3)

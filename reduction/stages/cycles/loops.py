@@ -838,6 +838,10 @@ def _levels_of_ramps(
         # the log may end before its last valley, by a part of a reading for both channels
         step = (row[f"{driven}_top"] - foot)[-1] / (cycles.last - cycles.branch_last[:, 0])[-1]
         early = np.clip((foot[-1] - foot[-2] - of_feet[-3]) / step, 0.0, 1.0)
+    # to the next level only after a cycle between two valleys alike
+    own = np.abs(foot - row[f"{driven}_begin"])
+    beyond = ~(on_rise | on_fall) & (own < np.abs(of_feet))
+    of_growth = np.divide(own, np.abs(of_feet), out=np.ones_like(foot), where=beyond)
     for place, (name, drift) in enumerate((("force", drifts.tension), ("strain", drifts.strain))):
         answers = place == int(is_load)
         top, begin, end = (row[f"{name}_{turn}"] for turn in ("top", "begin", "end_turn"))
@@ -854,7 +858,7 @@ def _levels_of_ramps(
             missed = np.hypot(missed, EITHER_WAY * np.abs(drift) / 4)
         # the drift of a first cycle beyond its neighbours is not part of its wave
         drift = drifts.of_neighbours if answers else drift
-        drift = np.where(grows, np.append(np.diff(end), np.nan), drift)
+        drift = np.where(grows, of_growth * np.append(np.diff(end), np.nan), drift)
         mean, amplitude = _mean_and_amplitude(
             top,
             begin,
