@@ -254,10 +254,11 @@ def turn_acceleration(
                 here = turns + away
                 here = here[(here >= reach) & (here < position.size - reach)]
                 before, after = time[here] - time[here - reach], time[here + reach] - time[here]
-                bend = (
-                    (position[here + reach] - position[here]) / after
-                    - (position[here] - position[here - reach]) / before
-                ) / (0.5 * (before + after))
+                with np.errstate(divide="ignore", invalid="ignore"):  # readings at one time
+                    bend = (
+                        (position[here + reach] - position[here]) / after
+                        - (position[here] - position[here - reach]) / before
+                    ) / (0.5 * (before + after))
                 if found is not None:
                     bend = bend - found[here]
                 bend = bend[np.isfinite(bend)]

@@ -370,6 +370,13 @@ def test_fundamental_on_uneven_times():
     assert cosine[0] == pytest.approx(3, abs=2e-3) and sine[0] == pytest.approx(-1, abs=2e-3)
 
 
+def test_a_cycle_that_ends_with_two_readings_at_one_time_has_a_fundamental():
+    t = np.append(np.arange(101.0), 100.0)
+    basis = cycle_basis(t, np.array([0]), np.array([101]))
+    parts = np.ravel(fundamental(3 * np.cos(0.02 * np.pi * t) - np.sin(0.02 * np.pi * t), basis))
+    assert parts == pytest.approx([3, -1, 0], abs=1e-9)
+
+
 def drift_of(values, first, last):
     time = np.arange(values.size, dtype=float)
     middles = np.stack([(3 * first + last) // 4, (first + 3 * last) // 4])

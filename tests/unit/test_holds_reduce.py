@@ -502,6 +502,20 @@ def test_the_steps_of_a_converter_are_no_slip_and_in_the_interval_of_the_initial
     assert any(one.code == "hold-tension-steps" for one in found.refusals)
 
 
+@pytest.mark.parametrize("slip", [0.0, 1.0])
+def test_a_fast_fall_where_readings_are_lost_is_no_step(slip):
+    # of a time constant of 1 s, read every 0.05 s, with one reading in 25 lost
+    time = np.arange(0, 60, 0.05)
+    position = np.interp(time, [0, 2], [0.0, 10.0])
+    falls = np.where(time < 2, 1 - np.exp(-time), (np.exp(2) - 1) * np.exp(-time))
+    rng = np.random.default_rng(6)
+    load = 5 * position + 10 * falls - np.where(time > 20, slip, 0) + rng.normal(0, 0.02, 1200)
+    kept = np.ones(1200, dtype=bool)
+    kept[rng.choice(np.arange(2, 1198, 3), 48, replace=False)] = False
+    (found,) = reduce(time[kept], position[kept], load[kept], spans=((0, 1.9), (2, 1e9)))
+    assert any(one.code == "hold-tension-steps" for one in found.refusals) == (slip > 0)
+
+
 @pytest.mark.parametrize(("share", "is_refused"), [(0.003, False), (0.1, True)])
 def test_a_step_that_changes_no_number_refuses_none(share, is_refused):
     """A crosshead that is moved by a code: the tension steps by a share of what the hold loses."""

@@ -163,6 +163,12 @@ def test_a_turn_between_ramps_has_twice_the_rate_over_its_duration():
     assert turn_acceleration(t, x + noise, cycles) == pytest.approx(want, rel=0.15)
 
 
+def test_two_readings_at_one_time_have_no_acceleration():
+    t, x, cycles, want = turning()
+    t[cycles.first + 1] = t[cycles.first]
+    assert turn_acceleration(t, x, cycles) < 2 * want
+
+
 def test_noise_alone_is_no_acceleration():
     t, _, cycles, _ = turning()
     noise = np.random.default_rng(2).normal(0.0, 1e-3, t.size)

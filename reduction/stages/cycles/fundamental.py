@@ -170,6 +170,8 @@ _AROUND = 10  # cycles on either side whose durations give the period of one
 
 _LEAST_DETERMINANT = 1e-9  # of the normal equations; 2 where samples are many and even
 
+_LEAST_SHARE = 1e-12  # of the last reading of a cycle
+
 
 @dataclass(frozen=True)
 @read_only_arrays
@@ -235,7 +237,8 @@ def cycle_basis(
     bare = _cosine_and_sine(phase)
     np.multiply(bare[0], share[begin:], out=cosine[begin:])
     np.multiply(bare[1], share[begin:], out=sine[begin:])
-    end_share = (time[last] - time[last - 1]) / duration
+    # none of two readings at one time, but their phase is kept in it
+    end_share = np.maximum((time[last] - time[last - 1]) / duration, _LEAST_SHARE)
     end_phase = turn_rate * duration
     end = end_share * np.cos(end_phase), end_share * np.sin(end_phase)
     gram = np.empty((first.size, 3, 3))

@@ -360,18 +360,26 @@ def _step_reason(hold: Hold, ends: _Ends) -> Note | None:
     whole = hold.time.size // size * size
     if whole < 24 * size:
         return None
-    parts = sample_blocks(whole, hold.tension, size=size * max(1, BLOCK // size))
-    series = np.concatenate([hold.tension[part].reshape(-1, size).mean(axis=1) for part in parts])
-    steps = find_steps(series, false_alarm=STEP_FALSE_ALARM, quantum=hold.tension_step)
-    if not steps:
-        return None
+    # tension falls farther where readings are lost: a step is one on even times, too
+    time, tension = (_means_of_blocks(one, whole, size) for one in (hold.time, hold.tension))
+    even = np.linspace(time[0], time[-1], time.size)
+    for series in (tension, np.interp(even, time, tension)):
+        steps = find_steps(series, false_alarm=STEP_FALSE_ALARM, quantum=hold.tension_step)
+        if not steps:
+            return None
     largest = max(steps, key=lambda step: abs(step.size))
     lost = abs(ends.initial - ends.final)
     of_drop = np.nan_to_num(ends.drop_uncertainty * abs(ends.initial))
     if abs(largest.size) < max(_MOTION_WORTH * lost, of_drop / 2):
         return None
-    when = hold.time[largest.onset * size] - hold.start_time
+    when = even[largest.onset] - hold.start_time
     return note("hold-tension-steps", step=float(largest.size), time=float(when))
+
+
+def _means_of_blocks(series: Floats, count: int, size: int) -> Floats:
+    """Means of ``size`` readings each, of the first ``count``."""
+    parts = sample_blocks(count, series, size=size * max(1, BLOCK // size))
+    return np.concatenate([series[part].reshape(-1, size).mean(axis=1) for part in parts])
 
 
 def _longest_step(time: Floats) -> float:
