@@ -132,7 +132,7 @@ class ShownTable:
 class ShownAnswers:
     """First output of a run: tables of answers, doubts with their tests, tests with a row.
 
-    ``withheld`` has the reasons of tests without a row, by test.
+    ``withheld`` has the reasons of tests without a row, or whose row lacks its answer, by test.
     """
 
     tables: Sequence[ShownTable]

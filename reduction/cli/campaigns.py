@@ -589,6 +589,13 @@ def _show_answers(output: CommandOutput, found: ShownAnswers) -> Sequence[str]:
             table.add_row(*map(escape, row))
         output.show(table)
         output.say("")
+    lacking = [test for test in found.answered if found.withheld.get(test)]
+    if lacking:
+        output.say("Withheld:")
+    for test in lacking[:_MOST_DOUBTS]:
+        output.say(f"  {test}: {found.withheld[test]}")
+    if len(lacking) > _MOST_DOUBTS:
+        output.say("  The report lists the others.")
     if found.doubts:
         output.say("Check:")
     for tests, text in found.doubts[:_MOST_DOUBTS]:

@@ -487,16 +487,33 @@ _OF_HOLD = (
 )  # fmt: skip
 
 
-def _hold_rows(view: TestView) -> Iterator[list[TableCell]]:
+def _longest_holds(view: TestView) -> Iterator[tuple[str, int]]:
+    """Yield each specimen with the place of its longest hold."""
     lasted, names = view.array("hold_duration"), view.texts("hold_specimen")
     if lasted is None:
         return
-    strain, force = shown("strain", view.units), shown("tension", view.units)
     for name in view.specimens:
         own = [place for place, one in enumerate(names) if one == name]
-        if not own:
-            continue
-        place = max(own, key=lambda one: float(lasted[one]))
+        if own:
+            yield name, max(own, key=lambda one: float(lasted[one]))
+
+
+def holds_without_answer(view: TestView) -> str:
+    """Why the longest hold of a relaxation or creep test has no answer; empty where it has one."""
+    key = {"relaxation": "relaxation_drop", "creep": "creep_rate_per_decade"}.get(view.kind)
+    found, reasons = view.array(key) if key else None, view.texts("hold_refusal")
+    if found is None or not reasons:
+        return ""
+    own = [(name, place) for name, place in _longest_holds(view) if reasons[place]]
+    return "; ".join(f"{name}: {reasons[at]}" for name, at in own if np.isnan(found[at]))
+
+
+def _hold_rows(view: TestView) -> Iterator[list[TableCell]]:
+    lasted = view.array("hold_duration")
+    if lasted is None:
+        return
+    strain, force = shown("strain", view.units), shown("tension", view.units)
+    for name, place in _longest_holds(view):
         cells = []
         for key, unit in zip(_OF_HOLD, (strain, force, strain, strain, strain), strict=True):
             values = view.array_like(key, lasted)

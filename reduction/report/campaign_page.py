@@ -20,6 +20,7 @@ from reduction.record.plain_text import bare_cell, natural_order
 from reduction.report.answer_tables import (
     design_modulus_table,
     hold_table,
+    holds_without_answer,
     pull_table,
     unlike_tests_table,
 )
@@ -325,7 +326,7 @@ class CampaignAnswers:
     """The answers of a campaign, and the points that a person has to check, most serious first.
 
     ``answered`` are the tests that have a row in the tables, ``withheld`` the reasons of the
-    others.
+    others, and of those whose row lacks its answer; else empty.
     """
 
     tables: tuple[PageTable, ...]
@@ -358,7 +359,10 @@ def _answers(
         is_synthetic=any_synthetic(tests) or whole.is_synthetic,
         doubts=tuple(doubts),
         answered=answered,
-        withheld={view.id: _withheld(view) for view in tests if view.id not in answered},
+        withheld={
+            view.id: holds_without_answer(view) if view.id in answered else _withheld(view)
+            for view in tests
+        },
     )
 
 

@@ -12,6 +12,7 @@ from reduction.report.answer_tables import (
     _Series,
     design_modulus_table,
     hold_table,
+    holds_without_answer,
     pull_table,
     unlike_tests_table,
 )
@@ -363,6 +364,19 @@ def test_a_relaxation_test_has_its_longest_hold_and_others_have_neither_table():
     ]
     assert pull_table([view]) is None
     assert pull_table([make_view()]) is None and hold_table([make_view()]) is None
+
+
+def test_a_hold_without_its_drop_says_why():
+    hold = {
+        "hold_specimen": ["new", "new"], "hold_duration": [60.0, 7200.0],
+        "hold_refusal": ["too short", "tension steps"], "relaxation_drop": [NAN, NAN],
+        "creep_rate_per_decade": [NAN, NAN],
+    }  # fmt: skip
+    view = pulled("relaxation", **{name: ("hold", value) for name, value in hold.items()})
+    assert holds_without_answer(view) == "new: tension steps"
+    hold["relaxation_drop"] = [NAN, 0.05]
+    view = pulled("relaxation", **{name: ("hold", value) for name, value in hold.items()})
+    assert holds_without_answer(view) == "" == holds_without_answer(make_view())
 
 
 def test_a_warning_of_one_specimen_leaves_the_other_as_it_is():
