@@ -2457,3 +2457,31 @@ def test_a_cycle_between_valleys_alike_does_not_grow_with_the_next_level():
     loops = close_loops(time, 500 * strain[None], strain[None], cycles)
     assert loops.strain_amplitude[0, 0] == pytest.approx(0.2, rel=0.01)
     assert loops.apparent_spring_constant[0] == pytest.approx(500, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("between", "levels"),
+    [
+        ([0.3], [(-0.2, 0.2), (-0.3, 0.3)]),  # the first cycle of a level is left out
+        ([1.0], [(0.8, 1.2), (-0.3, 0.3)]),
+        ([0.0], [(0.8, 1.2), (0.8, 1.2)]),  # unloaded in between
+    ],
+)
+def test_the_valley_of_a_cycle_is_not_that_of_motion_between_two_runs(between, levels):
+    (low, high), (other_low, other_high) = levels
+    knots = [low, high, low, high, low, *between, other_low, other_high, other_low, other_high]
+    knots.append(other_low)
+    ways = zip(knots[:-1], knots[1:], strict=True)
+    rounded = (1 - np.cos(np.pi * np.arange(20) / 20)) / 2
+    strain = np.append(np.concatenate([a + (b - a) * rounded for a, b in ways]), other_low)
+    time = np.arange(strain.size) * 0.1
+    first = np.array([0, 40, 120, 160])
+    pair = np.stack([first, first + 20], axis=1)
+    none = np.zeros(time.size, np.int32)
+    cycles = Cycles(
+        first, first + 40, pair, pair + 20, np.ones((4, 2)), none, none.astype(np.int8),
+        none > 0, 0.1,
+    )  # fmt: skip
+    loops = close_loops(time, 500 * strain[None], strain[None], cycles)
+    half = [(high - low) / 2] * 2 + [(other_high - other_low) / 2] * 2
+    np.testing.assert_allclose(loops.strain_amplitude[0], half, rtol=1e-3)

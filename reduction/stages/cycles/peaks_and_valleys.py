@@ -86,10 +86,14 @@ def peaks_and_valleys(
         return np.asarray(of(found, values[high]))
 
     # noise acts on both sides of a turn, even where one of them is a rest
-    rest = 0 if turn == "sharp" else values.size
+    before = after = np.full(begin.size, 0 if turn == "sharp" else values.size)
+    if turn != "sharp":
+        before, after = before.copy(), after.copy()
+        moves = _gaps_that_move(moved, begin, peak, end)
+        after[moves] = before[moves + 1] = 0
     top = extreme(np.maximum, peak - on_rise, after_peak)
-    first = extreme(np.minimum, begin - rest, begin + on_rise)
-    last = extreme(np.minimum, end - on_fall, end + rest)
+    first = extreme(np.minimum, begin - before, begin + on_rise)
+    last = extreme(np.minimum, end - on_fall, end + after)
     levels = top, first, last
     turns = _Turns(begin, peak, end, after_peak, reach)
     if turn == "sharp":
@@ -102,6 +106,30 @@ def peaks_and_valleys(
         # the readings are its lower bound, not its middle
         missed = np.nan_to_num(above + below, nan=float(np.nanmedian(above + below)))
     return way * top, way * first, way * last, missed
+
+
+_OF_CYCLE = 0.5  # of its range: what a machine at rest does not move
+
+
+def _gaps_that_move(moved: Floats, begin: Integers, peak: Integers, end: Integers) -> Integers:
+    """Cycles followed by more than a rest: by one that is left out, or by a ramp.
+
+    Examples
+    --------
+    >>> moved = np.array([0.0, 2, 0, 0, 0, 2, 0, 3, -4, 2, -4, -8, -8, -6, -8])
+    >>> begin, peak = np.array([0, 4, 8, 12]), np.array([1, 5, 9, 13])
+    >>> _gaps_that_move(moved, begin, peak, peak + 1)
+    array([1, 2])
+    """
+    gaps = np.flatnonzero(begin[1:] > end[:-1])
+    if not gaps.size:
+        return gaps
+    places = np.column_stack([end[gaps], begin[gaps + 1]]).ravel()
+    gap = moved[: places[-1] + 1]
+    highest, lowest = (of.reduceat(gap, places)[::2] for of in (np.maximum, np.minimum))
+    own = np.abs(moved[peak[gaps]] - moved[end[gaps]])
+    moving: Integers = gaps[highest - lowest > _OF_CYCLE * own]
+    return moving
 
 
 class _Turns(NamedTuple):
