@@ -112,6 +112,19 @@ def test_drop_outs_to_zero_and_to_full_scale_change_no_count(twenty):
     assert any("spikes of the control channel" in note for note in map(str, cycles.notes))
 
 
+def test_cycles_beside_an_unloading_between_two_runs_are_left_out():
+    time, position = path(back([*LEAD, *strokes(50, 10)]))
+    cycles = find(time, position)
+    foot = position[cycles.first[5]]
+    unload = np.linspace(foot, 0.0, round((foot - 0.0) / np.abs(np.diff(position)).max()) + 1)
+    at = int(cycles.first[5])
+    position = np.concatenate([position[:at], unload, unload[::-1], position[at:]])
+    time = np.arange(position.size) * (time[1] - time[0])
+    cycles = find(time, position)
+    assert cycles.n_cycles == 8
+    assert np.ptp(position[np.r_[cycles.first, cycles.last]]) < 0.1 * (position.max() - foot)
+
+
 def test_backward_slips_below_the_band_change_no_count():
     time, position = path(back([*LEAD, *strokes(50, 20)]))
     slips = 0.08 * (np.arange(time.size) // 20 % 2) * ((time > 50) & (time < 245))

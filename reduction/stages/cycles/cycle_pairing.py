@@ -740,6 +740,8 @@ _OPEN = 0.2
 
 _SETTLING = 0.3  # for the first cycle of a run, in which a machine settles
 
+_BESIDE = 24  # parts of a cycle, from a turn: where the drop-outs of a logger end
+
 _STEADY = 0.5  # of the step of a valley: least step of a neighbour in the same direction
 
 
@@ -768,7 +770,7 @@ def whole_cycles(values: Floats, halves: _HalfCycles) -> tuple[Indices, Indices,
     next: such a pair is left out. It is kept where the amplitude grows or decays steadily, that
     is, where the valley before or after steps in the same direction by at least half as much. The
     median of each valley and its neighbours is used, so that a drop-out at one does not open a
-    cycle.
+    cycle; but not where the channel stays below for longer, as when a specimen is unloaded.
 
     Examples
     --------
@@ -790,6 +792,17 @@ def whole_cycles(values: Floats, halves: _HalfCycles) -> tuple[Indices, Indices,
     peak = take_samples(values, halves.last[rising])
     follows = (np.diff(rising) == 2) & (halves.run[rising[1:]] == halves.run[rising[:-1]])
     step = _steps(begin, end, follows)
+    # a fall to another level and back takes longer than a drop-out
+    own = end - begin
+    differ = np.flatnonzero(np.abs(own) > np.maximum(_OPEN * np.abs(peak - end), 2 * np.abs(step)))
+    for pair in differ:
+        at = halves.first[rising[pair]], halves.last[rising[pair] + 1]
+        turn = at[int(abs(end[pair] - peak[pair]) > abs(begin[pair] - peak[pair]))]
+        reach = max(int(at[1] - at[0]) // _BESIDE, 2)
+        beside = np.array([max(turn - reach, 0), min(turn + reach, len(values) - 1)])
+        level = max(end[pair], begin[pair])
+        if np.all(take_samples(values, beside) < level - np.abs(own[pair]) / 2):
+            step[pair] = own[pair]
     allowed = np.full(rising.size, _SETTLING)
     allowed[1:][follows] = _OPEN
     is_open = np.abs(step) > allowed * np.abs(peak - np.minimum(begin, end))
