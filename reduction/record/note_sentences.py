@@ -644,7 +644,8 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "cycles-of-two-amplitudes": (
         "note",
-        "{n_cycles} transition cycles between two amplitudes are not counted, first at {time:g} s",
+        "{n_cycles} transition cycles between two amplitudes or levels are not counted, first at"
+        " {time:g} s",
     ),
     "cycles-of-other-length": (
         "note",

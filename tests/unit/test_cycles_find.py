@@ -1,5 +1,7 @@
 """Cycles are counted right whatever real logs do: the counts are those the paths were drawn with."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -7,6 +9,7 @@ from reduction.quantities.flags import BRANCH_VALUES, PHASE_VALUES
 from reduction.record.errors import DataError
 from reduction.record.settings import CycleSettings, PhaseSettings
 from reduction.stages.cycles.cycle_search import find_cycles, label_phases
+from reduction.stages.cycles.periods import own_periods
 from reduction.stages.standstills import find_standstills
 
 LEAD = [(0, 3), (20, 3), (40, 4)]
@@ -123,6 +126,22 @@ def test_cycles_beside_an_unloading_between_two_runs_are_left_out():
     cycles = find(time, position)
     assert cycles.n_cycles == 8
     assert np.ptp(position[np.r_[cycles.first, cycles.last]]) < 0.1 * (position.max() - foot)
+
+
+def test_cycles_between_two_levels_by_turns_are_left_out_with_a_warning():
+    # unloaded after every second cycle: no cycle but the first and last begins and ends at 6
+    knots = [0, *[6, 10, 6, 10, 6, 0] * 4]
+    ways = pairwise(knots)
+    position = np.concatenate([np.linspace(a, b, 12 * abs(b - a), endpoint=False) for a, b in ways])
+    time = np.arange(position.size) * 0.05
+    cycles = find(time, position)
+    assert cycles.n_cycles == 2
+    (left,) = [one for one in cycles.notes if one.code == "cycles-of-two-amplitudes"]
+    assert left.severity == "warning"
+    period, _ = own_periods(
+        time, position, cycles, time[cycles.last] - time[cycles.first], noise=0.0
+    )
+    assert period == pytest.approx(8 * 12 * 0.05, rel=0.02)  # not the 55 s from one to the other
 
 
 def test_backward_slips_below_the_band_change_no_count():

@@ -1,5 +1,7 @@
 """Loops: areas and moduli of exact ellipses and straight-sided loops, noise, missing readings."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -2471,7 +2473,7 @@ def test_the_valley_of_a_cycle_is_not_that_of_motion_between_two_runs(between, l
     (low, high), (other_low, other_high) = levels
     knots = [low, high, low, high, low, *between, other_low, other_high, other_low, other_high]
     knots.append(other_low)
-    ways = zip(knots[:-1], knots[1:], strict=True)
+    ways = pairwise(knots)
     rounded = (1 - np.cos(np.pi * np.arange(20) / 20)) / 2
     strain = np.append(np.concatenate([a + (b - a) * rounded for a, b in ways]), other_low)
     time = np.arange(strain.size) * 0.1

@@ -794,7 +794,9 @@ def whole_cycles(values: Floats, halves: _HalfCycles) -> tuple[Indices, Indices,
     step = _steps(begin, end, follows)
     # a fall to another level and back takes longer than a drop-out
     own = end - begin
-    differ = np.flatnonzero(np.abs(own) > np.maximum(_OPEN * np.abs(peak - end), 2 * np.abs(step)))
+    differ = np.flatnonzero(
+        (np.abs(own) > _OPEN * np.abs(peak - end)) & (np.abs(own - step) > np.abs(own) / 2)
+    )
     for pair in differ:
         at = halves.first[rising[pair]], halves.last[rising[pair] + 1]
         turn = at[int(abs(end[pair] - peak[pair]) > abs(begin[pair] - peak[pair]))]

@@ -9,7 +9,7 @@ References
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -556,7 +556,10 @@ def _between_reversals(
         first, last = first[~is_odd], last[~is_odd]
     if found.left_out.size:
         begins = float(time[found.left_out[0]])
-        notes.append(note("cycles-of-two-amplitudes", n_cycles=found.left_out.size, time=begins))
+        told = note("cycles-of-two-amplitudes", n_cycles=found.left_out.size, time=begins)
+        # results from the lesser part of a test are to be looked at
+        is_most = found.left_out.size > first.size > 0
+        notes.append(replace(told, severity="warning") if is_most else told)
     count = None
     if counter is not None and first.size:
         count = number_of_cycles(counter, first, last)

@@ -13,7 +13,7 @@ from reduction.record.measurement import Floats, Integers
 from reduction.record.samples import rounding_left, take_samples
 from reduction.record.settings import Waveform
 from reduction.stages.cycles.cycle_product import Cycles
-from reduction.stages.cycles.periods import counted_on_flanks, touching
+from reduction.stages.cycles.periods import counted_on_flanks, gaps_that_move, touching
 from reduction.stages.cycles.reading_noise import noise_and_step, reading_noise, within_scatter
 from reduction.stages.cycles.turns import (
     STEEP,
@@ -89,7 +89,7 @@ def peaks_and_valleys(
     before = after = np.full(begin.size, 0 if turn == "sharp" else values.size)
     if turn != "sharp":
         before, after = before.copy(), after.copy()
-        moves = _gaps_that_move(moved, begin, peak, end)
+        moves = gaps_that_move(moved, begin, peak, end)
         after[moves] = before[moves + 1] = 0
     top = extreme(np.maximum, peak - on_rise, after_peak)
     first = extreme(np.minimum, begin - before, begin + on_rise)
@@ -106,30 +106,6 @@ def peaks_and_valleys(
         # the readings are its lower bound, not its middle
         missed = np.nan_to_num(above + below, nan=float(np.nanmedian(above + below)))
     return way * top, way * first, way * last, missed
-
-
-_OF_CYCLE = 0.5  # of its range: what a machine at rest does not move
-
-
-def _gaps_that_move(moved: Floats, begin: Integers, peak: Integers, end: Integers) -> Integers:
-    """Cycles followed by more than a rest: by one that is left out, or by a ramp.
-
-    Examples
-    --------
-    >>> moved = np.array([0.0, 2, 0, 0, 0, 2, 0, 3, -4, 2, -4, -8, -8, -6, -8])
-    >>> begin, peak = np.array([0, 4, 8, 12]), np.array([1, 5, 9, 13])
-    >>> _gaps_that_move(moved, begin, peak, peak + 1)
-    array([1, 2])
-    """
-    gaps = np.flatnonzero(begin[1:] > end[:-1])
-    if not gaps.size:
-        return gaps
-    places = np.column_stack([end[gaps], begin[gaps + 1]]).ravel()
-    gap = moved[: places[-1] + 1]
-    highest, lowest = (of.reduceat(gap, places)[::2] for of in (np.maximum, np.minimum))
-    own = np.abs(moved[peak[gaps]] - moved[end[gaps]])
-    moving: Integers = gaps[highest - lowest > _OF_CYCLE * own]
-    return moving
 
 
 class _Turns(NamedTuple):

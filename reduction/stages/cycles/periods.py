@@ -44,6 +44,33 @@ def touching(cycles: Cycles) -> Bools:
     return np.concatenate([[False], cycles.last[:-1] == cycles.first[1:]])
 
 
+_OF_CYCLE = 0.5  # of its range: what a machine at rest does not move
+
+_OF_GAP = 17  # readings of a gap
+
+
+def gaps_that_move(driven: Floats, begin: Integers, peak: Integers, end: Integers) -> Integers:
+    """Cycles followed by more than a rest: by one that is left out, or by a ramp.
+
+    Examples
+    --------
+    >>> driven = np.array([0.0, 2, 0, 0, 0, 2, 0, 3, -4, 2, -4, -8, -8, -6, -8])
+    >>> begin, peak = np.array([0, 4, 8, 12]), np.array([1, 5, 9, 13])
+    >>> gaps_that_move(driven, begin, peak, peak + 1)
+    array([1, 2])
+    """
+    gaps = np.flatnonzero(begin[1:] > end[:-1])
+    first, length = end[gaps], begin[gaps + 1] - end[gaps]
+    foot = take_samples(driven, first)
+    highest, lowest = foot, foot
+    for share in np.linspace(0, 1, _OF_GAP):
+        level = take_samples(driven, first + np.rint(share * length).astype(first.dtype))
+        highest, lowest = np.fmax(highest, level), np.fmin(lowest, level)
+    own = np.abs(take_samples(driven, peak[gaps]) - foot)
+    moving: Integers = gaps[highest - lowest > _OF_CYCLE * own]
+    return moving
+
+
 def counted_on_flanks(cycles: Cycles) -> tuple[Bools, Bools]:
     """Mark cycles that the machine counts from a point on their rise, or on their fall, on.
 
@@ -408,13 +435,8 @@ def _follow(time: Floats, driven: Floats, cycles: Cycles, duration: Floats) -> B
     alike = np.abs(rest - usual) <= spread
     # a wait without readings is a gap of the log, which may contain other cycles
     alike &= rest / np.maximum(cycles.first[1:] - cycles.last[:-1], 1) <= _GAP * step
-    # nor is a time in which the machine moves, through a cycle that was not counted
-    begin, end = cycles.last[:-1], cycles.first[1:]
-    stroke = np.ptp(take_samples(driven, cycles.branch_last), axis=1)[1:]
-    for share in (0.25, 0.5, 0.75):
-        place = begin + (share * (end - begin)).astype(begin.dtype)
-        moved = np.abs(take_samples(driven, place) - take_samples(driven, begin))
-        alike &= ~(moved > _STEEP * stroke)
+    begin, peak, end = cycles.branch_first[:, 0], cycles.branch_last[:, 0], cycles.branch_last[:, 1]
+    alike[gaps_that_move(driven, begin, peak, end)] = False
     return np.asarray(touching(cycles) | np.concatenate([[False], alike]))
 
 
