@@ -62,6 +62,27 @@ def test_a_cycle_is_a_period_wherever_in_it_the_machine_counts(late):
     assert "counter-differs" not in [one.code for one in cycles.notes]
 
 
+@pytest.mark.parametrize("wraps_at", [5, 11])
+def test_the_way_down_after_the_last_count_of_a_counter_that_wraps_is_no_cycle(wraps_at):
+    """Eleven cycles of 100 readings, counted at the valleys; the last count of 5 begins with 1."""
+    step = np.arange(1125)
+    position = np.concatenate([
+        np.linspace(0, 2, 200), 2 + np.sin(2 * np.pi * step / 100), np.linspace(3, 0, 200)
+    ])  # fmt: skip
+    n_valleys = np.clip((np.arange(position.size) - 175) // 100, 0, 11)
+    counter = np.where(n_valleys > 0, (n_valleys - 1) % wraps_at + 1, 0)
+    time = 0.1 * np.arange(position.size)
+    tension = [100 * position]
+    cycles = cycle_search.find_cycles(
+        time, position, tension,
+        find_standstills(time, position, tension, settings=PhaseSettings()),
+        settings=CycleSettings(waveform="sinusoidal"), cycle_counter=counter,
+    )  # fmt: skip
+    stroke = position[cycles.branch_first[:, 1]] - position[cycles.branch_last[:, 1]]
+    np.testing.assert_allclose(stroke, 2.0, rtol=0.01)
+    assert "counter-skips" not in [one.code for one in cycles.notes]
+
+
 def test_numbers_go_on_over_gaps_of_the_log_that_hold_cycles():
     """Five cycles each from the 1st, 100th and 1000th on, at 1 Hz, none counted by the machine."""
     begin = np.array([1, 100, 1000])

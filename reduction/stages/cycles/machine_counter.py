@@ -160,9 +160,20 @@ def skips_of_count(cycle_counter: Integers, reversals: Indices) -> Indices:
 _AS_LONG = 0.25  # of a cycle: tolerance on the duration of a count
 
 
+def _skips(number: Integers) -> Indices:
+    """Cycles after which the count goes on neither by one nor with 1, as a counter that wraps."""
+    return np.flatnonzero((np.diff(number) != 1) & (number[1:] != 1))
+
+
 def are_apart(number: Integers, n_reversals: int) -> bool:
-    """Whether counted cycles stand alone in the log, so that reversals do not separate them."""
-    begins = np.flatnonzero(np.diff(number, prepend=number[:1] - 2) != 1)
+    """Whether counted cycles stand alone in the log, so that reversals do not separate them.
+
+    Examples
+    --------
+    >>> are_apart(np.array([1, 50, 100]), 3), are_apart(np.array([1, 2, 3, 1, 2, 3, 1]), 7)
+    (True, False)
+    """
+    begins = np.append(0, _skips(number) + 1)
     lengths = np.diff(begins, append=number.size)
     return bool((lengths == 1).any()) or n_reversals < number.size - 2 * begins.size
 
@@ -257,8 +268,9 @@ def counter_notes(
     if still.any():
         first_still = int(number[np.argmax(still)])
         notes.append(note("counted-without-stroke", n_cycles=int(still.sum()), first=first_still))
-    if number.size and (np.diff(number) != 1).any():
-        row = int(np.argmax(np.diff(number) != 1))
+    skips = _skips(number)
+    if skips.size:
+        row = int(skips[0])
         notes.append(
             note(
                 "counter-skips",
@@ -271,7 +283,7 @@ def counter_notes(
         )
     moving = int((~still).sum())
     # a count is cut off at each end of the log or of a part of it
-    n_cut = 2 * (1 + int((np.diff(number) != 1).sum()))
+    n_cut = 2 * (1 + skips.size)
     # and a machine that counts in mid-cycle has one count less than its log has cycles
     if not moving - n_cut <= n_reversals <= moving + 1:
         notes.append(note("counter-differs", n_counted=moving, n_reversals=n_reversals))
