@@ -109,16 +109,22 @@ def _unknown_compliance(compliance: float, usual: float, effect: float) -> str:
     )
 
 
-def _unknown_hysteresis(reversibility: float, play: float | None, lag: float | None) -> str:
+def _unknown_hysteresis(reversibility: float, play: float | None) -> str:
     """Effect of a load cell or a position that reads other values on the way down."""
-    or_play = "" if play is None else f", or {1000 * play:.2g} mm of play in the position"
-    or_lag = "" if lag is None else f", or {1000 * lag:.2g} ms between the two channels"
-    comma = "," if or_play or or_lag else ""
+    or_play = "" if play is None else f", or {1000 * play:.2g} mm of play in the position,"
     return (
-        f"the hysteresis of the load cell is not stated: {reversibility:.2%} at half its load"
-        f"{or_play}{or_lag}{comma} would change the hysteresis energy by one standard uncertainty."
+        f"the hysteresis of the load cell is not stated: {reversibility:.2%} at half its"
+        f" load{or_play} would change the hysteresis energy by one standard uncertainty."
         " State reversibility in [uncertainty.tension], from the calibration"
-        + ("" if lag is None else ", and lag in [uncertainty]")
+    )
+
+
+def _unknown_lag(lag: float, usual: float, effect: float) -> str:
+    """Effect of an unstated delay between the channels."""
+    return (
+        f"the lag between tension and position is not stated: {1000 * lag:.2g} ms would change the"
+        f" hysteresis energy by one standard uncertainty, {1000 * usual:.2g} ms (a filter of 30 Hz"
+        f" in the tension) by {effect:+.1%}. State lag in [uncertainty]"
     )
 
 
@@ -958,6 +964,8 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "compliance-unknown": ("note", _unknown_compliance),
     "instrument-hysteresis-unknown": ("note", _unknown_hysteresis),
+    "lag-unknown": ("note", _unknown_lag),
+    "lag-matters": ("warning", _unknown_lag),
     "compliance-matters": ("warning", _unknown_compliance),
     "tension-late": (
         "warning",
@@ -2254,5 +2262,5 @@ CAUSES = (
 )  # fmt: skip
 """Errors in stated inputs, causes before their consequences."""
 
-UNSTATED = ("attached-mass-matters", "compliance-matters")
+UNSTATED = ("attached-mass-matters", "compliance-matters", "lag-matters")
 """Possible machine effects that no log shows, listed after those that this log shows."""

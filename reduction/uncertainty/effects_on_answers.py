@@ -30,6 +30,8 @@ _USUAL_MASS = 1.2  # kg, [1]: no testing laboratory clamps a mooring line with l
 
 _USUAL_COMPLIANCE = 3.8e-9  # m/N, the softest frame of [2]; grips and load cell add to it
 
+_USUAL_LAG = 0.005  # s, a filter of one pole at 30 Hz, or two channels read in turn at 200 Hz
+
 _NAME = "apparent_spring_constant"
 
 _SMALL = 1e-3  # step of strain for a slope
@@ -95,8 +97,9 @@ def load_train_notes(test: ReducedTest, instruments: Sequence[InstrumentErrors])
             yield from _sag(test, summary, index, length, spread / abs(constant))
         of_energy = _standard_uncertainty(test, summary, "hysteresis_energy", index)
         stroke = float(summary.tension_amplitude[index] * summary.strain_amplitude[index])
-        is_told = index < len(instruments) and instruments[index].tension_reversibility > 0
-        if of_energy > 0 and stroke > 0 and not is_told:
+        if not (of_energy > 0 and stroke > 0):
+            continue
+        if not (index < len(instruments) and instruments[index].tension_reversibility > 0):
             yield note(
                 "instrument-hysteresis-unknown",
                 specimen.name,
@@ -105,10 +108,16 @@ def load_train_notes(test: ReducedTest, instruments: Sequence[InstrumentErrors])
                 play=of_energy * length / (2 * float(summary.tension_amplitude[index]))
                 if is_crosshead
                 else None,
-                # of a sine, whose phase it turns
-                lag=None
-                if index < len(instruments) and instruments[index].lag > 0
-                else of_energy / (2 * np.pi**2 * float(summary.frequency[index]) * stroke),
+            )
+        if not (index < len(instruments) and instruments[index].lag > 0):
+            # of a sine, whose phase it turns
+            of_lag = 2 * np.pi**2 * float(summary.frequency[index]) * stroke
+            yield note(
+                "lag-matters" if _USUAL_LAG * of_lag > _EXPANDED * of_energy else "lag-unknown",
+                specimen.name,
+                lag=of_energy / of_lag,
+                usual=_USUAL_LAG,
+                effect=-_USUAL_LAG * of_lag / abs(float(summary.hysteresis_energy[index])),
             )
 
 

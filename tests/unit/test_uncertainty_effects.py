@@ -180,6 +180,7 @@ def test_a_compliance_whose_uncertainty_is_stated_is_not_asked_for(stated):
     test.specimens[0].linear_density, test.specimens[0].is_rope = None, False
     test.cycles = None
     test.amplitude.uncertainty["apparent_spring_constant"] = np.array([4.0])
+    test.amplitude.hysteresis_energy = np.array([40.0])
     test.amplitude.uncertainty["hysteresis_energy"] = np.array([4.0])
     test.record = SimpleNamespace(load_train=LoadTrain())
     errors = InstrumentErrors("new", machine_compliance=stated)
