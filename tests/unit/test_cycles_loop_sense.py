@@ -325,6 +325,19 @@ def test_a_wave_that_drifts_grows_sweeps_or_is_no_sine_repeats(wave, step, noise
     assert unlike(wave, step=step, noise=noise) == 0
 
 
+@pytest.mark.parametrize("n_cycles", [2, 3, 4, 5])
+@pytest.mark.parametrize("away", [-1, 1])
+def test_a_ramp_away_from_a_few_cycles_is_no_other_wave(n_cycles, away):
+    """Sines of a second from their middle on, and then at once six seconds of ramp."""
+
+    def wave(time):
+        ramp = np.clip(time - 10 - n_cycles, 0, 6)
+        sine = np.sin(2 * np.pi * np.clip(time - 10, 0, n_cycles))
+        return np.clip(time, 0, 6) / 2 + sine + away * ramp / 2
+
+    assert unlike(wave, last=n_cycles + 30, step=0.02) == 0
+
+
 def changed(wave, *, step=0.05, noise=0.01):
     time = np.arange(0, 120, step)
     driven = wave(time) + noise * np.random.default_rng(8).normal(size=time.size)

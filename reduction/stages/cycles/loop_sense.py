@@ -182,12 +182,14 @@ def unlike_neighbours(
             for first, stop in zip(*(one.tolist() for one in edges), strict=True)
         ]
         pairs = np.array(begins).reshape(-1, 3)
-    else:  # cycles that no similar one follows, while the machine goes on
+    else:  # cycles that no similar one follows, while the machine goes on about their middle
         ends = np.stack([cycles.first, cycles.last, 2 * cycles.last - cycles.first], axis=1)
         stop = ends[:, 1] + _GOES_ON * (ends[:, 1] - ends[:, 0])
         goes_on = [
-            end < driven.size and not standstills.covers(slice(first, end)).any()
-            for first, end in zip(cycles.first.tolist(), stop.tolist(), strict=True)
+            end < driven.size
+            and not standstills.covers(slice(first, end)).any()
+            and _crosses(driven[second:end], driven[first:last])
+            for first, last, second, end in np.column_stack([ends, stop]).tolist()
         ]
         pairs = take_samples(time, _spread(ends[np.array(goes_on, dtype=bool)]))
         # after a cycle that is stored alone the log continues with one of another time
@@ -296,6 +298,12 @@ def _beside(one: Floats, other: Floats, phase: Floats) -> Floats:
     """What a factor times one wave, a constant and a line leave of another."""
     basis = np.stack([np.ones(phase.size), phase, one], axis=1)
     return np.asarray(other - basis @ np.linalg.lstsq(basis, other)[0])
+
+
+def _crosses(values: Floats, wave: Floats) -> bool:
+    """Whether values lie on both sides of the middle of a wave: a ramp away from it does not."""
+    middle = (np.fmax.reduce(wave) + np.fmin.reduce(wave)) / 2
+    return bool(np.fmin.reduce(values) < middle < np.fmax.reduce(values))
 
 
 _PHASES = 64
