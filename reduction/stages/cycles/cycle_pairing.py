@@ -478,12 +478,16 @@ def _fit_ends(
             continue
         if ran_on:
             far, ranges[end] = int(nodes[end]), neighbour
-            if not is_sinusoidal:
-                nodes[end] = _passing(values, nodes[turn], far, values[nodes[beside]])
-            else:
+            if is_sinusoidal:
                 nodes[end] = _end_of_sine(values, nodes[[turn, beside]], far, tolerance)
-        if is_sinusoidal and (
-            nodes[end] == nodes[turn] or not _keeps_pace(time, nodes, end, turn, beside, at_edge)
+            elif nodes.size > _FEWEST_ALIKE + 1 and _waits(
+                time, values, nodes[[turn, beside, 2 * beside - turn]], far
+            ):
+                nodes[end] = nodes[turn]
+            else:
+                nodes[end] = _passing(values, nodes[turn], far, values[nodes[beside]])
+        if nodes[end] == nodes[turn] or (
+            is_sinusoidal and not _keeps_pace(time, nodes, end, turn, beside, at_edge)
         ):
             left_out[side] = 1
             paced.append(int(nodes[turn]))
@@ -561,6 +565,41 @@ def _end_of_sine(values: Floats, nodes: Indices, far: int, tolerance: float) -> 
     allowed = max(_SHORT * stroke, 2 * stroke / abs(turn - beside), tolerance)
     apart = np.abs(values[at] - values[image])
     return turn if (apart > allowed).any() else int(at[-1])
+
+
+def _waits(time: Floats, values: Floats, nodes: Indices, far: int) -> bool:
+    """Whether an end half cycle, which goes too far from a turn, waits on its way.
+
+    ``nodes`` are its turn, the one beside it and the next like its turn.
+
+    Examples
+    --------
+    A ramp from slack, and one that waits half way:
+
+    >>> wave = np.interp(np.arange(37), [0, 12, 20, 28, 36], [0.0, 6, 2, 6, 2])
+    >>> _waits(np.arange(37.0), wave, np.array([12, 20, 28]), 0)
+    False
+    >>> _waits(np.arange(40.0), np.insert(wave, 8, [4.0] * 3), np.array([15, 23, 31]), 0)
+    True
+    """
+    turn, beside, alike = (int(node) for node in nodes)
+    passed = np.array(
+        [
+            [
+                _passing(values, begin, end, level)
+                for level in np.linspace(values[begin], values[beside], _LEVELS)[1:-1]
+            ]
+            for begin, end in ((turn, far), (alike, beside))
+        ]
+    )
+    own, usual = np.abs(np.diff(time[passed]))
+    lasts, n_steps = float(usual.sum()), abs(int(passed[1, -1] - passed[1, 0]))
+    return bool((own - usual).max() > max(_WAITS, 2 / max(n_steps, 1)) * lasts)
+
+
+_LEVELS = 11  # of a stroke, of which the first and the last are turns, where others wait too
+
+_WAITS = 0.1  # of the duration of a half cycle, more between two levels than in another one
 
 
 def _keeps_pace(
@@ -665,7 +704,8 @@ def find_half_cycles(
     range.  Between two reversals it is whole, except beside a move away: a sine that begins or
     ends at its mean has moved half a range there.
     In a sinusoidal test an end that takes 25 % more or less time is left out, as is one that goes
-    too far, unless it is a mirror image of its neighbour (`_end_of_sine`).
+    too far, unless it is a mirror image of its neighbour (`_end_of_sine`).  In any other test one
+    that goes too far is left out if it waits on its way, as the next like it does not (`_waits`).
     A wait at an end, too short for a standstill, is not part of the half cycle there
     (`reduction.stages.cycles.cycle_pairing._without_stands`).
 
@@ -709,7 +749,7 @@ def find_half_cycles(
         for samples, what in (
             (cut, ", cut where they go beyond the level of their neighbours"),
             (short, ", short of the level of their neighbours, not counted"),
-            (paced, " that are no part of the sine, not counted"),
+            (paced, " that are no part of the wave, not counted"),
         )
         if samples
     ]
