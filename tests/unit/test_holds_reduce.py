@@ -287,6 +287,15 @@ def test_a_load_that_is_a_little_late_is_covered_or_refused(time_constant):
         assert abs(hold.hold_initial_tension - AT_RAMP_END) < 2 * spread
 
 
+@pytest.mark.parametrize(("duration", "severity"), [(300.0, "warning"), (20.0, "note")])
+def test_a_load_that_is_a_little_late_is_no_warning_where_no_drop_is_given(duration, severity):
+    time, position, tension = record(duration)
+    (hold,) = reduce(time, position, late(tension, 0.1))
+    (told,) = (one for one in hold.notes if one.code == "hold-load-late")
+    assert told.severity == severity
+    assert np.isfinite(hold.relaxation_drop) == (severity == "warning")
+
+
 @pytest.mark.parametrize("depth", [10.0, 40.0, 150.0])
 @pytest.mark.parametrize("decay", [0.15, 0.3])
 def test_a_crosshead_that_stops_with_a_jerk_does_not_hide_the_hold(depth, decay):

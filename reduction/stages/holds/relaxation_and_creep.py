@@ -717,7 +717,9 @@ def _result(
             if _late_reason(ends) is not None:
                 ends = replace(ends, initial=np.nan, initial_uncertainty=np.nan)
             else:
-                hold.notes.append(_late_note(late, is_refused=False))
+                told = _late_note(late, is_refused=False)
+                # of a stop between a ramp and cycles, too, but no drop is given there
+                hold.notes.append(replace(told, severity="note") if reasons else told)
         if kind == "creep":
             rate = _creep(hold)
         elif not reasons:
