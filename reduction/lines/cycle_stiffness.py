@@ -173,8 +173,9 @@ def stiffness_of_cycles(
     Notes
     -----
     Tests of one kind are used together: where loops cover a cycle, static tests and first loadings,
-    which are slower or of another state, are not used.  The chord of a test is taken at its own
-    lengths: the errors of its tension at both ends change its EA,
+    which are slower or of another state, are not used.  Where they are used beside the loops, the
+    interval reaches as far as EA of a loop differs from theirs over its loads.  The chord of a test
+    is taken at its own lengths: the errors of its tension at both ends change its EA,
 
     .. math:: u^2(EA_i) = \Bigl(\frac{EA_i}{T_2 - T_1}\Bigr)^2
         \Bigl(u_1^2 + u_2^2 + \sum_k (c_{k2} - c_{k1})^2\Bigr)
@@ -244,6 +245,8 @@ def stiffness_of_cycles(
 
     none = np.zeros(shape)
     least, greatest = interval(least_of_loop, most_of_loop)
+    softer, stiffer = _other_state(tests, is_used, slack_length)
+    least, greatest = least * softer, greatest * stiffer
     curve_least, curve_greatest = interval(none, none)
     nearest = (
         np.where(is_used, apart, np.inf).argmin(axis=0) if tests else np.zeros(valley.size, int)
@@ -330,6 +333,32 @@ def _first_kind_that_covers(tests: Sequence[LoadedTest], is_enough: Bools) -> Bo
         own = np.array([one.kind == kind for one in tests])[:, None] & is_enough
         is_used |= own & ~is_used.any(axis=0)
     return is_used
+
+
+def _other_state(
+    tests: Sequence[LoadedTest], is_used: Bools, slack_length: float
+) -> tuple[Floats, Floats]:
+    """Least and greatest ratio of EA of tests of higher precedence to that of those used, (n,).
+
+    Over the loads of the former, where both are known; 1 is between them.
+    """
+    softer, stiffer = np.ones((2, is_used.shape[1]))
+    kinds = [one.kind for one in tests]
+    for kind in dict.fromkeys(kinds):
+        own = [one for one in tests if one.kind == kind]
+        higher = tests[: kinds.index(kind)]
+        here = is_used[[one == kind for one in kinds]].any(axis=0)
+        if not (higher and here.any()):
+            continue
+        loads = np.array([one.cycle for one in higher]).T
+        of_higher, of_own = (
+            stiffness_of_cycles(of, *loads, slack_length=slack_length).spring_constant
+            for of in (higher, own)
+        )
+        ratio = of_higher / of_own
+        softer[here] = np.fmin(1.0, np.fmin.reduce(ratio))
+        stiffer[here] = np.fmax(1.0, np.fmax.reduce(ratio))
+    return softer, stiffer
 
 
 def _between(values: Floats, test: LoadedTest, low: Floats, high: Floats) -> Floats:

@@ -13,6 +13,7 @@ from reduction.lines.composite import (
     _composite_curve,
     compose,
 )
+from reduction.lines.cycle_stiffness import LoadedTest, stiffness_of_cycles
 from reduction.lines.export_sources import _smaller_cycle
 from reduction.record.contributions import Component
 from reduction.record.errors import DataError
@@ -307,6 +308,22 @@ def test_an_elastic_line_has_the_chord_of_its_curve():
     assert state.least_spring_constant == pytest.approx(SPRING_OF_LOOPOFCYCLE)
     assert state.greatest_spring_constant == pytest.approx(SPRING_OF_LOOPOFCYCLE)
     assert not state.doubt
+
+
+@pytest.mark.parametrize(("ratio", "least", "greatest"), [(1.1, 300, 330), (0.8, 240, 300)])
+def test_a_first_loading_where_no_loop_reaches_may_be_as_far_off_as_beside_the_loops(
+    ratio, least, greatest
+):
+    at = np.linspace(1, 4, 301)
+    of_kind = {"cyclic": (300 * ratio, 50.0, 200.0), "first loading": (300.0, 0.0, 900.0)}
+    tests = [
+        LoadedTest("T", kind, at, slope * (at - 1), 0 * at, np.empty((0, 301)), low, high)
+        for kind, (slope, low, high) in of_kind.items()
+    ]
+    found = stiffness_of_cycles(tests, [60.0, 150.0], [190.0, 450.0], slack_length=1.0)
+    np.testing.assert_allclose(found.spring_constant, [300 * ratio, 300])
+    np.testing.assert_allclose(found.least, [300 * ratio, least])
+    np.testing.assert_allclose(found.greatest, [300 * ratio, greatest])
 
 
 def test_the_slope_of_a_slow_pull_is_not_the_stiffness_of_cycles():
