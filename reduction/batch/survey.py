@@ -15,7 +15,13 @@ from reduction.batch.step_detection import FOUND, find_steps, remark_on_cycles
 from reduction.batch.workers import Task, Workers, work_on
 from reduction.campaign.plan import Campaign, StepPlan, TestPlan, cycles_of_kind
 from reduction.pipeline.extremes import Extremes, extremes_of_readings, extremes_of_test
-from reduction.pipeline.located_test import Located, locate, slips_of, tension_at_marks
+from reduction.pipeline.located_test import (
+    FEWEST_SLACK,
+    Located,
+    locate,
+    slips_of,
+    tension_at_marks,
+)
 from reduction.readers.layout import Layout
 from reduction.readers.raw_log import unreadable
 from reduction.readers.read_log import read_record, read_step_readings
@@ -409,7 +415,9 @@ def _with_load_at_slack(
     until = float(located.record.time[-1])
     jumps = _jumps_of_length(whole, campaign, plan, until=until)
     of_record = [
-        _doubt_of_step(one, plan, until=until, slack_tension=stands.slack_tension)
+        _doubt_of_step(
+            one, plan, until=until, slack_tension=stands.slack_tension, parted=located.parted
+        )
         for one in located.record.notes
         # with an extensometer, strain does not depend on the length
         if not (one.code.startswith("reference-length") and _is_measured(whole, campaign, plan))
@@ -418,7 +426,9 @@ def _with_load_at_slack(
     return replace(located, record=record, load_at_slack=tuple(found))
 
 
-def _doubt_of_step(one: Note, plan: TestPlan, *, until: float, slack_tension: float) -> Note:
+def _doubt_of_step(
+    one: Note, plan: TestPlan, *, until: float, slack_tension: float, parted: Sequence[int]
+) -> Note:
     """A step between two loads of a taut specimen is a warning; one to or from slack is told so."""
     step = one.numbers
     if (
@@ -427,6 +437,8 @@ def _doubt_of_step(one: Note, plan: TestPlan, *, until: float, slack_tension: fl
         or min(step["low"], step["high"]) <= slack_tension
         or step["n_more"] >= JERKS
         or step["time"] > until
+        # a load that falls to slack over some readings
+        or any(0 < at - step["sample"] <= FEWEST_SLACK for at in parted)
         or plan.kind == "tensile"
         or plan.failed
     ):

@@ -63,7 +63,7 @@ _REPEATS = Quality.SATURATED | Quality.STUCK
 # of the greatest load: below the first a specimen is slack, above the second taut
 _SLACK, _TAUT = 0.05, 0.25
 
-_FEWEST_SLACK = 3  # readings
+FEWEST_SLACK = 3  # readings
 
 # of the travel, while a load falls from one to the other: for any log, and with few readings
 _GIVEN_BACK, _MOST_BACK = 0.05, 0.15
@@ -166,13 +166,13 @@ def _parted_at(position: Floats, load: Floats) -> int:
     n_samples = load.size
     # a taut sample near the end, as in most logs, ends the search in its first block
     last = last_sample(lambda part: load[part] > _SLACK * peak, 0, n_samples, load)
-    if last is None or n_samples - 1 - last < _FEWEST_SLACK:
+    if last is None or n_samples - 1 - last < FEWEST_SLACK:
         return -1
     after = np.sort(position[last + 1 :][np.isfinite(load[last + 1 :])])
     after = after[np.isfinite(after)]
     low, high = finite_extremes(position[: last + 1])
     taut = last_sample(lambda part: load[part] > _TAUT * peak, 0, last + 1, load)
-    if after.size < _FEWEST_SLACK or taut is None:
+    if after.size < FEWEST_SLACK or taut is None:
         return -1
     # a line that is let slack goes back first, and more so if it has yielded; one that breaks
     # on the way back goes slack within a reading
@@ -181,9 +181,9 @@ def _parted_at(position: Floats, load: Floats) -> int:
     reading = abs(float(position[taut] - position[taut - 1])) if taut > 0 else 0.0
     allowed = max(_GIVEN_BACK * travel, min(1.5 * reading, _MOST_BACK * travel))
     # it may break where the log has a gap, and the machine runs on to the top without it
-    if after[-_FEWEST_SLACK] < top and not position[taut] - position[last + 1] < allowed:
+    if after[-FEWEST_SLACK] < top and not position[taut] - position[last + 1] < allowed:
         return -1
-    least = min(after[-_FEWEST_SLACK], top)
+    least = min(after[-FEWEST_SLACK], top)
     is_slack_there = first_sample(
         lambda part: (position[part] >= least) & (load[part] < _TAUT * peak), 0, last + 1,
         position, load,
@@ -192,7 +192,7 @@ def _parted_at(position: Floats, load: Floats) -> int:
     if was_there is None:
         return -1
     # the load falls over some readings, the first of which may still be above
-    fell_over = is_slack_there is not None and last + 1 - is_slack_there <= _FEWEST_SLACK
+    fell_over = is_slack_there is not None and last + 1 - is_slack_there <= FEWEST_SLACK
     return last + 1 if is_slack_there is None or fell_over else -1
 
 

@@ -455,6 +455,21 @@ def test_a_pull_that_breaks_above_the_rated_strength_is_no_mistake(tmp_path, n_a
     assert ("rated_break_strength" in result.tests[0].message) == (status == "check")
 
 
+@pytest.mark.parametrize("readings", [(), (8e3,), (2e4, 8e3)])
+def test_the_readings_of_a_break_are_no_step_of_the_load(tmp_path, readings):
+    time = np.arange(0.0, 130.0, 0.25)
+    load = 2e4 + 1e4 * np.sin(2 * np.pi * 0.1 * np.clip(time - 10, 0, None))
+    load[:40] = np.linspace(0, 2e4, 40)
+    position = load / 1e5
+    broke = 40 + 405  # after ten cycles, near a peak; the machine runs on
+    load[broke:] = 0.0
+    load[broke : broke + len(readings)] = readings
+    position[broke:] = np.clip(position[broke - 1] + 0.02 * np.arange(time.size - broke), 0, 0.5)
+    log_of_loads(tmp_path / "breaks.csv", time, load, position=position)
+    result = run(tmp_path, made.single("breaks", "cyclic", 'waveform = "sinusoidal"'))
+    assert "the specimen parted or came loose" in result.tests[0].message
+
+
 def test_a_grip_that_slips_under_a_rope_without_a_diameter_is_told(tmp_path):
     cycle = np.arange(0, 40, 0.025)
     load = 3e4 - 1e4 * np.cos(2 * np.pi * cycle)
