@@ -630,6 +630,24 @@ def test_irregular_movements_that_are_small_beside_the_pull_are_no_cycles():
         find(time, position)
 
 
+def test_the_way_over_the_mean_to_slack_is_no_cycle_where_the_specimen_recovers_there():
+    """Twelve sines of 1 kN about 1.02 kN in 60 s; then to the mean, and slack in 4 s."""
+    at = np.arange(0, 110, 1 / 16)
+    cycling = 1020 + 1000 * np.sin(2 * np.pi * 0.2 * np.clip(at - 15, 0, 60))
+    load = np.where(at < 15, np.interp(at, [0, 5, 10], [0, 0, 1020]), cycling)
+    load[at > 75] = np.interp(at[at > 75], [75, 79], [1020, 0])
+    load += np.random.default_rng(2).normal(0, 3, at.size)
+    # it goes on back while the load is zero: no standstill
+    position = 3 + load / 5e4 + 0.05 * np.exp(-np.clip(at - 79, 0, None) / 20) * (at > 79)
+    stand = find_standstills(at, position, load[None], settings=PhaseSettings())
+    assert not (stand.first > np.searchsorted(at, 79)).any()
+    settings = CycleSettings(waveform="sinusoidal", control="load")
+    cycles = find_cycles(at, load, load[None], stand, settings=settings)
+    amplitude = load[cycles.branch_last[:, 0]] - load[cycles.branch_first[:, 0]]
+    np.testing.assert_allclose(amplitude, 2000, rtol=0.01)
+    assert cycles.n_cycles == 11
+
+
 @pytest.mark.parametrize("share", [0.5, 0.55])  # of the stroke, from the last valley to the mean
 def test_the_way_from_the_last_valley_over_the_mean_to_slack_is_no_cycle(share):
     """Twelve sines of 260 N about 300 N in 30 s; then to the mean, and slack in 8 s."""

@@ -239,13 +239,10 @@ def _stretches(
             edge = edges[place]
             if _is_standing(values, nodes, begin, ceil(near)):
                 edge = "standstill"
-            found.append(
-                _Run(
-                    nodes,
-                    edge if nodes[0] - begin <= near else "reversal",
-                    edges[place + 1] if end - nodes[-1] <= near else "reversal",
-                )
-            )
+            last_edge = edges[place + 1] if end - nodes[-1] <= near else "reversal"
+            if last_edge == "reversal" and _comes_to_stand(values, nodes, end):
+                last_edge = "standstill"
+            found.append(_Run(nodes, edge if nodes[0] - begin <= near else "reversal", last_edge))
     return found
 
 
@@ -286,6 +283,13 @@ def _is_standing(values: Floats, nodes: Indices, begin: int, n_steps: int) -> bo
     """Whether the movement begins at a stand, even one too short for a standstill."""
     moved = values[min(begin + n_steps, values.size - 1)] - values[begin]
     return bool(abs(moved) < _STANDING * abs(values[nodes[1]] - values[nodes[0]]))
+
+
+def _comes_to_stand(values: Floats, nodes: Indices, end: int) -> bool:
+    """Whether nothing moves after the last node, as a load at slack while the specimen recovers."""
+    after = values[nodes[-1] : end + 1]
+    moved = np.fmax.reduce(after) - np.fmin.reduce(after)
+    return bool(moved < _STANDING * abs(values[nodes[-1]] - values[nodes[-2]]))
 
 
 def _parts(values: Floats, run: _Run) -> list[_Run]:
