@@ -480,16 +480,20 @@ def _fit_ends(
             left_out[side] = 2
             short.append(int(nodes[turn]))
             continue
+        far, alike = int(nodes[end]), 2 * beside - turn
+        if (
+            not is_sinusoidal
+            and nodes.size > _FEWEST_ALIKE + 1
+            and (ran_on or (at_edge and own > _NEARLY_WHOLE * neighbour))
+            and _waits(time, values, nodes[[turn, beside, alike]], far, is_whole=not ran_on)
+        ):
+            nodes[end] = nodes[turn]
+        elif ran_on and is_sinusoidal:
+            nodes[end] = _end_of_sine(values, nodes[[turn, beside]], far, tolerance)
+        elif ran_on:
+            nodes[end] = _passing(values, nodes[turn], far, values[nodes[beside]])
         if ran_on:
-            far, ranges[end] = int(nodes[end]), neighbour
-            if is_sinusoidal:
-                nodes[end] = _end_of_sine(values, nodes[[turn, beside]], far, tolerance)
-            elif nodes.size > _FEWEST_ALIKE + 1 and _waits(
-                time, values, nodes[[turn, beside, 2 * beside - turn]], far
-            ):
-                nodes[end] = nodes[turn]
-            else:
-                nodes[end] = _passing(values, nodes[turn], far, values[nodes[beside]])
+            ranges[end] = neighbour
         if nodes[end] == nodes[turn] or (
             is_sinusoidal and not _keeps_pace(time, nodes, end, turn, beside, at_edge)
         ):
@@ -571,8 +575,8 @@ def _end_of_sine(values: Floats, nodes: Indices, far: int, tolerance: float) -> 
     return turn if (apart > allowed).any() else int(at[-1])
 
 
-def _waits(time: Floats, values: Floats, nodes: Indices, far: int) -> bool:
-    """Whether an end half cycle, which goes too far from a turn, waits on its way.
+def _waits(time: Floats, values: Floats, nodes: Indices, far: int, *, is_whole: bool) -> bool:
+    """Whether an end half cycle, from a turn to a far end, waits on its way.
 
     ``nodes`` are its turn, the one beside it and the next like its turn.
 
@@ -581,9 +585,10 @@ def _waits(time: Floats, values: Floats, nodes: Indices, far: int) -> bool:
     A ramp from slack, and one that waits half way:
 
     >>> wave = np.interp(np.arange(37), [0, 12, 20, 28, 36], [0.0, 6, 2, 6, 2])
-    >>> _waits(np.arange(37.0), wave, np.array([12, 20, 28]), 0)
+    >>> _waits(np.arange(37.0), wave, np.array([12, 20, 28]), 0, is_whole=False)
     False
-    >>> _waits(np.arange(40.0), np.insert(wave, 8, [4.0] * 3), np.array([15, 23, 31]), 0)
+    >>> wave = np.insert(wave, 8, [4.0] * 3)
+    >>> _waits(np.arange(40.0), wave, np.array([15, 23, 31]), 0, is_whole=False)
     True
     """
     turn, beside, alike = (int(node) for node in nodes)
@@ -598,12 +603,17 @@ def _waits(time: Floats, values: Floats, nodes: Indices, far: int) -> bool:
     )
     own, usual = np.abs(np.diff(time[passed]))
     lasts, n_steps = float(usual.sum()), abs(int(passed[1, -1] - passed[1, 0]))
-    return bool((own - usual).max() > max(_WAITS, 2 / max(n_steps, 1)) * lasts)
+    return bool((own - usual).max() > max(_WAITS[is_whole], 2 / max(n_steps, 1)) * lasts)
 
 
 _LEVELS = 11  # of a stroke, of which the first and the last are turns, where others wait too
 
-_WAITS = 0.1  # of the duration of a half cycle, more between two levels than in another one
+_NEARLY_WHOLE = 1 - 1 / (_LEVELS - 1)  # reaches the last level but one
+
+_WAITS = (0.1, 0.2)
+"""Of the duration of a half cycle, by which it lasts longer between two levels than another one.
+
+The second is that of one that does not go beyond the cycles: they may stutter as well."""
 
 
 def _keeps_pace(
@@ -709,7 +719,7 @@ def find_half_cycles(
     ends at its mean has moved half a range there.
     In a sinusoidal test an end that takes 25 % more or less time is left out, as is one that goes
     too far, unless it is a mirror image of its neighbour (`_end_of_sine`).  In any other test one
-    that goes too far is left out if it waits on its way, as the next like it does not (`_waits`).
+    is left out if it waits on its way, as the next like it does not (`_waits`).
     A wait at an end, too short for a standstill, is not part of the half cycle there
     (`reduction.stages.cycles.cycle_pairing._without_stands`).
 
