@@ -34,6 +34,8 @@ format = "delimited"
 time = { column = "t", unit = "s" }
 tension.1 = { column = "F", unit = "N" }
 gauge_length = { column = "length", unit = "m", standard_uncertainty = "0.5 mm" }
+[uncertainty]
+lag = "1 ms"
 [defaults]
 layout = "logger"
 specimens = ["cord"]
