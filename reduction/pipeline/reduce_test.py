@@ -855,6 +855,7 @@ def reduce_test(
         record.time, position, tension, strain, standstills,
         specimens=record.specimens, settings=settings.holds,
         kind="relaxation" if standstills.tension_tolerance is None else "creep",
+        at_slack=located.load_at_slack,
     )  # fmt: skip
     slack_strain = slack_strain_at_unloading(
         position,

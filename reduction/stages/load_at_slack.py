@@ -44,7 +44,8 @@ class LoadAtSlack:
     ``load`` [N] and ``standard_uncertainty`` [N] by noise and resolution; ``n_rests`` their
     number; ``earlier`` and ``later`` [N] the two most different means over the last quarter
     of a rest, in order of time: by then a load that was logged late or filtered has settled.
-    ``drift`` [N] is the part of their difference that only a moving zero explains.
+    ``drift`` [N] is the part of their difference that only a moving zero explains, in the time
+    ``apart`` [s] between them.
     """
 
     load: float
@@ -53,6 +54,7 @@ class LoadAtSlack:
     earlier: float
     later: float
     drift: float = 0.0
+    apart: float = np.inf
 
     @property
     def is_beyond_noise(self) -> bool:
@@ -72,6 +74,20 @@ class LoadAtSlack:
         1.732 0.0
         """
         return abs(self.drift) / 3**0.5 if abs(self.drift) > _COVERED * offset_uncertainty else 0.0
+
+    def drift_within(self, duration: float) -> float:
+        """Uncertainty of a difference of two tensions due to a drift between them. [N].
+
+        A stated error of the zero is in both, so it does not cover the drift.  A zero that moves
+        at random moves with the root of the time; an even drift moves by less.
+
+        Examples
+        --------
+        >>> rest = LoadAtSlack(0.0, 0.01, 2, 0.0, -3.0, drift=-3.0, apart=400.0)
+        >>> print([round(rest.drift_within(duration), 3) for duration in (100.0, 800.0)])
+        [0.866, 1.732]
+        """
+        return abs(self.drift) / 3**0.5 * min(duration / self.apart, 1.0) ** 0.5
 
 
 def stands_at_slack_length(standstills: Standstills, is_slack: Bools) -> Bools:
@@ -156,10 +172,11 @@ def load_at_slack(
     """
     noise, quantum = estimate_noise(tension)
     rests = [
-        _End.of(tension, slice(first, last + 1), place, _BEYOND * noise + quantum)
-        for first, last, place in zip(
+        _End.of(tension, slice(first, last + 1), place, time, _BEYOND * noise + quantum)
+        for first, last, place, time in zip(
             standstills.first[is_slack].tolist(), standstills.last[is_slack].tolist(),
-            standstills.mean_position[is_slack].tolist(), strict=True,
+            standstills.mean_position[is_slack].tolist(),
+            standstills.end_time[is_slack].tolist(), strict=True,
         )
     ]  # fmt: skip
     ends = [one for one in rests if one is not None]
@@ -183,20 +200,24 @@ def load_at_slack(
         float(np.average([one.mean for one in ends], weights=counts)), float(np.hypot(own, step)),
         len(ends), ends[earlier].load, ends[later].load,
         drift=_moved(ends[earlier], ends[later], stiffness, noise, step),
+        apart=ends[later].time - ends[earlier].time if later > earlier else np.inf,
     )  # fmt: skip
 
 
 class _End(NamedTuple):
-    """A slack rest: place [m], mean load over its end and over all of it [N], and its samples."""
+    """A slack rest: place [m], end [s], mean load over its end and all of it [N], its samples."""
 
     place: float
+    time: float
     load: float
     mean: float
     n_samples: int
     samples: slice
 
     @classmethod
-    def of(cls, tension: Floats, samples: slice, place: float, spread: float) -> _End | None:
+    def of(
+        cls, tension: Floats, samples: slice, place: float, time: float, spread: float
+    ) -> _End | None:
         """Make it from the loads of a standstill; None if none is known.
 
         A crosshead that is read in coarse steps shows the beginning of a pull late: a
@@ -210,7 +231,7 @@ class _End(NamedTuple):
         if loads.size - still <= loads.size // 3:
             loads = loads[:still]
         last = loads[-_quarter(loads.size) :]
-        return cls(place, float(last.mean()), float(loads.mean()), int(loads.size), samples)
+        return cls(place, time, float(last.mean()), float(loads.mean()), int(loads.size), samples)
 
     @property
     def n_read(self) -> int:

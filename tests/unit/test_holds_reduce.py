@@ -18,6 +18,7 @@ from reduction.stages.holds.relaxation_and_creep import (
     reduce_holds,
 )
 from reduction.stages.holds.relaxation_numbers import value_at_times
+from reduction.stages.load_at_slack import LoadAtSlack
 from reduction.stages.standstills import Standstills
 
 STEP = 0.1
@@ -112,6 +113,24 @@ def test_results_come_by_hold_and_then_by_specimen_without_rests():
     assert [hold.hold_start_time for hold in holds] == pytest.approx([25, 25, 150, 150])
     assert "relaxation from an earlier hold continues during this one" in holds[2].made
     assert "relaxation from an earlier hold continues during this one" not in holds[0].made
+
+
+def test_a_zero_that_moves_within_a_hold_is_in_the_interval_of_its_drop():
+    """Synthetic: rests before and after show a drift; its effect on the drop is drift over start."""
+    time, position, tension = record()
+    drift, apart = -4.0, 320.0
+    rest = LoadAtSlack(0.0, 0.01, 2, 0.0, drift, drift=drift, apart=apart)
+    (true,) = reduce(time, position, tension)
+    moving = tension + drift * np.clip(time - 10, 0, apart) / apart
+    (blind,) = reduce(time, position, moving)
+    (hold,) = reduce(time, position, moving, at_slack=(rest,))
+    off = hold.relaxation_drop - true.relaxation_drop
+    assert off == pytest.approx(-drift / 400 * 300 / apart, abs=0.001)
+    assert off > 4 * blind.relaxation_drop_standard_uncertainty
+    assert off < 1.96 * hold.relaxation_drop_standard_uncertainty < 1.3 * off
+    # the drift is in the last decade for the most part
+    off_rate = hold.rate_per_decade - true.rate_per_decade
+    assert abs(off_rate) < 1.96 * hold.rate_per_decade_standard_uncertainty
 
 
 def test_a_scaled_tension_scales_tensions_and_leaves_shares():

@@ -195,6 +195,7 @@ def test_a_zero_that_moves_is_told_by_the_rests_at_one_length(drift):
     found = load_at_slack(load, stands, np.array([True, True]), stroke=1.0)
     # from the last quarter of the first third to that of the last: two thirds of it
     assert found.drift == pytest.approx(drift * 2 / 3, abs=abs(drift) / 6 + 0.2)
+    assert found.apart == stands.end_time[1] - stands.end_time[0]
     peak = notes(load, found, offset=1.0)
     assert "load-zero-drifts" in peak
     # what is stated of the zero holds it

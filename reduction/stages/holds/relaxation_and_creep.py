@@ -14,6 +14,7 @@ References
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -63,6 +64,7 @@ from reduction.stages.holds.relaxation_numbers import (
     relaxation_drop,
     value_at_times,
 )
+from reduction.stages.load_at_slack import LoadAtSlack
 from reduction.stages.moduli.splice_slip import find_steps
 from reduction.stages.standstills import Standstills
 
@@ -489,11 +491,12 @@ def _reasons_against(hold: Hold, ends: _Ends, settings: HoldSettings) -> list[No
 _RINGING = 0.5  # longest time over which a machine rings; rubber relaxes within a second too. [s]
 
 
-def _rate(hold: Hold, ends: _Ends, *, known_to: float) -> Rate | None:
+def _rate(hold: Hold, ends: _Ends, *, known_to: float, of_zero: float) -> Rate | None:
     """Fraction of tension lost per decade, or None with a refusal.
 
     The tension due to a motion relaxes as the rest does, but is subtracted unrelaxed.  The rate is
-    uncertain by that fraction, twice the uncertainty of the motion.
+    uncertain by that fraction, twice the uncertainty of the motion.  An even drift of the zero,
+    ``of_zero``, falls mostly into the last decade.
     """
     if hold.ramp is None:
         hold.refusals.append(note("rate-without-ramp"))
@@ -512,7 +515,8 @@ def _rate(hold: Hold, ends: _Ends, *, known_to: float) -> Rate | None:
             note("rate-not-told-from-zero", loss=-slope.value, spread=slope.standard_uncertainty)
         )
         return None
-    spread = float(np.hypot(slope.standard_uncertainty, slope.value * 2 * known_to / ends.initial))
+    of_tension = np.hypot(slope.value * 2 * known_to, of_zero) / ends.initial
+    spread = float(np.hypot(slope.standard_uncertainty, of_tension))
     return Rate(-slope.value, spread, slope.elapsed_low, slope.elapsed_high)
 
 
@@ -674,6 +678,7 @@ def _result(
     kind: str,
     settings: HoldSettings,
     follows_hold: bool,
+    at_slack: LoadAtSlack | None,
 ) -> HoldResult:
     """Reduce one hold of one specimen."""
     times = np.array(settings.times, dtype=np.float64)
@@ -723,10 +728,12 @@ def _result(
         if kind == "creep":
             rate = _creep(hold)
         elif not reasons:
-            kept, unknown = _at_one_length(hold, ends)
+            kept, of_motion = _at_one_length(hold, ends)
+            of_zero = 0.0 if at_slack is None else at_slack.drift_within(hold.duration)
+            unknown = float(np.hypot(of_motion, of_zero))
             ends = _with_motion(ends, ends if kept is hold else _hold_ends(kept), unknown)
             drop = Rate(ends.drop, ends.drop_uncertainty, np.nan, np.nan)
-            rate = _rate(kept, ends, known_to=unknown)
+            rate = _rate(kept, ends, known_to=of_motion, of_zero=of_zero)
             prony = _prony(kept, ends, settings, known_to=unknown)
             if prony is not None:
                 modelled = _at_ramp_end(kept, prony)
@@ -790,6 +797,7 @@ def reduce_holds(
     specimens: tuple[str, ...],
     settings: HoldSettings,
     kind: Literal["relaxation", "creep"] = "relaxation",
+    at_slack: Sequence[LoadAtSlack | None] = (),
 ) -> tuple[HoldResult, ...]:
     """Relaxation or creep of every specimen in every hold; rests are left out.
 
@@ -812,6 +820,8 @@ def reduce_holds(
         Shortest duration, number of Prony terms, times.
     kind : str, optional
         ``relaxation`` at constant length or ``creep`` at constant tension.
+    at_slack : sequence of LoadAtSlack or None, optional
+        Reading of each load cell at slack; where it moves, so may the tension within a hold.
 
     Returns
     -------
@@ -852,7 +862,9 @@ def reduce_holds(
     results = []
     for index in np.flatnonzero(~standstills.is_rest):
         earlier = bool(index) and not standstills.is_rest[index - 1]
-        for name, load, stretch in zip(specimens, loads, stretches, strict=True):
+        for name, load, stretch, slack in zip(
+            specimens, loads, stretches, at_slack or (None,) * len(specimens), strict=True
+        ):
             hold = select_hold(seconds, place, load, stretch, standstills, int(index))
             results.append(
                 _result(
@@ -861,6 +873,7 @@ def reduce_holds(
                     kind=kind,
                     settings=settings,
                     follows_hold=earlier,
+                    at_slack=slack,
                 )
             )
     return tuple(results)
