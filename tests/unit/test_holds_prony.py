@@ -52,6 +52,23 @@ def test_terms_times_and_their_number_come_back(n_terms):
     assert found.criterion.startswith(f"{n_terms} of up to 3 terms")
 
 
+@pytest.mark.parametrize("ramp", [8.0, 15.0])
+def test_a_term_that_a_long_ramp_leaves_a_fraction_of_does_not_cost_the_series(ramp):
+    """Synthetic: the ramp leaves a fifth, or a tenth, of a term of 1.5 s."""
+    size, times = np.array([20.0, 16.0, 13.0]), np.array([1.5, 20.0, 250.0])
+    elapsed = np.arange(0.1, 600.0, 0.1)
+    series = prony_tension(
+        elapsed, tension=size, relaxation_time=times, long_time_tension=325.0, ramp_duration=ramp
+    )
+    off = []
+    for seed in range(12):
+        noise = 0.4 * np.random.default_rng(seed).standard_normal(elapsed.size)
+        blocks = logarithmic_blocks(elapsed, series + noise)
+        found = fit_prony(blocks.elapsed, blocks.value, weights=blocks.weight, ramp_duration=ramp)
+        off.append((found.tension - size) / found.tension_standard_uncertainty)
+    assert 0.5 < np.sqrt(np.mean(np.square(off))) < 1.5
+
+
 def test_stated_uncertainties_are_the_scatter_of_repeated_holds():
     fits = [fit(*hold(2, seed=seed), maximum_terms=2) for seed in range(60)]
     for name in ("tension", "time"):

@@ -157,6 +157,10 @@ DECISIVE = 10.0
 
 LONGEST_TIME = 2.0
 
+SHORTEST_SHARE = 0.05
+"""Time of a term relative to the ramp before it, of which the ramp leaves as much, below which the
+term would be the corner of the ramp, not the specimen. [1]"""
+
 LARGEST_SHARE = 0.5
 """Relative uncertainty of a term, or of its time, beyond which there is no series. [1]"""
 
@@ -313,7 +317,7 @@ def fit_prony(
         raise DataError("a series needs a term", found=str(maximum_terms), needed="1 or more")
     time, load = as_same_shape(elapsed=elapsed, tension=tension)
     weight = np.ones_like(time) if weights is None else np.asarray(weights, dtype=np.float64)
-    shortest = max(0.5 * float(np.median(np.diff(time[:8]))), 0.2 * ramp_duration)
+    shortest = max(0.5 * float(np.median(np.diff(time[:8]))), SHORTEST_SHARE * ramp_duration)
     longest = float(time[-1])
     grid = np.geomspace(shortest, LONGEST_TIME * longest, GRID_TIMES)
 
