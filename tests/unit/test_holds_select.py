@@ -35,6 +35,22 @@ def test_a_hold_has_its_samples_and_the_ramp_before_it():
     assert (one.notes, one.refusals) == ([], [])
 
 
+def test_a_ramp_of_three_readings_leads_to_a_tension_with_the_noise_of_the_hold():
+    """Synthetic: 0 to 4 m within three readings, a linear specimen, noise of 0.5 N."""
+    position = np.interp(TIME, [0, 10, 11.004, 40, 41, 100], [0, 0, 4, 4, 6, 6])
+    stand = replace(STAND, first=np.array([23, 82]), start_time=np.array([11.5, 41.0]))
+    off = []
+    for seed in range(40):
+        rng = np.random.default_rng(seed)
+        one = select(
+            position=position + rng.normal(0, 1e-4, TIME.size),
+            tension=10 * position + rng.normal(0, 0.5, TIME.size),
+            stand=stand,
+        )
+        off.append((one.ramp_leads_to - 40) / one.ramp_leads_to_within)
+    assert 0.7 < np.sqrt(np.mean(np.square(off))) < 1.5
+
+
 @pytest.mark.parametrize(("step", "is_ramp"), [(3.0, False), (12.0, True)])
 def test_a_step_within_what_counts_as_constant_tension_is_no_ramp(step, is_ramp):
     time = np.arange(0.0, 400.0, 0.25)

@@ -493,7 +493,10 @@ def select_hold(
     leads_to = within = np.nan
     if ramp is not None and standstills.tension_tolerance is None and place.size:
         ramp = _with_time_to_stop(ramp, time, position, first, float(np.median(place)))
-        leads_to, within = _ramp_leads_to(time, position, tension, ramp, first, float(place[0]))
+        leads_to, within = _ramp_leads_to(
+            *(one[: first + 1] for one in (time, position, tension)), ramp,
+            held_at=float(place[0]), noise=(reading_noise(place), reading_noise(load)),
+        )  # fmt: skip
     return Hold(
         time=seconds,
         position=place,
@@ -552,30 +555,40 @@ _ROUNDED = 1e-9
 
 
 def _ramp_leads_to(
-    time: Floats, position: Floats, tension: Floats, ramp: _Ramp, first: int, held_at: float
+    time: Floats,
+    position: Floats,
+    tension: Floats,
+    ramp: _Ramp,
+    *,
+    held_at: float,
+    noise: tuple[float, float],
 ) -> tuple[float, float]:
-    """Tension extrapolated from the last readings of a ramp to its end, and the noise of it."""
-    begin = int(np.searchsorted(time[: first + 1], ramp.start_time))
-    end = int(np.searchsorted(time[: first + 1], ramp.end_time))
+    """Tension extrapolated from the last readings of a ramp to its end, and the noise of it.
+
+    ``noise`` of a reading of position [m] and tension [N] is that of the hold: a quick ramp has
+    too few readings to show it.
+    """
+    begin, end = np.searchsorted(time, [ramp.start_time, ramp.end_time])
     known = np.flatnonzero(np.isfinite(position[begin:end] + tension[begin:end])) + begin
     if known.size < _FEWEST_ON_RAMP:
         return float("nan"), float("nan")
     load, place = tension[known[-_FEWEST_ON_RAMP:]], position[known[-_FEWEST_ON_RAMP:]]
     # readings no farther apart than their noise cannot be extrapolated
-    noise = reading_noise(position[first : first + known.size])
-    if not np.abs(np.diff(place)).min() > SIGNIFICANT * noise:
+    of_position, of_tension = noise
+    if not np.abs(np.diff(place)).min() > SIGNIFICANT * of_position:
         return float("nan"), float("nan")
     earlier, slope = np.diff(load) / np.diff(place)
     ahead = held_at - place[-1]
     # where the curvature exceeds noise, the line lies below the curve
     bend = (slope - earlier) / (place[-1] - place[0])
-    if abs(bend) * (place[-1] - place[-2]) ** 2 < _BENDS * reading_noise(tension[begin:end]):
+    rough = max(of_tension, reading_noise(tension[begin:end]))  # steps of a converter show here
+    if abs(bend) * (place[-1] - place[-2]) ** 2 < _BENDS * rough:
         bend = 0.0
     leads_to = float(load[-1] + slope * ahead + bend * ahead * (held_at - place[-2]))
     # noise of a line through two readings; the extrapolation may curve, and be cut short
     reach = ahead / (place[-1] - place[-2])
-    noise = reading_noise(tension[first : first + known.size]) * float(np.hypot(1 + reach, reach))
-    return leads_to, float(np.hypot(noise, (leads_to - load[-1]) / np.sqrt(3)))
+    own = of_tension * float(np.hypot(1 + reach, reach))
+    return leads_to, float(np.hypot(own, (leads_to - load[-1]) / np.sqrt(3)))
 
 
 _BENDS = 3.0  # noise of a reading
