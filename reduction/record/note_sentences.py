@@ -560,9 +560,13 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "splice-law-unchecked": (
         "warning",
-        lambda n_marks, carried, effect: (
-            f"no splice law with fewer coefficients than marks agrees with the {n_marks} stretched"
-            f" mark{_plural(n_marks)}; the laws that do agree would also fit a misread mark"
+        lambda n_marks, is_one_stretch, carried, effect: (
+            (f"the {n_marks} stretched marks are at one stretch: how the splices stretch up to it"
+             " and beyond is assumed"
+             if is_one_stretch and n_marks > 1
+             else "no splice law with fewer coefficients than marks agrees with the"
+             f" {n_marks} stretched mark{_plural(n_marks)}; the laws that do agree would also fit a"
+             " misread mark")
             + (f"; {carried} would move moduli by {effect:+.1%}, which is in the intervals"
                if carried else "")
             + ". Read marks at one more stretch"

@@ -143,6 +143,28 @@ def test_two_marks_of_splices_that_saturate_keep_both_sides():
     assert not found.is_checked
 
 
+@pytest.mark.parametrize("shape", ["root", "share", "steep"])
+def test_marks_at_one_stretch_leave_the_slope_of_the_splices_open(shape):
+    """Synthetic: two tests marked at one stretch; a cycle follows the slope of the splices there."""
+    free, tension = np.array([0.0, 1.0, 1.002]), np.array([0.0, 300.0, 290.0])
+    power = {"root": 0.5, "share": 1.0, "steep": 1.6}[shape]
+    splice = 0.2 * (tension / 300) ** power
+    found = fit_splice_laws(
+        SpliceReadings(
+            free, splice, tension, np.array([0, 0, 1]), free == 0, 0.45, 3e-3, np.zeros((2, 2)),
+            tension_uncertainty=np.zeros(3),
+        )
+    )  # fmt: skip
+    assert not found.is_checked
+    # slope of the splice strain with the free strain, while the tension rises in proportion
+    by = np.zeros(10)
+    by[[1, 2, 3, 4, 5]] = 1.0, 2.0, 3.0, found.values[5], found.values[4]
+    slope = found.values[1] + found.values[4] * found.values[5]
+    spread = np.sqrt(by @ (found.covariance + found.between) @ by)
+    assert abs(slope - 0.2 * power) < 2 * spread
+    assert spread < 0.15
+
+
 @pytest.mark.parametrize(("force", "tape"), [(60.0, 3e-3), (60.0, 5e-3), (80.0, 3e-3)])
 def test_an_exponent_that_the_marks_do_not_fix_is_as_uncertain_as_its_range(force, tape):
     """Of saturated splices; between .3 and 1.9 an exponent is known without any mark."""

@@ -119,6 +119,8 @@ _CURVE = 4  # coefficients of the tension over the strain, at most
 
 _SPARE = 2  # marks in excess of coefficients from which a cubic is tried
 
+_ONE_STRETCH = 0.02  # of the free strain: range within which marks are at one stretch
+
 _SPAN = 1.5  # ratio of tensions from which an exponent is fitted
 
 
@@ -153,6 +155,12 @@ class SpliceReadings:
         """Geometric mean of the known tensions; 1 where there is none. [N]."""
         known = self.tension[np.nan_to_num(self.tension) > 0]
         return float(np.exp(np.mean(np.log(known)))) if known.size else 1.0
+
+    @property
+    def is_one_stretch(self) -> bool:
+        """Whether all loaded rows are at one stretch: a law between it and slack is assumed."""
+        free = self.free[~self.is_slack]
+        return bool(free.size and np.ptp(free) <= _ONE_STRETCH * free.max())
 
     def without(self, row: int) -> SpliceReadings:
         """Return the readings without one row."""
@@ -244,7 +252,7 @@ class SpliceAverage:
     is_checked : bool
         False where every law with a spare mark is doubtful, and the others follow any marks: a
         misread mark would not show.  Where none of the former passes, laws that the marks
-        reject have a weight.
+        reject have a weight.  Also false where all marks are at one stretch.
     """
 
     values: Floats
@@ -340,7 +348,9 @@ def fit_splice_laws(
     n_loaded = int((~kept.is_slack).sum())
     has_spare = np.array([law.freedom > 0 for law in laws])
     is_sure = np.array([law.chance >= _DOUBT for law in laws])
-    is_checked = bool((has_spare & is_sure).any() or not (passing & ~has_spare).any())
+    is_checked = not kept.is_one_stretch and bool(
+        (has_spare & is_sure).any() or not (passing & ~has_spare).any()
+    )
     # if not, the sides are distinguished only by how well their curvature fits the marks
     is_told = _is_told_apart(kept, laws)
     if not is_told or not (passing & has_spare).any():
@@ -550,7 +560,7 @@ def _law(readings: SpliceReadings, name: str, slip: float) -> FittedLaw | None:
     # the law of tension alone may use two marks and leave none to spare: no misfit judges it
     spare = 1 if LAWS[name] == ("tension",) else 3 + (is_limited and len(LAWS[name]) > 1)
     if loaded.size < len(LAWS[name]) + spare or loaded.max() < _SPAN * loaded.min():
-        return without
+        return without if without is None else _with_any_exponent(readings, without)
     grid = _SATURATIONS if is_limited else _EXPONENTS
 
     def criterion(shape: float) -> float:
@@ -589,6 +599,15 @@ def _law(readings: SpliceReadings, name: str, slip: float) -> FittedLaw | None:
         criterion=law.criterion + 2.0,
         freedom=law.freedom - 1,
     )
+
+
+def _with_any_exponent(readings: SpliceReadings, law: FittedLaw) -> FittedLaw:
+    """A law whose exponent may be any, if all marks are at one stretch and so say nothing of it."""
+    if not readings.is_one_stretch:
+        return law
+    covariance = law.covariance.copy()
+    covariance[_EXPONENT, _EXPONENT] = np.ptp(_EXPONENTS) ** 2 / 12
+    return replace(law, covariance=covariance)
 
 
 def _shape(law: FittedLaw) -> float:
@@ -637,7 +656,11 @@ def _fit(readings: SpliceReadings, name: str, shape: float, slip: float) -> Fitt
     design = np.stack([columns[term] for term in LAWS[name]], axis=1)
     # columns are scaled by their size: tension and strain differ in magnitude
     size = np.sqrt((design**2).sum(axis=0))
-    if (size == 0).any() or np.linalg.matrix_rank(design[loaded] / size, tol=1e-3) < len(places):
+    if (size == 0).any():
+        return None
+    # what is known of the settlement stands for a reading: marks at one stretch leave it open
+    from_marks = (design[loaded] / size)[:, int("offset" in LAWS[name]) :]
+    if np.linalg.matrix_rank(from_marks, tol=1e-3) < from_marks.shape[1]:
         return None
     known = np.zeros((len(places) + 2,) * 2)
     if "offset" in LAWS[name]:

@@ -436,10 +436,10 @@ def _on_laws(fit: _MixedFit, readings: PooledMarks) -> tuple[Note, ...]:
             else _effect_on_modulus(fit.model, second, average.reference),
         )
     ]
-    rows = _splice_readings(readings, readings.relaxed()).row
+    given = _splice_readings(readings, readings.relaxed())
     notes += [
         note("mark-set-aside", marks.specimen, test=marks.test[row], hold=marks.hold[row])
-        for row in rows[list(average.set_aside)]
+        for row in given.row[list(average.set_aside)]
     ]
     if average.is_checked and any(
         weight > 0 and law.chance < REJECTED
@@ -459,6 +459,7 @@ def _on_laws(fit: _MixedFit, readings: PooledMarks) -> tuple[Note, ...]:
                 "splice-law-unchecked",
                 marks.specimen,
                 n_marks=int((~marks.is_slack[fit.rows]).sum()),
+                is_one_stretch=given.is_one_stretch,
                 carried=", ".join(law.name for law in carried),
                 effect=max(effects, key=abs, default=float("nan")),
             )
