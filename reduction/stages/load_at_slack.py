@@ -87,7 +87,8 @@ class LoadAtSlack:
         >>> print([round(rest.drift_within(duration), 3) for duration in (100.0, 800.0)])
         [0.866, 1.732]
         """
-        return abs(self.drift) / 3**0.5 * min(duration / self.apart, 1.0) ** 0.5
+        share = min(duration / self.apart, 1.0)
+        return abs(self.drift) * float(np.sqrt(share / 3))
 
 
 def stands_at_slack_length(standstills: Standstills, is_slack: Bools) -> Bools:

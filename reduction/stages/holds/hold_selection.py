@@ -494,7 +494,7 @@ def select_hold(
     if ramp is not None and standstills.tension_tolerance is None and place.size:
         ramp = _with_time_to_stop(ramp, time, position, first, float(np.median(place)))
         leads_to, within = _ramp_leads_to(
-            *(one[: first + 1] for one in (time, position, tension)), ramp,
+            time[: first + 1], position[: first + 1], tension[: first + 1], ramp,
             held_at=float(place[0]), noise=(reading_noise(place), reading_noise(load)),
         )  # fmt: skip
     return Hold(
