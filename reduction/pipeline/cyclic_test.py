@@ -258,7 +258,12 @@ def parts_of_cycles(
         alike = np.where(late > 0, both, 0.0)
     amplitude = summarise_amplitude(loops, area=area, break_in_cycles=break_in, turns_alike=alike)
     loops.release_pages()
-    trend = fit_peak_trend(loops, area=area, break_in_cycles=break_in, cycles=cycles)
+    lasts = float(record.time[cycles.last[-1]] - record.time[cycles.first[0]])
+    rests = located.load_at_slack or (None,) * len(specimens)
+    trend = fit_peak_trend(
+        loops, area=area, break_in_cycles=break_in, cycles=cycles,
+        of_zero=[0.0 if rest is None else rest.drift_within(lasts) for rest in rests],
+    )  # fmt: skip
     if np.isnan(area).any():
         # a rope without a diameter has spring constants, and creeps, but has no modulus
         return {"loops": loops, "amplitude": amplitude, "trend": trend}

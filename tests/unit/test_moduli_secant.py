@@ -378,6 +378,19 @@ def test_change_takes_at_most_ten_cycles_at_each_end():
     assert change == pytest.approx(650 / 700 - 1)
 
 
+def test_a_zero_that_moves_over_the_cycles_is_in_the_interval_of_the_trend():
+    """Synthetic: 700 N lose 20 N per decade; the zero falls evenly by 4 N over 100 cycles."""
+    number = np.arange(1.0, 101.0)
+    still = 700 - 20 * np.log10(number)
+    moving = still - 4 * (number - 1) / 99
+    true = fit_peak_trend(loops_of_trend(still[None]), area=[1.0])
+    found = fit_peak_trend(loops_of_trend(moving[None]), area=[1.0], of_zero=[4 / 3**0.5])
+    for name in ("peak_tension_change", "peak_tension_per_decade"):
+        off = abs(getattr(found, name) - getattr(true, name))
+        spread = getattr(found, f"{name}_standard_uncertainty")
+        assert 0.5 * spread < off < 1.96 * spread
+
+
 def test_change_is_last_over_first():
     peak = np.array([[100.0, 98, 97, 96, 95]])
     assert fit_peak_trend(loops_of_trend(peak), area=[1.0]).peak_tension_change == pytest.approx(

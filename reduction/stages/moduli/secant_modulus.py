@@ -774,8 +774,10 @@ def _means_at_ends(values: ArrayLike) -> tuple[Floats, Floats, Floats]:
     return series[:, :n_ends].mean(axis=1), series[:, -n_ends:].mean(axis=1), scatter
 
 
-def _change_of_ends(values: ArrayLike) -> tuple[Floats, Floats]:
+def _change_of_ends(values: ArrayLike, drift: ArrayLike = 0.0) -> tuple[Floats, Floats]:
     """Relative change of the mean of the last tenth of the cycles from that of the first.
+
+    ``drift`` is the standard uncertainty of a change of their zero, in the unit of the values.
 
     Examples
     --------
@@ -787,11 +789,17 @@ def _change_of_ends(values: ArrayLike) -> tuple[Floats, Floats]:
     """
     first, last, scatter = _means_at_ends(values)
     with np.errstate(invalid="ignore", divide="ignore"):
-        return last / first - 1, scatter / np.abs(first) * np.hypot(1.0, last / first)
+        spread = np.hypot(scatter * np.hypot(1.0, last / first), drift) / np.abs(first)
+        return last / first - 1, spread
 
 
 def fit_peak_trend(
-    loops: Loops, *, area: ArrayLike, break_in_cycles: int = 0, cycles: Cycles | None = None
+    loops: Loops,
+    *,
+    area: ArrayLike,
+    break_in_cycles: int = 0,
+    cycles: Cycles | None = None,
+    of_zero: ArrayLike = 0.0,
 ) -> PeakTrend:
     """Decay of the peak and change of the dynamic modulus over the cycles of a test.
 
@@ -805,6 +813,8 @@ def fit_peak_trend(
         Cycles left out of the slopes at the start. [1]
     cycles : Cycles, optional
         With their numbers, where the log lacks some; by default 1, 2, 3, ...
+    of_zero : array_like, shape (n_specimens,), optional
+        Standard uncertainty of the change of the zero of the load cell over the cycles. [N]
 
     Returns
     -------
@@ -850,7 +860,11 @@ def fit_peak_trend(
     if strain.shape[1] >= 2 * _LATER:
         later, _ = slope_of(strain, _LATER)
         strain_uncertainty = np.hypot(strain_uncertainty, (later - strain_slope) / 2)
-    change, change_uncertainty = _change_of_ends(peaks)
+    drift = np.asarray(of_zero, dtype=np.float64)
+    change, change_uncertainty = _change_of_ends(peaks, drift)
+    # an even drift is mostly in the last decade
+    decades = max(float(np.log10(peaks.shape[1])), 1.0)
+    peak_uncertainty = np.hypot(peak_uncertainty, drift / decades)
     first_strain, last_strain, strain_scatter = _means_at_ends(strain)
     return PeakTrend(
         peak_tension_per_decade=peak_slope,
