@@ -49,6 +49,8 @@ JUSTIFIED = (
      "this surface falls to"),
     ("hose-synthetic", "L-64", "the static cycles begin and end slack: amplitudes are no EA",
      "If it is taut at this load, state a lower phases.slack_tension. 1 similar note in L-68"),
+    ("hose-synthetic", "D-64", "no lag is stated, and 5 ms are 8 % of H",
+     "the lag between tension and position is not stated"),
     ("hose-synthetic", "comparison H64-dynamic", "angle and cord load do the same to one curve",
      "The curve does not determine the fitted numbers"),
     ("hose-synthetic", "comparison H68-dynamic", "cord load and the others do the same to it",

@@ -529,8 +529,9 @@ def _between_reversals(
     # a stroke of constant speed has its full amplitude from the start, a sine grows into it
     if settings.waveform == "sinusoidal":
         # of few readings a cycle, the wave itself looks like noise
-        n_readings = np.median(branch_last[:, 1] - branch_first[:, 0])
-        noise = estimate_noise(values)[0] if n_readings >= _TELLS_NOISE else 0.0
+        n_readings = branch_last[:, 1] - branch_first[:, 0]
+        is_told = n_readings.size and np.median(n_readings) >= _TELLS_NOISE
+        noise = estimate_noise(values)[0] if is_told else 0.0
         steady = _steady_span(values, branch_first, branch_last, noise=noise)
         n_last = branch_first.shape[0] - steady.stop
         if steady.start or n_last:

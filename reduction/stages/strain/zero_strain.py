@@ -56,8 +56,7 @@ def zero_at_slack(
 ) -> ZeroStrain:
     """Position of the first rest, else that at which the layout states that the specimen is slack.
 
-    It is the mean of n readings that lie within the tolerance of a standstill, known to that
-    tolerance over the root of 12 n, and to a step of a position that is written in coarse codes.
+    A position that is written in coarse codes is uncertain by one of them.
 
     Examples
     --------
@@ -66,13 +65,9 @@ def zero_at_slack(
     >>> print(zero_at_slack(no_rest, position_is_length=False).position)
     0.0
     """
-    rests = np.flatnonzero(standstills.is_rest)
+    rests = standstills.mean_position[standstills.is_rest]
     if rests.size:
-        first = rests[0]
-        n_readings = standstills.last[first] - standstills.first[first] + 1
-        spread = np.hypot(code_step, standstills.position_tolerance / np.sqrt(n_readings))
-        place = float(standstills.mean_position[first])
-        return ZeroStrain(place, float(spread / np.sqrt(12)), is_logged=True)
+        return ZeroStrain(float(rests[0]), code_step / float(np.sqrt(12)), is_logged=True)
     return ZeroStrain(length_at_slack if position_is_length else 0.0)
 
 
