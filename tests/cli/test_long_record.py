@@ -25,6 +25,8 @@ format = "delimited"
 time = {{ column = "t", unit = "s" }}
 crosshead_position = {{ column = "x", unit = "m", datum = "pin-to-pin" }}
 tension.1 = {{ column = "F", unit = "N" }}
+[uncertainty]
+lag = "5 ms"
 [tests.L-1]
 layout = "logger"
 specimens = ["cord"]
