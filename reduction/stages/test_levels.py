@@ -240,7 +240,7 @@ def levels_of_test(
 
 _OF_HOLD = 0.02  # of the tension of the hold: a controller comes to its load within this
 
-_SEEN = 4.0  # times the tolerance of position: a rope at its peak is stiffer than on average
+_SEEN = 4.0  # times the tolerance of position, within which the stop is found
 
 
 def _stood_tension(position: Floats, tension: Floats, standstills: Standstills) -> Floats:
@@ -261,10 +261,10 @@ def _stood_tension(position: Floats, tension: Floats, standstills: Standstills) 
         return nothing
     pair = np.array([np.nanmean(at_stop), np.nanmean(standstills.mean_tension[:, hold])])
     change = abs(pair[1] - pair[0])
-    # what the crosshead would have moved to change the load by as much
-    ranges = [np.subtract(*finite_extremes(load)[::-1]) for load in tension]
-    travel = np.subtract(*finite_extremes(position)[::-1])
-    is_seen = change * travel > _SEEN * tolerance * np.nanmean(ranges)
+    # what the crosshead moved before it stopped, to change the load by as much
+    loads = pair[0] - change
+    less = last_sample(lambda part: tension[:, part].mean(axis=0) < loads, 0, stopped, tension)
+    is_seen = less is not None and abs(position[less] - place) > _SEEN * tolerance
     return pair if is_seen and change > _OF_HOLD * pair[1] else nothing
 
 

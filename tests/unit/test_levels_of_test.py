@@ -9,7 +9,7 @@ from reduction.batch.plausibility import _of_lower_target, _of_mean
 from reduction.record.notes import note
 from reduction.record.settings import CycleSettings, PhaseSettings
 from reduction.stages.cycles.cycle_search import find_cycles
-from reduction.stages.standstills import find_standstills
+from reduction.stages.standstills import find_standstills, find_tension_stands
 from reduction.stages.test_levels import levels_of_test
 
 
@@ -260,3 +260,26 @@ def test_a_coupon_that_is_let_back_has_not_broken(out, load, share):
         np.arange(500.0), position, tension[None], None, stands, None, control="position"
     )
     assert found.final_share == pytest.approx([share], abs=0.01, nan_ok=True)
+
+
+@pytest.mark.parametrize(
+    ("noise", "overshoot", "keeps_length"),
+    [(2e-4, 0.0, False), (2e-5, 0.05, False), (2e-5, 0.05, True)],
+)
+def test_a_rope_that_stiffens_behind_its_slack_is_not_said_to_be_held_in_position(
+    noise, overshoot, keeps_length
+):
+    # synthetic: 0.3 m of slack, then 0.05 m up to 10 kN, kept for half an hour
+    rng = np.random.default_rng(0)
+    time = np.arange(0, 1860, 0.2)
+    since = np.clip(time - 60, 0, None)
+    change = overshoot * (np.exp(-since / 5) - keeps_length)
+    tension = np.interp(time, [0, 30, 60], [0, 0, 1e4]) * (1 + np.where(time > 60, change, 0))
+    stretch = 0.05 * (tension / 1e4) ** 0.4 + 1e-4 * np.log10(1 + since)
+    if keeps_length:
+        stretch[time > 60] = 0.05
+    position = 0.3 * np.clip(time / 30, 0, 1) + stretch + rng.normal(0, noise, time.size)
+    tension = tension + rng.normal(0, 5, time.size)
+    stands = find_tension_stands(time, position, tension[None], settings=PhaseSettings())
+    found = levels_of_test(time, position, tension[None], None, stands, None, control="load")
+    assert np.isfinite(found.stood_tension).all() == keeps_length
