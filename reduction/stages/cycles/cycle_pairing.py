@@ -851,14 +851,14 @@ def whole_cycles(values: Floats, halves: _HalfCycles) -> tuple[Indices, Indices,
     differ = np.flatnonzero(
         (np.abs(own) > _OPEN * np.abs(peak - end)) & (np.abs(own - step) > np.abs(own) / 2)
     )
-    for pair in differ:
-        at = halves.first[rising[pair]], halves.last[rising[pair] + 1]
-        turn = at[int(abs(end[pair] - peak[pair]) > abs(begin[pair] - peak[pair]))]
-        reach = max(int(at[1] - at[0]) // _BESIDE, 2)
-        beside = np.array([max(turn - reach, 0), min(turn + reach, len(values) - 1)])
-        level = max(end[pair], begin[pair])
-        if np.all(take_samples(values, beside) < level - np.abs(own[pair]) / 2):
-            step[pair] = own[pair]
+    at = np.stack([halves.first[rising[differ]], halves.last[rising[differ] + 1]])
+    is_end = np.abs(end - peak)[differ] > np.abs(begin - peak)[differ]
+    reach = np.maximum((at[1] - at[0]) // _BESIDE, 2)
+    beside = np.where(is_end, at[1], at[0])[:, None] + np.stack([-reach, reach], axis=1)
+    level = np.maximum(begin, end)[differ] - np.abs(own[differ]) / 2
+    stays = take_samples(values, np.clip(beside, 0, len(values) - 1)) < level[:, None]
+    longer = differ[stays.all(axis=1)]
+    step[longer] = own[longer]
     allowed = np.full(rising.size, _SETTLING)
     allowed[1:][follows] = _OPEN
     is_open = np.abs(step) > allowed * np.abs(peak - np.minimum(begin, end))
