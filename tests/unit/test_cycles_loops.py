@@ -2487,3 +2487,21 @@ def test_the_valley_of_a_cycle_is_not_that_of_motion_between_two_runs(between, l
     loops = close_loops(time, 500 * strain[None], strain[None], cycles)
     half = [(high - low) / 2] * 2 + [(other_high - other_low) / 2] * 2
     np.testing.assert_allclose(loops.strain_amplitude[0], half, rtol=1e-3)
+
+
+@pytest.mark.parametrize("grows", [0.01, 0.04])
+def test_the_first_of_cycles_that_dwell_and_grow_has_its_own_valley(grows):
+    # synthetic: 2 s at each turn, without noise; the peak stays, and each valley is lower
+    valleys = -grows * np.arange(11)
+    turns = np.column_stack([np.full(11, 0.2), np.full(11, 0.2), valleys, valleys]).ravel()
+    knots = np.cumsum(np.append([0.0, 10.0, 4.0, 2.0], np.tile([4.0, 2.0, 4.0, 2.0], 10)))
+    time = np.arange(0, knots[-1] + 10, 0.1)
+    strain = np.interp(time, knots, turns)
+    stands = find_standstills(time, strain, strain[None], settings=PhaseSettings())
+    cycles = find_cycles(
+        time, strain, strain[None], stands, settings=CycleSettings(waveform="other")
+    )
+    loops = close_loops(time, 3000 * strain[None], strain[None], cycles, waveform="other")
+    ranges = 0.2 + grows * (np.arange(cycles.n_cycles) + 0.5)
+    assert cycles.n_cycles == 10
+    assert loops.strain_amplitude[0] == pytest.approx(ranges / 2, rel=2e-3)

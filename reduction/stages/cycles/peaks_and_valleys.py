@@ -162,8 +162,8 @@ def _at_sharp_turns(
         upper = _plateau(values, peak - on_rise, after_peak, top)
         lower = _plateau(-values, np.maximum(end - on_fall, peak), stop, -last)
         top, above = (top, above) if upper is None else (upper[0], 0 * above)
-        if lower is not None:  # it is held at one level at both ends of a cycle
-            first = np.append(-lower[0][0], -lower[0][:-1])
+        if lower is not None:  # noise lowers the readings of both ends of the first cycle alike
+            first = np.append(first[0] - last[0] - lower[0][0], -lower[0][:-1])
         last, below = (last, below) if lower is None else (-lower[0], 0 * below)
     # the readings of a rounded turn are its lower bound, not its middle
     missed = missed + (above + below) / 2 + bow
