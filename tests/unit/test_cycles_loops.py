@@ -2505,3 +2505,28 @@ def test_the_first_of_cycles_that_dwell_and_grow_has_its_own_valley(grows):
     ranges = 0.2 + grows * (np.arange(cycles.n_cycles) + 0.5)
     assert cycles.n_cycles == 10
     assert loops.strain_amplitude[0] == pytest.approx(ranges / 2, rel=2e-3)
+
+
+@pytest.mark.parametrize("dwell", [0.0, 2.0])
+def test_the_last_valley_of_strokes_of_load_that_shrink_creeps_as_the_valleys_do(dwell):
+    # synthetic: friction of 0.01 at either side of a line of 3000 N, strokes of 600 N less 5 % each
+    lasts = 8 + 2 * dwell
+    time = np.arange(0, 10 * lasts + 20, 0.1)
+    since = np.clip(time - 10, 0, 10 * lasts - 1e-9)
+    wave = np.interp(
+        since % lasts, [0, 4, 4 + dwell, 8 + dwell, 8 + 2 * dwell], [0, 1, 1, 0, 0]
+    ) * (1 - 0.05 * (since // lasts))
+    way = np.sign(np.round(np.diff(wave, prepend=0.0), 9))
+    moves = np.maximum.accumulate(np.where(way, np.arange(way.size), 0))
+    tension = 500 + 600 * wave
+    strain = 0.2 * wave + 0.01 * way[moves] + 0.002 * np.log1p(time)
+    stands = find_tension_stands(time, strain, tension[None], settings=PhaseSettings())
+    cycles = find_cycles(
+        time, strain, tension[None], stands,
+        settings=CycleSettings(waveform="other", control="load"),
+    )  # fmt: skip
+    assert cycles.n_cycles == 10
+    loops = close_loops(time, tension[None], strain[None], cycles, waveform="other", control="load")
+    stroke = 0.2 * (1 - 0.05 * 9)
+    expected = 3000 * stroke / (stroke + 0.02)
+    assert loops.apparent_spring_constant[0, -1] == pytest.approx(expected, rel=2e-3)

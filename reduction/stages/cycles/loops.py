@@ -812,6 +812,8 @@ def _levels_of_sine(
 
 _GROWS = 0.01  # of the range of a cycle
 
+_BEFORE_LAST = 3  # drifts from valley to valley
+
 
 def _levels_of_ramps(
     row: Mapping[str, Floats],
@@ -851,7 +853,9 @@ def _levels_of_ramps(
         elif may_dwell and is_load and answers and follows[-1]:
             # creep in the dwell after the last valley is not part of it, as of the others
             side = np.sign(top[-1] - end[-1])
-            as_before = begin[-1] + drift[-1]
+            # where strokes grow, valleys do not drift as means do
+            of_valleys = np.diff(end[:-1])[follows[1:-1]][-_BEFORE_LAST:]
+            as_before = begin[-1] + (np.median(of_valleys) if of_valleys.size else drift[-1])
             end = np.append(end[:-1], side * np.fmin(side * end[-1], side * as_before))
         missed = row[f"{name}_missed"]
         if is_parted:  # the drift may all take place on one way between the turns
