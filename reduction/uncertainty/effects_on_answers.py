@@ -117,7 +117,10 @@ def load_train_notes(test: ReducedTest, instruments: Sequence[InstrumentErrors])
                 specimen.name,
                 lag=of_energy / of_lag,
                 usual=_USUAL_LAG,
-                effect=-_USUAL_LAG * of_lag / abs(float(summary.hysteresis_energy[index])),
+                # of an elastic specimen, the energy is not told from zero
+                effect=-_USUAL_LAG
+                * of_lag
+                / max(abs(float(summary.hysteresis_energy[index])), of_energy),
             )
 
 

@@ -573,6 +573,9 @@ def test_a_usual_lag_beyond_the_interval_of_the_energy_is_a_warning_where_none_i
         rel=1e-6,
     )
     assert found[code].severity == ("warning" if of_energy > 2 * known_to else "note")
+    summary.hysteresis_energy = np.zeros(1)  # of a spring, in readings without noise
+    found = {one.code: one for one in load_train_notes(test, [InstrumentErrors("rope")])}
+    assert found[code].numbers["effect"] == pytest.approx(-of_energy / known_to)
     told = load_train_notes(test, [InstrumentErrors("rope", lag=1e-3)])
     assert not {"lag-unknown", "lag-matters"} & {one.code for one in told}
 
