@@ -1183,20 +1183,23 @@ def _are_codes(values: Floats, first: Integers, last: Integers, *, most: float) 
     """
     size = np.abs(take_samples(values, first) - take_samples(values, np.maximum(first - 1, 0)))
     small = np.flatnonzero(size <= most)
-    beside = first[small, np.newaxis] + np.arange(-_AROUND, _AROUND + 1)
-    steps = np.abs(np.diff(take_samples(values, np.clip(beside, 0, values.size - 1)), axis=1))
-    is_own = (beside[:, 1:] >= first[small, np.newaxis]) & (
-        beside[:, :-1] <= last[small, np.newaxis]
-    )
-    steps[is_own | ~(steps > 0)] = np.inf
     is_code = np.zeros(first.size, np.bool_)
-    is_code[small] = size[small] <= _MORE_THAN_A_CODE * steps.min(axis=1)
+    for part in sample_blocks(small.size, values, size=_AT_ONCE):
+        here = small[part]
+        begin, end = first[here, np.newaxis], last[here, np.newaxis]
+        beside = begin + np.arange(-_AROUND, _AROUND + 1)
+        steps = np.abs(np.diff(take_samples(values, np.clip(beside, 0, values.size - 1)), axis=1))
+        is_own = (beside[:, 1:] >= begin) & (beside[:, :-1] <= end)
+        steps[is_own | ~(steps > 0)] = np.inf
+        is_code[here] = size[here] <= _MORE_THAN_A_CODE * steps.min(axis=1)
     return is_code
 
 
 _SMALL_CODE = 2e-3  # of the range: a step of four digits is at most a thousandth of the reading
 
 _AROUND = 64  # samples
+
+_AT_ONCE = 4096  # excursions: a log of impulses has one in twenty samples
 
 
 _SPIKE_OF_RANGE = 1e-4
