@@ -186,12 +186,15 @@ def unlike_neighbours(
         ends = np.stack([cycles.first, cycles.last, 2 * cycles.last - cycles.first], axis=1)
         stop = ends[:, 1] + _GOES_ON * (ends[:, 1] - ends[:, 0])
         goes_on = [
-            end < driven.size
-            and not standstills.covers(slice(first, end)).any()
-            and _crosses(driven[second:end], driven[first:last])
-            for first, last, second, end in np.column_stack([ends, stop]).tolist()
+            end < driven.size and not standstills.covers(slice(first, end)).any()
+            for first, end in zip(cycles.first.tolist(), stop.tolist(), strict=True)
         ]
-        pairs = take_samples(time, _spread(ends[np.array(goes_on, dtype=bool)]))
+        some = _spread(np.column_stack([ends, stop])[np.array(goes_on, dtype=bool)])
+        crosses = [
+            _crosses(driven[second:end], driven[first:last])
+            for first, last, second, end in some.tolist()
+        ]
+        pairs = take_samples(time, some[np.array(crosses, dtype=bool), :3])
         # after a cycle that is stored alone the log continues with one of another time
         own, following = np.diff(pairs, axis=1).T
         pairs = pairs[following < _GAP * own]
