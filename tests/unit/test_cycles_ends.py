@@ -157,3 +157,18 @@ def test_cycles_that_grow_to_the_amplitude_of_the_others_are_a_start(begins, fir
     n_cycles = len(ends)
     steady = slice(0, n_cycles - first) if is_reversed else slice(first, n_cycles)
     assert _steady_span(wave, ends, ends + 1) == steady
+
+
+@pytest.mark.parametrize("lead", [0.0, 0.3])
+def test_a_first_ramp_that_is_slower_all_the_way_begins_a_cycle(lead):
+    # synthetic: at 40 % of the rate of the ramps after it, from below their valley
+    lasts = [5.0, 25 * (1 + lead), *[10.0] * 19, 3.0]
+    time = np.arange(0, sum(lasts), 0.2)
+    levels = np.array([-lead, -lead, *[1.0, 0.0] * 10, 0.0])
+    position = 0.2 * np.interp(time, np.cumsum([0.0, *lasts]), levels)
+    tension = 500 + 3000 * position
+    stands = find_standstills(time, position, tension[None], settings=PhaseSettings())
+    cycles = find_cycles(
+        time, position, tension[None], stands, settings=CycleSettings(waveform="triangular")
+    )
+    assert cycles.n_cycles == 10

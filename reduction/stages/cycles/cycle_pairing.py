@@ -603,7 +603,10 @@ def _waits(time: Floats, values: Floats, nodes: Indices, far: int, *, is_whole: 
     )
     own, usual = np.abs(np.diff(time[passed]))
     lasts, n_steps = float(usual.sum()), abs(int(passed[1, -1] - passed[1, 0]))
-    return bool((own - usual).max() > max(_WAITS[is_whole], 2 / max(n_steps, 1)) * lasts)
+    # a ramp that is slower from level to level waits nowhere
+    longer = own - usual
+    longer -= max(float(longer.min()), 0.0)
+    return bool(longer.max() > max(_WAITS[is_whole], 2 / max(n_steps, 1)) * lasts)
 
 
 _LEVELS = 11  # of a stroke, of which the first and the last are turns, where others wait too
