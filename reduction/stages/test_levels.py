@@ -460,6 +460,7 @@ _MOSTLY_HELD = 0.5  # of the time between the first and the last turn
 
 
 def _n_strokes(time: Floats, turns: Integers, standstills: Standstills) -> int:
+    """Rises and falls between turns, less the holds where these take most of the time."""
     if turns.size < 2:
         return 0
     start, end = float(time[turns[0]]), float(time[turns[-1]])

@@ -110,6 +110,8 @@ def load_train_notes(test: ReducedTest, instruments: Sequence[InstrumentErrors])
                 else None,
             )
         if not (index < len(instruments) and instruments[index].lag > 0):
+            # of an elastic specimen, the energy is not told from zero
+            energy = max(abs(float(summary.hysteresis_energy[index])), of_energy)
             # of a sine, whose phase it turns
             of_lag = 2 * np.pi**2 * float(summary.frequency[index]) * stroke
             yield note(
@@ -117,10 +119,7 @@ def load_train_notes(test: ReducedTest, instruments: Sequence[InstrumentErrors])
                 specimen.name,
                 lag=of_energy / of_lag,
                 usual=_USUAL_LAG,
-                # of an elastic specimen, the energy is not told from zero
-                effect=-_USUAL_LAG
-                * of_lag
-                / max(abs(float(summary.hysteresis_energy[index])), of_energy),
+                effect=-_USUAL_LAG * of_lag / energy,
             )
 
 

@@ -2422,10 +2422,8 @@ def test_bins_beside_harmonics_stand_where_their_readings_are(share, n_phases):
     assert curve[inside, 1] == pytest.approx(share * (at % 0.5 - 0.25)[inside], abs=1e-4 * share)
 
 
-def test_the_first_of_ramps_that_grow_is_measured_from_its_valley():
-    # from a valley of 0.3 to peaks that rise by 0.05 each, after a ramp to the first valley
-    peaks = 0.6 + 0.05 * np.arange(8)
-    knots = np.append(np.column_stack([np.full(8, 0.3), peaks]).ravel(), 0.3)
+def loops_between(knots):
+    """Loops of a spring of 500 N that ramps from each valley to a peak and on to the next."""
     turns = np.append(0.0, np.cumsum(np.abs(np.diff(knots)))) / 0.05
     time = np.arange(0, turns[-1], 0.0931)
     strain = np.interp(time, turns, knots)
@@ -2434,29 +2432,23 @@ def test_the_first_of_ramps_that_grow_is_measured_from_its_valley():
     first, peak, last = at[:-1:2], at[1::2], at[2::2]
     cycles = Cycles(
         first, last, np.stack([first, peak], axis=1), np.stack([peak, last], axis=1),
-        np.ones((8, 2)), np.zeros(time.size, np.int32), np.zeros(time.size, np.int8),
+        np.ones((first.size, 2)), np.zeros(time.size, np.int32), np.zeros(time.size, np.int8),
         np.zeros(time.size, bool), 0.1,
     )  # fmt: skip
-    loops = close_loops(time, 500 * strain[None], strain[None], cycles)
+    return close_loops(time, 500 * strain[None], strain[None], cycles)
+
+
+def test_the_first_of_ramps_that_grow_is_measured_from_its_valley():
+    # from a valley of 0.3 to peaks that rise by 0.05 each, after a ramp to the first valley
+    peaks = 0.6 + 0.05 * np.arange(8)
+    loops = loops_between(np.append(np.column_stack([np.full(8, 0.3), peaks]).ravel(), 0.3))
     assert loops.strain_amplitude[0] == pytest.approx((peaks - 0.3) / 2, rel=0.02)
     assert loops.apparent_spring_constant[0] == pytest.approx(500, rel=1e-3)
 
 
 def test_a_cycle_between_valleys_alike_does_not_grow_with_the_next_level():
     # as a column of concrete is, to one level after the other
-    knots = np.array([-0.2, 0.2, -0.2, 0.2, -0.4, 0.4, -0.4])
-    turns = np.append(0.0, np.cumsum(np.abs(np.diff(knots)))) / 0.05
-    time = np.arange(0, turns[-1], 0.0931)
-    strain = np.interp(time, turns, knots)
-    at = np.searchsorted(time, turns)
-    at[-1] = time.size - 1
-    first, peak, last = at[:-1:2], at[1::2], at[2::2]
-    cycles = Cycles(
-        first, last, np.stack([first, peak], axis=1), np.stack([peak, last], axis=1),
-        np.ones((3, 2)), np.zeros(time.size, np.int32), np.zeros(time.size, np.int8),
-        np.zeros(time.size, bool), 0.1,
-    )  # fmt: skip
-    loops = close_loops(time, 500 * strain[None], strain[None], cycles)
+    loops = loops_between(np.array([-0.2, 0.2, -0.2, 0.2, -0.4, 0.4, -0.4]))
     assert loops.strain_amplitude[0, 0] == pytest.approx(0.2, rel=0.01)
     assert loops.apparent_spring_constant[0] == pytest.approx(500, rel=1e-3)
 

@@ -515,6 +515,25 @@ def test_only_the_falling_branch_is_off_and_its_modulus_by_the_slope_of_that_err
     assert steeper[1] * slope == pytest.approx(np.gradient(off[1], strain), abs=0.02)
 
 
+def a_rope_of(*, energy, known_to):
+    """A test of 2 m at 0.1 Hz: 500 N and 0.01 of strain to either side, and an energy in J/m."""
+    rope = StrainModel("rope", "gauge-length", {"gauge_length": 2.0, "reference_position": 2.0})
+    one = np.ones(1)
+    summary = SimpleNamespace(
+        apparent_spring_constant=50_000.0 * one, frequency=0.1 * one, strain_amplitude=0.01 * one,
+        tension_amplitude=500.0 * one, mean_strain=0.02 * one, mean_tension=500.0 * one,
+        hysteresis_energy=energy * one,
+        uncertainty={
+            "apparent_spring_constant": 50.0 * one, "hysteresis_energy": known_to * one,
+        },
+    )  # fmt: skip
+    return SimpleNamespace(
+        amplitude=summary, cycles=None, contributions=None, strain_models=[rope],
+        specimens=[SimpleNamespace(name="rope", linear_density=None, is_rope=False)],
+        record=SimpleNamespace(load_train=LoadTrain("fixed", 0.0)),
+    )  # fmt: skip
+
+
 @pytest.mark.parametrize("stated", [0.0, 0.001])
 def test_the_hysteresis_that_moves_the_energy_by_its_uncertainty_is_told_where_none_is_stated(
     stated,
@@ -523,19 +542,7 @@ def test_the_hysteresis_that_moves_the_energy_by_its_uncertainty_is_told_where_n
 
     0.4 mm of play is 2e-4 of strain: times a range of 1,000 N, it is 0.2 J/m.
     """
-    rope = StrainModel("rope", "gauge-length", {"gauge_length": 2.0, "reference_position": 2.0})
-    one = np.ones(1)
-    summary = SimpleNamespace(
-        apparent_spring_constant=50_000.0 * one, frequency=0.1 * one, strain_amplitude=0.01 * one,
-        tension_amplitude=500.0 * one, mean_strain=0.02 * one, mean_tension=500.0 * one,
-        hysteresis_energy=3.0 * one,
-        uncertainty={"apparent_spring_constant": 50.0 * one, "hysteresis_energy": 0.2 * one},
-    )  # fmt: skip
-    test = SimpleNamespace(
-        amplitude=summary, cycles=None, contributions=None, strain_models=[rope],
-        specimens=[SimpleNamespace(name="rope", linear_density=None, is_rope=False)],
-        record=SimpleNamespace(load_train=LoadTrain("fixed", 0.0)),
-    )  # fmt: skip
+    test = a_rope_of(energy=3.0, known_to=0.2)
     errors = [InstrumentErrors("rope", tension_reversibility=stated)]
     codes = {one.code: one for one in load_train_notes(test, errors)}
     assert ("instrument-hysteresis-unknown" in codes) == (not stated)
@@ -550,21 +557,7 @@ def test_a_usual_lag_beyond_the_interval_of_the_energy_is_a_warning_where_none_i
     known_to, code
 ):
     """A loss angle of 0.2 at 0.1 Hz, which 5 ms turn by 0.0031: 1.6 % of an energy of 3.12 J/m."""
-    rope = StrainModel("rope", "gauge-length", {"gauge_length": 2.0, "reference_position": 2.0})
-    one = np.ones(1)
-    summary = SimpleNamespace(
-        apparent_spring_constant=50_000.0 * one, frequency=0.1 * one, strain_amplitude=0.01 * one,
-        tension_amplitude=500.0 * one, mean_strain=0.02 * one, mean_tension=500.0 * one,
-        hysteresis_energy=np.pi * 5 * np.sin(0.2) * one,
-        uncertainty={
-            "apparent_spring_constant": 50.0 * one, "hysteresis_energy": known_to * one,
-        },
-    )  # fmt: skip
-    test = SimpleNamespace(
-        amplitude=summary, cycles=None, contributions=None, strain_models=[rope],
-        specimens=[SimpleNamespace(name="rope", linear_density=None, is_rope=False)],
-        record=SimpleNamespace(load_train=LoadTrain("fixed", 0.0)),
-    )  # fmt: skip
+    test = a_rope_of(energy=np.pi * 5 * np.sin(0.2), known_to=known_to)
     found = {one.code: one for one in load_train_notes(test, [InstrumentErrors("rope")])}
     turned = 2 * np.pi * 0.1 * 0.005
     of_energy = np.pi * 5 * turned  # J/m
@@ -573,7 +566,7 @@ def test_a_usual_lag_beyond_the_interval_of_the_energy_is_a_warning_where_none_i
         rel=1e-6,
     )
     assert found[code].severity == ("warning" if of_energy > 2 * known_to else "note")
-    summary.hysteresis_energy = np.zeros(1)  # of a spring, in readings without noise
+    test.amplitude.hysteresis_energy = np.zeros(1)  # of a spring, in readings without noise
     found = {one.code: one for one in load_train_notes(test, [InstrumentErrors("rope")])}
     assert found[code].numbers["effect"] == pytest.approx(-of_energy / known_to)
     told = load_train_notes(test, [InstrumentErrors("rope", lag=1e-3)])

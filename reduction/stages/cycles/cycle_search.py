@@ -54,7 +54,7 @@ from reduction.stages.cycles.reversals import (
     reversals_of_typical_cycles,
     turning_points,
 )
-from reduction.stages.standstills import Standstills, estimate_noise, median_step
+from reduction.stages.standstills import Standstills, median_step, noise_range
 
 FEWEST_SAMPLES = 4
 """Per cycle, not counting the last, which belongs to the next: two turns, a sample per branch."""
@@ -378,9 +378,7 @@ _STARTING = 0.25  # of a range: a larger difference is another level, not a mach
 
 _OTHER_LENGTH = 0.1
 
-_OF_HOLD = 12.0  # standard deviations of noise: tolerance of a standstill, which ends in the rise
-
-_TELLS_NOISE = 14
+_TELLS_NOISE = 14  # readings a cycle: of fewer, the wave itself looks like noise
 
 _MOST_STARTING = 3
 
@@ -396,7 +394,8 @@ def _steady_span(
 
     A controller takes one or a few cycles to reach its set amplitude, and the phase of those
     cycles differs from that of the others.  A range beside a hold lacks what the wave moved
-    before the hold ended, in ``noise``, and what noise adds to the extremes of the others.
+    before the hold ended, the range ``noise`` of readings at rest, and what noise adds to the
+    extremes of the others.
 
     Examples
     --------
@@ -416,7 +415,7 @@ def _steady_span(
         """Relative distance of ranges from the median; zero within their scatter."""
         middle = np.median(of)
         far = np.abs(of - middle)
-        scatter = max(6 * 1.5 * np.median(far), _OF_HOLD * noise)
+        scatter = max(6 * 1.5 * np.median(far), noise)
         return np.where(far > scatter, far / middle, 0.0)
 
     of_rise, of_fall = apart(rises), apart(falls)
@@ -528,10 +527,9 @@ def _between_reversals(
     n_starting = 0
     # a stroke of constant speed has its full amplitude from the start, a sine grows into it
     if settings.waveform == "sinusoidal":
-        # of few readings a cycle, the wave itself looks like noise
         n_readings = branch_last[:, 1] - branch_first[:, 0]
         is_told = n_readings.size and np.median(n_readings) >= _TELLS_NOISE
-        noise = estimate_noise(values)[0] if is_told else 0.0
+        noise = noise_range(values) if is_told else 0.0
         steady = _steady_span(values, branch_first, branch_last, noise=noise)
         n_last = branch_first.shape[0] - steady.stop
         if steady.start or n_last:

@@ -86,9 +86,9 @@ def peaks_and_valleys(
         return np.asarray(of(found, values[high]))
 
     # noise acts on both sides of a turn, even where one of them is a rest
-    before = after = np.full(begin.size, 0 if turn == "sharp" else values.size)
+    before = np.full(begin.size, 0 if turn == "sharp" else values.size)
+    after = before.copy()
     if turn != "sharp":
-        before, after = before.copy(), after.copy()
         moves = gaps_that_move(moved, begin, peak, end)
         after[moves] = before[moves + 1] = 0
     top = extreme(np.maximum, peak - on_rise, after_peak)
