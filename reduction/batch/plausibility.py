@@ -286,8 +286,7 @@ def _of_statements(campaign: Campaign, survey: Survey, models: Models) -> Iterat
     ):
         yield note("cycles-in-other-kind", n_cycles=levels.n_strokes // 2, kind=plan.kind)
     at_stop, held = levels.stood_tension
-    # at the valley of a sine under load, a rope that creeps stands while the load still falls
-    if np.isfinite(held) and levels.n_strokes <= _MOST_STROKES:
+    if np.isfinite(held):
         yield note("hold-of-position", at_stop=at_stop, held=held, kind=plan.kind)
     break_in = plan.settings.cycles.break_in_cycles
     if 0 < survey.n_cycles <= break_in:

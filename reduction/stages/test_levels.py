@@ -257,7 +257,8 @@ def _stood_tension(position: Floats, tension: Floats, standstills: Standstills) 
     )
     stopped = 0 if moved is None else moved + 1
     at_stop = tension[:, stopped : stopped + 4]
-    if not np.isfinite(at_stop).any():
+    # where the load comes to its level first, a specimen that creeps moves the crosshead on
+    if stopped == before or not np.isfinite(at_stop).any():
         return nothing
     pair = np.array([np.nanmean(at_stop), np.nanmean(standstills.mean_tension[:, hold])])
     change = abs(pair[1] - pair[0])
