@@ -56,7 +56,7 @@ def _left_out(n_cycles: int) -> str:
     return f" ({n_cycles} cycle{_plural(n_cycles)} between them in none)" if n_cycles else ""
 
 
-def _unknown_mass(mass: float, usual: float, effect: float, cell: str) -> str:
+def _unknown_mass(mass: float, usual: float, effect: float, cell: str, is_hose: bool) -> str:
     """Effect of an unstated attached mass."""
     lacks = (
         "the mass between specimen and moving load cell is not stated"
@@ -65,8 +65,9 @@ def _unknown_mass(mass: float, usual: float, effect: float, cell: str) -> str:
     )
     return (
         f"{lacks}: {mass:.3g} kg at a moving load cell would change EA by one standard uncertainty,"
-        f" {usual:g} kg (a grip for 22 kN) by {effect:+.2%}; a load cell on the fixed frame"
-        " is not affected. State load_cell_at and attached_mass in the layout"
+        f" {usual:g} kg ({'two pipe flanges of 2 in' if is_hose else 'a grip for 22 kN'}) by"
+        f" {effect:+.2%}; a load cell on the fixed frame is not affected. State load_cell_at and"
+        " attached_mass in the layout"
     )
 
 

@@ -8,6 +8,9 @@ References
 .. [1] Klein Tools, data sheet of cat. no. 1604-20L: a strand grip for 5,000 lb has 2.60 lb.
 .. [2] MTS Systems, "Series 322 Load Frames," user manual, p. 20: spring rates of 2.6e8 N/m
    (100 kN) to 7.4e8 N/m (500 kN), without grips.
+.. [3] WHOI-2005-10, sec. 1: stretch hoses are terminated with standard pipe flanges; ASME B16.5,
+   class 150, NPS 2: a disc of 150 mm by 17.5 mm with a bore of 62 mm, less four holes of 19 mm, of
+   steel has 2.0 kg.
 """
 
 from __future__ import annotations
@@ -27,6 +30,8 @@ from reduction.stages.reduced_test import ReducedTest
 from reduction.stages.strain.strain_model import position_by_model
 
 _USUAL_MASS = 1.2  # kg, [1]: no testing laboratory clamps a mooring line with less
+
+_USUAL_FLANGES = 4.0  # kg, [3]: that of the hose and that of the machine
 
 _USUAL_COMPLIANCE = 3.8e-9  # m/N, the softest frame of [2]; grips and load cell add to it
 
@@ -56,6 +61,8 @@ def load_train_notes(test: ReducedTest, instruments: Sequence[InstrumentErrors])
         if not (spread > 0 and length > 0 and square > 0 and np.isfinite(constant)):
             continue
         train, of_mass = record.load_train, square * length
+        is_hose = specimen.kind == "stretch hose"
+        usual_mass = _USUAL_FLANGES if is_hose else _USUAL_MASS
         if is_resolved:  # what a mass does to the extremes of ramps it does while the machine turns
             of_mass = max(of_mass, turn / float(summary.strain_amplitude[index]))
         if test.cycles is not None and train.end_mass:
@@ -65,13 +72,14 @@ def load_train_notes(test: ReducedTest, instruments: Sequence[InstrumentErrors])
         ):
             yield note(
                 "attached-mass-matters"
-                if _USUAL_MASS * of_mass > spread
+                if usual_mass * of_mass > spread
                 else "attached-mass-unknown",
                 specimen.name,
                 mass=spread / of_mass,
-                usual=_USUAL_MASS,
-                effect=-_USUAL_MASS * of_mass / constant,
+                usual=usual_mass,
+                effect=-usual_mass * of_mass / constant,
                 cell=train.load_cell_at or "",
+                is_hose=is_hose,
             )
         if train.load_cell_at is None or specimen.linear_density is None:
             yield note(

@@ -101,7 +101,7 @@ def reduced(*, spread, method=None):
         slip_length=np.array([0.04, 0.06]),
     )  # fmt: skip
     return SimpleNamespace(
-        amplitude=summary, slips=slips, specimens=(SimpleNamespace(name="new"),),
+        amplitude=summary, slips=slips, specimens=(SimpleNamespace(name="new", kind="rope"),),
         strain_models=(model,), contributions=None, history=None, record=None, cycles=None,
     )  # fmt: skip
 

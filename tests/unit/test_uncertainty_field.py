@@ -529,7 +529,7 @@ def a_rope_of(*, energy, known_to):
     )  # fmt: skip
     return SimpleNamespace(
         amplitude=summary, cycles=None, contributions=None, strain_models=[rope],
-        specimens=[SimpleNamespace(name="rope", linear_density=None, is_rope=False)],
+        specimens=[SimpleNamespace(name="rope", kind="rope", linear_density=None, is_rope=False)],
         record=SimpleNamespace(load_train=LoadTrain("fixed", 0.0)),
     )  # fmt: skip
 
@@ -571,6 +571,24 @@ def test_a_usual_lag_beyond_the_interval_of_the_energy_is_a_warning_where_none_i
     assert found[code].numbers["effect"] == pytest.approx(-of_energy / known_to)
     told = load_train_notes(test, [InstrumentErrors("rope", lag=1e-3)])
     assert not {"lag-unknown", "lag-matters"} & {one.code for one in told}
+
+
+@pytest.mark.parametrize(("kind", "code"), [("rope", "unknown"), ("stretch hose", "matters")])
+def test_the_flanges_of_a_hose_are_heavier_than_the_grip_of_a_rope(kind, code):
+    """By hand: 2 m at 3 rad/s give 18 N for each kg, against a standard uncertainty of 50 N.
+
+    A grip of 1.2 kg has 22 N. The flanges of a hose, of steel with 7,850 kg/m3: twice 2.0 kg, 72 N.
+    """
+    test = a_rope_of(energy=3.0, known_to=0.2)
+    test.amplitude.frequency = 3 / (2 * np.pi) * np.ones(1)
+    test.record.load_train = LoadTrain()
+    test.specimens[0].kind = kind
+    found = {one.code: one for one in load_train_notes(test, [InstrumentErrors("rope")])}
+    numbers = found[f"attached-mass-{code}"].numbers
+    assert numbers["mass"] == pytest.approx(50 / 18)
+    disc = np.pi / 4 * (0.150**2 - 0.062**2 - 4 * 0.019**2) * 0.0175 * 7850
+    assert numbers["usual"] == pytest.approx(2 * disc if "hose" in kind else 1.2, rel=0.08)
+    assert numbers["effect"] == pytest.approx(-18 * numbers["usual"] / 50_000)
 
 
 # contributions to the parameters of a law against the same fit to a stress with that error
