@@ -670,6 +670,8 @@ def _show_effects(
     output.say_each("note", notes)
 
 
+_ROUNDING = 1e-6  # coded: of a level that is converted to SI
+
 _NEAR_A_LEVEL = 0.1
 """Coded distance from -1 or 1 within which a screening level counts as that level."""
 
@@ -807,7 +809,7 @@ def _screen(runs: RunSeries) -> tuple[ScreeningEffects, tuple[str, ...]]:
             found=f"{runs.coded[run, factor]:.4g} coded",
             needed="-1 or 1, as in a two-level screening",
         )
-    if away.any():
+    if away.max() > _ROUNDING:
         notes.append(f"levels up to {away.max():.2g} coded off the plan count as those of the plan")
     notes += map(str, screening_remarks(runs.dummy.shape[1], runs.blocks is not None))
     design = Design("plackett-burman", near, runs.dummy)

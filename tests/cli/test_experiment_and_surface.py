@@ -351,6 +351,9 @@ def test_dummies_give_the_error_of_a_screening(fit):
     assert "standard error by the dummies" in fit(screening(), spec).stdout
     middle = screening().replace("\n1,", "\n0.5,", 1)
     told(fit(middle, spec), 4, "a level of A is neither low nor high")
+    near = [screening().replace("\n1,", f"\n{level},", 1) for level in ("1.0000000002", "1.02")]
+    said = ["off the plan" in fit(table, spec).stdout for table in near]
+    assert said == [False, True]  # of the rounding of a unit nothing is said
 
 
 def test_a_surface_is_written_with_its_analysis_of_variance_and_figures(tmp_path, command):
