@@ -263,6 +263,23 @@ def test_the_uncertainty_of_a_gauge_length_is_that_of_the_median():
     assert np.median(found[:, 1]) == pytest.approx(found[:, 0].std(), rel=0.15)
 
 
+def test_few_readings_that_agree_by_chance_neither_narrow_the_gauge_length_nor_accuse_the_others():
+    """Nine synthetic readings with the stated error: a deviation from their median varies by half."""
+    rng, error = np.random.default_rng(8), 0.001
+    strain = np.linspace(0.4, 2.0, 9)
+    off, accused = [], 0
+    for _ in range(400):
+        length = 0.15 * (1 + strain) + rng.normal(0, error, 9)
+        gauge, uncertainty = _recover_gauge_length(length, strain, length_uncertainty=error)
+        off.append((gauge - 0.15) / uncertainty)
+        accused += _find_inconsistent_readings(
+            length, strain, gauge_length=gauge, length_uncertainty=error
+        ).any()
+    assert np.std(off) < 1.1
+    assert np.mean(np.abs(off) < 1.96) > 0.93
+    assert accused == 0
+
+
 def test_an_impossible_reading_is_refused():
     with pytest.raises(DataError, match="values of length are not positive"):
         _recover_gauge_length([-0.2], [0.1])

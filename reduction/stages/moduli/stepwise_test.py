@@ -44,10 +44,15 @@ _MAD_TO_DEVIATION = 1.4826
 _MEDIAN_TO_MEAN = sqrt(pi / 2)
 
 
-def _recover_gauge_length(length: ArrayLike, printed_strain: ArrayLike) -> tuple[float, float]:
+def _recover_gauge_length(
+    length: ArrayLike, printed_strain: ArrayLike, *, length_uncertainty: float = 0.0
+) -> tuple[float, float]:
     r"""Gauge length that readings of length and elongation imply.
 
     .. math:: g = \operatorname{median}\; \ell_i / (1 + \varepsilon_i)
+
+    Its uncertainty is that of the scatter, and at least that of the stated error of a length: few
+    readings may agree by chance.
 
     Notes
     -----
@@ -74,12 +79,19 @@ def _recover_gauge_length(length: ArrayLike, printed_strain: ArrayLike) -> tuple
     stretch = as_positive("1 + printed_strain", 1 + rows[1][known])
     gauge = as_positive("length", rows[0][known]) / stretch
     median = float(np.median(gauge))
-    deviation = _MAD_TO_DEVIATION * float(np.median(np.abs(gauge - median)))
+    away = np.abs(gauge - median)
+    sound = gauge[away <= _INCONSISTENT * _MAD_TO_DEVIATION * np.median(away)]
+    scatter = float(sound.std(ddof=1)) if sound.size > 1 else 0.0
+    deviation = max(scatter, length_uncertainty / float(np.median(stretch)))
     return median, _MEDIAN_TO_MEAN * deviation / sqrt(gauge.size)
 
 
 def _find_inconsistent_readings(
-    length: ArrayLike, printed_strain: ArrayLike, *, gauge_length: float
+    length: ArrayLike,
+    printed_strain: ArrayLike,
+    *,
+    gauge_length: float,
+    length_uncertainty: float = 0.0,
 ) -> Bools:
     """Rows whose length and recorded elongation disagree.
 
@@ -96,6 +108,7 @@ def _find_inconsistent_readings(
     difference = np.abs(lengths / gauge_length - 1 - printed)
     known = difference[np.isfinite(difference)]
     usual = _MAD_TO_DEVIATION * float(np.median(known)) if known.size else 0.0
+    usual = max(usual, length_uncertainty / gauge_length)
     return np.nan_to_num(difference) > max(_INCONSISTENT * usual, STRAIN_DIGIT)
 
 
@@ -417,12 +430,18 @@ def _odd_readings(
 
 def _gauge(readings: StepReadings, stated: float | None) -> tuple[float, float, Bools]:
     """Gauge length, its uncertainty, and the readings that contradict it."""
+    of_reading = float(np.nan_to_num(readings.length_standard_uncertainty))
     if np.isfinite(readings.printed_strain).any() or stated is None:
-        gauge, uncertainty = _recover_gauge_length(readings.length, readings.printed_strain)
+        gauge, uncertainty = _recover_gauge_length(
+            readings.length, readings.printed_strain, length_uncertainty=of_reading
+        )
     else:
         gauge, uncertainty = stated, float("nan")
     is_inconsistent = _find_inconsistent_readings(
-        readings.length, readings.printed_strain, gauge_length=gauge
+        readings.length,
+        readings.printed_strain,
+        gauge_length=gauge,
+        length_uncertainty=of_reading,
     )
     return gauge, uncertainty, is_inconsistent
 
