@@ -253,7 +253,7 @@ _OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
                 ". Possible causes: a slip, a break, a re-zeroed channel, or a change of unit;"
                 " results across the step mix both states"
                 if n_more < JERKS
-                else ". So many are no slips: the channel moves in jerks, as with stick-slip or a"
+                else ". So many are not slips: the channel moves in jerks, as with stick-slip or a"
                 " stepping motor; they act as noise"
             )
         ),
@@ -380,7 +380,7 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         lambda column, difference, test: (
             f"the {column} of the slack rows differs by {1e3 * difference:.0f} mm, more than the"
             f" error of the tape explains. Check the slack row of test {test}; strain refers to the"
-            " mean slack length, and the intervals are wider by what the rows differ"
+            " mean slack length, and the intervals include the difference"
         ),
     ),
     "splices-unlike": (
@@ -689,8 +689,8 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "failed-in-gap": (
         "warning",
-        "it failed between cycles {last} and {following}, which the log does not have: cycles to"
-        " failure are those up to the last cycle before, a lower bound",
+        "it failed between cycles {last} and {following}, and the cycles between them are not"
+        " logged: the cycles to failure are those up to the first of these, a lower bound",
     ),
     "life-across-gaps": (
         "warning",
@@ -814,18 +814,17 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "warning",
         lambda number, size, explained: (
             f"the mean tension is {abs(size):.3g} N {'higher' if size > 0 else 'lower'} after the"
-            f" stop or gap behind cycle {number} than before it, and stays so; relaxation may"
+            f" stop or gap after cycle {number} than before it, and stays so; relaxation may"
             f" explain {explained:.2g} N: the zero of the load cell has moved, or something"
-            " slipped. Means of tension are uncertain by it; amplitudes and EA are not affected."
-            " Correct the log"
-            " for the step, or enter the cycles before and after it as steps"
+            " slipped. The intervals of mean tensions include this; amplitudes and EA are not"
+            " affected. Correct the log, or enter the cycles before and after it as steps"
         ),
     ),
     "tension-hums": (
         "warning",
         lambda frequency, size, effect: (
-            f"tension oscillates at {frequency:.3g} Hz by {size:.3g} N beside its wave (mains hum,"
-            f" or a vibration): its extremes are off by up to {effect:.1%} of the tension"
+            f"tension oscillates at {frequency:.3g} Hz by {size:.3g} N on top of its wave (mains"
+            f" hum or a vibration): its extremes are off by up to {effect:.1%} of the tension"
             " amplitude, and EA with them. Remove the cause, or filter both channels alike before"
             " the run"
         ),
@@ -953,11 +952,11 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "specimen-sags": (
         "warning",
         lambda effect, density, is_stated, length: (
-            f"if the specimen of {length:.3g} m lay horizontally, its sag moved EA by"
+            f"if the specimen of {length:.3g} m lay horizontally, its sag changed EA by"
             f" {100 * effect:+.2g} % ({density:.3g} kg/m,"
-            f" {'as stated' if is_stated else 'usual for its break strength'}), and strain is that"
-            " of its ends, which is not corrected. Support it, test at a higher tension or measure"
-            " strain on the rope; if it hung, state vertical = true in the layout"
+            f" {'as stated' if is_stated else 'usual for its break strength'}), which is not"
+            " corrected. Support it, test at a higher tension or measure strain on the rope; if it"
+            " hung, state vertical = true in the layout"
         ),
     ),
     "own-mass-unknown": (
@@ -979,7 +978,7 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             f" {1e3 * spread:.0f} ms (k=1) after position, but"
             f" {f'a lag of 0 +- {1e3 * stated:g} ms is stated' if stated else 'no lag is stated'}."
             f" Damping makes tension {'stop' if is_of_stops else 'reverse'} before position, never"
-            " after it, so tension was delayed by at least this much, by late logging or a filter."
+            " after it: tension was delayed by at least this much, by the logger or a filter."
             " No correction is made: loop energy and loss are too small, and their intervals"
             " include this"
         ),
@@ -1332,7 +1331,7 @@ _OF_LINE: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "line-uncertainty-skewed": (
         "warning",
         "in {n_skewed} of {n_lines} cases the uncertainty of K_0 exceeds {limit:.0%} of K_1: the"
-        " standard uncertainties of K_1 and tau mean little",
+        " standard uncertainties of K_1 and tau are not reliable",
     ),
     "line-slack-in-loops": (
         "warning",
@@ -1366,8 +1365,8 @@ _OF_LINE: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "pull-creeps": (
         "warning",
-        "strain grows while the tension stands on the way to the peak, by {share:.1%} of the strain"
-        " of the pull: K_0 near these holds belongs neither to the pull nor to the hold. Use the"
+        "strain grows at constant tension on the way to the peak, by {share:.1%} of the strain of"
+        " the pull: K_0 near these holds belongs neither to the pull nor to the hold. Use the"
         " static stiffness between holds, or declare a part without holds as a step with its own"
         " from and to",
     ),
@@ -1402,7 +1401,7 @@ _OF_LINE: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "stiffness-of-few-cycles": (
         "note",
-        "dynamic stiffness is from {n_cycles} cycles; rope.last_cycles requests {n_asked}",
+        "dynamic stiffness is from {n_cycles} cycles; rope.last_cycles is {n_asked}",
     ),
     "stiffness-not-settled": (
         "warning",
@@ -1525,7 +1524,7 @@ _OF_EXPERIMENTS: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "scale-rejected": (
         "note",
         "{response}: the runs scatter {ratio:.3g} times as much about this surface as about that of"
-        " {scale} (p = {p:.2g}): its intervals are wider than they need be. State"
+        " {scale} (p = {p:.2g}): its intervals are wider than necessary. State"
         ' transform = "{key}" for it in SPEC.toml',
     ),
     "slow-pull-error-shared": (
@@ -1682,7 +1681,7 @@ _OF_HOSES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "a wave of {period:.4g} s is {own:.4g} m long, not {stated:.4g} m: check wave_period,"
         " wave_length and water_depth",
     ),
-    "wires-leave-core": ("warning", "the wires leave the core; no theory here holds"),
+    "wires-leave-core": ("warning", "the wires leave the core: none of these theories holds"),
     "wires-yield": ("warning", "the wires yield; all loads beyond that are too high"),
     "wave-breaks": ("warning", "the wave breaks: {ratio:.2f} of the breaking height"),
     "no-theory-at-depth": (
@@ -1693,18 +1692,22 @@ _OF_HOSES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "stokes-at-its-end": (
         "note",
-        "Stokes' second order is at its end: Ursell number {ursell:.1f} (at most {most:.1f}),"
+        "Stokes' second order is at its limit: Ursell number {ursell:.1f} (at most {most:.1f}),"
         " second harmonic of the surface {share:.0%} (at most {most_share:.0%})",
     ),
-    "wave-length-off": ("note", "the given length is {off:+.1%} off that of the period"),
+    "wave-length-off": (
+        "note", "the stated wave length differs by {off:+.1%} from that of the period",
+    ),
     "hose-scatters-wave": (
         "warning",
         "the diameter is {share:.0%} of the wave length: the hose scatters the wave, and Morison's"
         " equation does not hold above {most:.0%}",
     ),
-    "high-wave-is-longer": ("note", "the wave of {theory} is {length:.4g} m long, for it is high"),
+    "high-wave-is-longer": (
+        "note", "the wave by {theory} is {length:.4g} m long, because it is high",
+    ),
     "theory-asked-for": (
-        "note", "computed by {theory}, as asked for; Zhang (2015) takes {usual} at this depth"
+        "note", "computed by {theory}, as stated; Zhang (2015) takes {usual} at this depth"
     ),
     "theory-error-unknown": (
         "warning", "the stream function finds no such wave: the error of {theory} is not known"
@@ -2002,7 +2005,7 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "hold-of-position": (
         "warning",
         lambda at_stop, held, kind: (
-            f"the crosshead stands while the tension goes from {at_stop:.4g} N to the"
+            f"the crosshead stands still while the tension goes from {at_stop:.4g} N to the"
             f" {held:.4g} N of the hold: the machine held the position, not the load. "
             + ('State kind = "relaxation"' if kind == "creep" else "Check control")
         ),
@@ -2068,7 +2071,7 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "extensometer-unlike-others": (
         "warning",
         lambda ratio, n_others, like: (
-            f"for one stroke, its extensometer shows {ratio:.3g} times the strain of the other"
+            f"for the same stroke, its extensometer shows {ratio:.3g} times the strain of the other"
             f" {n_others} tests of the specimen{_is_like(like)}. Check its range (gain), its gauge"
             " length, and whether it or a grip slipped in this test"
         ),
@@ -2122,13 +2125,13 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "date-against-order": (
         "warning",
-        "its date is {date}, that of {other} {of_other}, and their `order` is the other way round:"
+        "its date is {date}, that of {other} is {of_other}, but their `order` is the reverse:"
         " correct the date, or the order, which determines what the specimen had been through",
     ),
     "marks-of-absent": (
         "warning",
-        "{n_marks} marks were read on it in this test, which is one of {present}. Check `specimens`"
-        " of the test, and test and specimen of these rows",
+        "{n_marks} of its marks name this test, whose specimens are {present}. Check `specimens` of"
+        " the test, and test and specimen of these rows",
     ),
     "stiffness-jumps": (
         "warning",

@@ -19,11 +19,13 @@ SEVERITIES: tuple[Severity, ...] = ("warning", "refusal", "note")
 
 
 class _Number(float):
-    """A number that is formatted with the space that a unit has before a percent sign."""
+    """A number with a space before a percent sign, and below ten million no power of ten."""
 
     def __format__(self, format_spec: str, /) -> str:
         text = super().__format__(format_spec)
-        return f"{text[:-1]} %" if format_spec.endswith("%") else text
+        if format_spec.endswith("%"):
+            return f"{text[:-1]} %"
+        return f"{float(text):{format_spec[:-3]}.0f}" if "e+0" in text and abs(self) < 1e7 else text
 
 
 @dataclass(frozen=True)

@@ -39,11 +39,15 @@ FACTS = {
         note("rows-resampled", n_read=400, n_kept=400, flags="tension of new resampled 400"),
         "note",
     ),
+    "the mean tension of 45700 N is outside the range of the slow pull Q01, 0 to 9999 N": (
+        note("mean-tension-outside-pull", mean=45704.0, pull="Q01", low=0.0, high=9999.0),
+        "warning",
+    ),
     "9 complete cycles found, 10 planned": (
         note("cycles-not-as-planned", n_found=9, n_planned=10), "warning",
     ),
     "one cycle only: no cycle-to-cycle scatter can be given": (note("one-cycle"), "note"),
-    "new: tension falls with stretch (median tangent modulus -1e+06 Pa). If the log counts "
+    "new: tension falls with stretch (median tangent modulus -1000000 Pa). If the log counts "
     "compression as positive, set sign = -1 for this channel; if it is set already, remove it": (
         note("sign-of-tension", "new", slope=-1e6), "warning",
     ),

@@ -106,7 +106,7 @@ def test_wires_that_yield_or_leave_the_core_are_told(predict):
         for name in ("inner", "outer")
     ]
     pushed = warnings_of(predict(changed(ARMOUR, '"0.1 %"', '"-0.1 %"')))
-    assert pushed[0] == "inner: the wires leave the core; no theory here holds"
+    assert pushed[0] == "inner: the wires leave the core: none of these theories holds"
 
 
 def warnings_of(found):

@@ -81,7 +81,7 @@ def test_cycles_of_a_tether_are_no_programme_but_its_life_is():
 def test_fewer_cycles_than_asked_for_are_named():
     assert tuple(map(str, step_of(record(cycles(12)), "cyclic").notes)) == ()
     (note,) = map(str, step_of(record(cycles(12)), "cyclic", last_cycles=50).notes)
-    assert note == "line: dynamic stiffness is from 12 cycles; rope.last_cycles requests 50"
+    assert note == "line: dynamic stiffness is from 12 cycles; rope.last_cycles is 50"
 
 
 def test_a_step_of_two_levels_is_named():

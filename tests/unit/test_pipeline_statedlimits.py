@@ -77,7 +77,7 @@ def test_a_zero_of_a_large_instrument_in_a_small_test_can_be_meant():
     [
         (
             {"tension_standard_uncertainty": (1.0,)}, {"tension_reading": 1e6},
-            "tension stated in [uncertainty] (1e+06 N together) are not used",
+            "tension stated in [uncertainty] (1000000 N together) are not used",
         ),
         (
             {"position_standard_uncertainty": 1e-3}, {"position_reading": 2e-3},

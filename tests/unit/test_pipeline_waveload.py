@@ -126,7 +126,7 @@ def test_the_theory_is_the_stream_function_unless_another_is_asked_for(predict):
     found = predict(LEAST_WAVE, wave_theory="stokes")
     assert (found.used, found.theory.theory) == ("stokes", "airy")
     assert found.wave.elevation.size == 2
-    said = "computed by stokes, as asked for; Zhang (2015) takes airy at this depth"
+    said = "computed by stokes, as stated; Zhang (2015) takes airy at this depth"
     assert said in map(str, found.notes)
 
 
@@ -174,7 +174,7 @@ def test_shallow_water_and_steep_waves_have_their_theories(predict):
     found = predict(LEAST_WAVE, **shallow, wave_theory="cnoidal")
     assert found.used == found.theory.theory == "cnoidal"
     length = 2 * np.pi / found.wave.wave_number
-    said = f"the wave of cnoidal is {length:.4g} m long, for it is high"
+    said = f"the wave by cnoidal is {length:.4g} m long, because it is high"
     assert said in map(str, found.notes)
     # c^2 < g (d + H), the solitary wave; longer than the linear wave
     assert (
@@ -186,8 +186,8 @@ def test_shallow_water_and_steep_waves_have_their_theories(predict):
     assert (found.used, found.wave.elevation.size) == ("stokes 5", 5)
     steep = {"water_depth": 3.0, "wave_length": None, "wave_theory": "stokes 5"}
     assert list(map(str, predict(LEAST_WAVE, **steep).notes)) == [
-        "the wave of stokes 5 is 17.42 m long, for it is high",
-        "computed by stokes 5, as asked for; Zhang (2015) takes stokes at this depth",
+        "the wave by stokes 5 is 17.42 m long, because it is high",
+        "computed by stokes 5, as stated; Zhang (2015) takes stokes at this depth",
     ]
 
 
@@ -202,8 +202,8 @@ def test_extremes_of_a_wave_of_many_harmonics_are_those_of_a_fine_search(predict
 
 
 def test_a_length_that_is_not_that_of_the_period_is_told(predict):
-    assert any("given length" in str(note) for note in predict().notes)
-    assert not any("given length" in str(note) for note in predict(wave_length=None).notes)
+    assert any("stated wave length" in str(note) for note in predict().notes)
+    assert not any("stated wave length" in str(note) for note in predict(wave_length=None).notes)
 
 
 @pytest.mark.parametrize(

@@ -338,7 +338,7 @@ def test_the_second_printed_example_is_at_the_edge():
     assert wave.elevation_ratio == pytest.approx(0.30, abs=0.005)
     assert wave.breaking_ratio == pytest.approx(0.0625 / 0.105, abs=0.005)
     assert wave.is_beyond_stokes and not wave.is_breaking
-    assert any("Stokes' second order is at its end" in str(one) for one in wave.reasons)
+    assert any("Stokes' second order is at its limit" in str(one) for one in wave.reasons)
     # printed as 20 m; by the dispersion relation of its period and depth 16.31 m
     assert any("a wave of 3.57 s is 16.31 m long, not 20 m" in str(one) for one in wave.reasons)
 

@@ -348,7 +348,7 @@ def test_the_page_of_a_wave_load_stands_alone(wave, tmp_path):
     assert page.index("Extremes of the load over a period") < page.index('id="wrong"')
     # the page ranks what it says as the terminal does
     assert ">Warnings<" in page and "does not hold for this wave" in page
-    assert page.index(">Notes<") < page.index("The given length is")
+    assert page.index(">Notes<") < page.index("The stated wave length differs by")
     assert "Where these numbers come from" not in page
     assert "from the numbers of its SPEC.toml alone." in page
     assert "SYNTHETIC" not in page and "https://" not in page.partition("<body>")[2][:5000]
