@@ -152,7 +152,10 @@ def test_marks_that_were_read_in_a_test_of_other_specimens_are_told(specimens, t
     survey = SimpleNamespace(plan=SimpleNamespace(log="T", specimens=specimens))
     found = list(_of_absent(SimpleNamespace(marks={"A": tape("A", *_READ)}), survey))
     assert [one.code for one in found] == told
-    assert all("A: 4 of its marks" in str(one) and "whose specimens are C and D" in str(one) for one in found)
+    assert all(
+        "A: 4 of its marks" in str(one) and "whose specimens are C and D" in str(one)
+        for one in found
+    )
 
 
 @pytest.mark.parametrize(
