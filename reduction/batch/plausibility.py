@@ -912,7 +912,7 @@ def _pattern(names: list[str], coded: Floats, planned: Floats, reached: Floats) 
             if np.all(np.abs(got[0] - coded[:, swing]) < 0.2) and np.all(
                 np.abs(got[1] - coded[:, mean]) < 0.2
             ):
-                found.append("mean and amplitude stand in each other's column of the plan")
+                found.append("mean and amplitude are swapped in the plan")
     if "frequency" in names:
         at = names.index("frequency")
         centre = (planned[:, at].max() + planned[:, at].min()) / 2

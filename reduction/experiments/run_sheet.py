@@ -259,7 +259,7 @@ def _slack(sheet: RunSheet, names: Mapping[int, str], *, is_measured: bool) -> l
     elif least <= rounding:
         goes = "reaches zero"
     else:
-        goes = f"falls to {in_newtons} N, which is no tension to a load cell"
+        goes = f"falls to {in_newtons} N, too little for a load cell to resolve"
     when = "" if is_measured else " in every cycle"
     highest = float(np.max(sheet.peak_share[chosen]))
     share = (
@@ -341,9 +341,9 @@ def _repeats(sheet: RunSheet, names: Mapping[int, str]) -> list[Caution]:
             found.append(
                 Caution(
                     "pure-error-excludes-drift",
-                    f"{_named(runs, names)} are one run repeated without another between: their "
-                    "scatter leaves out what the line goes through over the test, and the test "
-                    "of lack of fit is too sharp",
+                    f"{_named(runs, names)} repeat one run with no other between: their scatter "
+                    "does not include changes of the line over the experiment, so the test of lack "
+                    "of fit is too strict",
                     "Spread the repeats over the order (repeats = spread).",
                     runs,
                 )

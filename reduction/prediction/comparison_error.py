@@ -590,16 +590,16 @@ def measured_pick_up(measured: MeasuredCurve) -> PickUp:
     curve = measured.tension_of(measured.judged)
     place: Integers = np.flatnonzero(np.isfinite(curve))
     if place.size < 4 * _MARGIN:
-        return _nothing(f"{place.size} strains of the judged curve are too few to show a bend")
+        return _nothing(f"{place.size} strains of the measured curve are too few to show a bend")
     place = _window(measured, place)
     fit = _bend(measured, place, _ORDER)
     if not (fit.jump > 0 and fit.jump > _LEAST_RATIO * fit.jump_uncertainty):
-        return _nothing("the judged curve has no upward bend that stands out of its scatter")
+        return _nothing("the measured curve has no upward bend beyond its scatter")
     rise = float(np.ptp(curve[place]) / np.ptp(measured.strain[place]))
     if fit.jump < _LEAST_SHARE * rise:
-        return _nothing("the judged curve bends upward by less than a tenth of its slope")
+        return _nothing("the measured curve bends upward by less than a tenth of its slope")
     if not fit.is_inside:
-        return _nothing("the judged curve bends too near to its ends")
+        return _nothing("the measured curve bends too near its ends")
     strain = measured.strain[place]
     near = place[strain < (fit.strain + strain[-1]) / 2]
     of_model = _bend(measured, near, _ORDER - 1).strain - fit.strain
@@ -967,7 +967,7 @@ def verdict_words(
     if validation.chi_square_probability < LEAST_PROBABILITY:
         chance = _probability_words(validation.chi_square_probability)
         words = f"agrees within U point by point, but its shape does not ({chance}); U is {size}"
-    return words if validation.is_informative else f"{words}: so wide that agreement says little"
+    return words if validation.is_informative else f"{words}, so wide that agreement means little"
 
 
 N_DRAWS = 4000

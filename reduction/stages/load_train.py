@@ -293,11 +293,11 @@ def _half_width(
     widest = _OF_PERIOD * period
     if period < _FEWEST_A_CYCLE * step:
         raise DataError(
-            f"test '{record.test_id}': its log is too sparse for the acceleration of the mass "
-            "between specimen and load cell",
+            f"test '{record.test_id}': its log has too few samples for the acceleration of the "
+            "mass between specimen and load cell",
             found=f"{period / step:.1f} samples a cycle",
             needed=f"{_FEWEST_A_CYCLE} or more",
-            hint="Without them the inertia cannot be taken off the tension.",
+            hint="Without them the tension cannot be corrected for inertia.",
         )
     worst = 0.0
     for load, own in zip(tension, mass, strict=True):

@@ -123,7 +123,7 @@ def test_dynamic_stiffness_is_that_of_each_level(found):
 def test_construction_strain_is_what_bedding_in_left(found):
     (one,) = of(found, "construction strain")
     # the rope was held at the valley before its cycles: their first foot is on the first rise
-    assert "held there" in one.reason
+    assert "has a hold there" in one.reason
     truth = made.bedding_foot(made.N_BEDDING) - made.bedding_foot(1)
     assert one.value == pytest.approx(truth, abs=3 * one.standard_uncertainty, rel=0.005)
 

@@ -238,7 +238,7 @@ def properties():
             "property_name": (along, ["dynamic stiffness", "dynamic stiffness"]),
             "property_specimen": (along, ["line-1", "line-1"]),
             "property_test": (along, ["R01", "R02"]),
-            "property_remark": (along, ["", "no step beds the rope in"]),
+            "property_remark": (along, ["", "there is no bedding-in step"]),
             "property_stiffness": (along, [1e5, np.nan], {"units": "N"}),
             "property_stiffness_random_standard_uncertainty": (along, [10.0, np.nan]),
             "property_stiffness_uncertainty_contribution": (
@@ -270,7 +270,7 @@ def test_the_rounding_of_an_error_that_cancels_is_no_source(properties):
 
 
 def test_where_there_is_no_number_the_archive_says_why(properties):
-    with pytest.raises(ArchiveError, match="The archive says: no step beds the rope in"):
+    with pytest.raises(ArchiveError, match="The archive says: there is no bedding-in step"):
         budget_from_archive(properties, "property_stiffness", {"property": "2"})
 
 

@@ -231,10 +231,10 @@ def test_what_the_position_may_be_off_by_is_in_it():
 @pytest.mark.parametrize(
     ("tension", "reason"),
     [
-        (lambda x: 5000 * x, "no upward bend that stands out"),
-        (lambda x: 5000 * x - 4000 * np.maximum(x - 0.5, 0), "no upward bend that stands out"),
+        (lambda x: 5000 * x, "no upward bend beyond its scatter"),
+        (lambda x: 5000 * x - 4000 * np.maximum(x - 0.5, 0), "no upward bend beyond its scatter"),
         (lambda x: 5000 * x + 150 * np.maximum(x - 0.5, 0), "by less than a tenth"),
-        (lambda x: 5000 * x + 9000 * np.maximum(x - 0.946, 0), "too near to its ends"),
+        (lambda x: 5000 * x + 9000 * np.maximum(x - 0.946, 0), "too near its ends"),
     ],
 )
 def test_a_curve_that_does_not_show_it_has_none(tension, reason):
@@ -360,7 +360,7 @@ def test_an_uncertainty_that_swallows_everything_is_called_so():
     found = validate_curve(1200 + 0 * test.strain, test, input_error=exact(test))
     assert found.agrees and not found.is_informative
     assert found.uncertainty_share == pytest.approx(0.588, abs=0.02)
-    assert found.verdict.endswith("so wide that agreement says little")
+    assert found.verdict.endswith("so wide that agreement means little")
     useful = validate_curve(
         1200 + 0 * test.strain, test, input_error=exact(test), largest_useful_share=0.7
     )

@@ -524,7 +524,7 @@ def test_what_is_let_back_to_no_load_is_a_cycle_of_load_and_the_message_says_so(
     position = 1e-3 * np.interp(time, [0, 5, 9], [0, 50, 9])
     tension = 1e-3 * np.interp(time, [0, 2, 5, 9], [0, 450, 700, 0])[None]
     stands = find_standstills(time, position, tension, settings=PhaseSettings())
-    with pytest.raises(DataError, match='no whole cycle.* with control = "load"'):
+    with pytest.raises(DataError, match='no whole cycle.* state control = "load"'):
         find_cycles(time, position, tension, stands, settings=CycleSettings())
     settings = CycleSettings(control="load")
     assert find_cycles(time, position, tension, stands, settings=settings).n_cycles == 1

@@ -1259,7 +1259,7 @@ def test_a_cycle_without_time_is_refused():
 
 @pytest.mark.parametrize("time", [[0.0, 1.0, 2.0], [0.0, 1e-12, 2e-12, 3e-12, 1.0]])
 def test_a_cycle_whose_samples_have_too_few_phases_is_refused(time):
-    with pytest.raises(DataError, match="samples of cycle 1 stand too close in time"):
+    with pytest.raises(DataError, match="samples of cycle 1 are too close in time"):
         cycle_basis(np.array(time), np.array([0]), np.array([len(time) - 1]))
 
 

@@ -148,7 +148,9 @@ def test_a_logarithmic_creep_gives_its_rate_under_noisy_tension():
 
 
 def test_tension_that_is_not_constant_is_refused():
-    with pytest.raises(DataError, match="tension is not constant: it strays .* needed 1 % or less"):
+    with pytest.raises(
+        DataError, match="tension is not constant: it deviates .* needed 1 % or less"
+    ):
         creep_rate(TIME_OF_CREEP, STRAIN, 400 - 10 * np.log10(TIME_OF_CREEP), ramp_duration=2.0)
 
 

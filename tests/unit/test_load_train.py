@@ -107,7 +107,7 @@ def test_tension_and_length_of_the_specimen_come_back(train, linear_density, mas
 
 def test_a_log_that_is_too_sparse_for_acceleration_is_refused():
     record, _, _ = logged(LoadTrain("moving", 5.0), mass=5.0, rate=12, n_cycles=40)
-    with pytest.raises(DataError, match="too sparse for the acceleration"):
+    with pytest.raises(DataError, match="too few samples for the acceleration"):
         locate(record, kind="cyclic", settings=SETTINGS, specimens=(Specimen("rope", "rope"),))
 
 

@@ -238,7 +238,7 @@ FOUND = {
         ChangeInLength("dynamic stiffness", 1e6, 900.0, 10.0, 9e-3, 5e3, 1.5e4, step="D",
                        degrees_of_freedom=9.0),
         ChangeInLength("dynamic stiffness", 1.3e6, 900.0, 13.0, 9e-3, 1.5e4, 2.5e4, step="E"),
-        ChangeInLength("construction strain", reason="no step beds the rope in"),
+        ChangeInLength("construction strain", reason="there is no bedding-in step"),
         ChangeInLength("polymer strain", 0.0012, 1e-5, low_tension=3e4, high_tension=3e4,
                        reference_time=600.0, step="Q"),
         ChangeInLength("working strain", 0.04, 1e-5, low_tension=1e4, high_tension=3e4,
@@ -359,7 +359,7 @@ def test_every_property_is_a_row_and_a_missing_one_has_its_reason(ropes):
     assert by_name["construction strain"][5] == NOT_GIVEN
     assert table.remarks[0] == "original stiffness, B: of the first cycle"
     part = _make_rope_section(ropes[0]).parts[0]
-    assert part.refusals == ("construction strain: no step beds the rope in",)
+    assert part.refusals == ("construction strain: there is no bedding-in step",)
 
 
 def test_the_answer_has_a_row_a_rope(ropes):
@@ -415,7 +415,7 @@ def test_properties_alone_are_a_page(tmp_path):
     html = write_report(tmp_path, tmp_path / "out").read_text(encoding="utf-8")
     assert 'id="rope-0"' in html
     assert "Programme of rope R-1" in html
-    assert "construction strain: no step beds the rope in" in html
+    assert "construction strain: there is no bedding-in step" in html
 
 
 def test_a_property_that_knows_its_instruments_says_so_and_has_the_factor_of_both(ropes):

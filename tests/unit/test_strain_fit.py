@@ -336,7 +336,7 @@ REFUSED = {
     "tension driven without a tension is refused": (
         lambda: fit(method="tension-driven", tension=False),
         DataError,
-        "by tension-driven has no mark to rest on",
+        "by tension-driven has no mark to use",
     ),
     "slack rows alone are refused": (
         lambda: fit({"T-1": []}),
@@ -346,7 +346,7 @@ REFUSED = {
     "nothing to go by is refused": (
         lambda: fit_strain_model(Specimen("rope"), test_id="a"),
         DataError,
-        "nothing says how position becomes strain of 'rope'",
+        "no strain method applies to 'rope'",
     ),
 }
 

@@ -265,7 +265,7 @@ def test_runs_are_called_by_their_names_where_those_are_given():
     names = [f"A{number:02d}" for number in plan.run]
     kinds = {caution.kind: caution for caution in find_cautions(plan, run_names=names)}
     assert "of run A11 reaches zero" in kinds["slack"].message
-    assert "runs A13, A14, A15 are one run" in kinds["pure-error-excludes-drift"].message
+    assert "runs A13, A14, A15 repeat one run" in kinds["pure-error-excludes-drift"].message
     assert kinds["slack"].runs == (11,)
 
 

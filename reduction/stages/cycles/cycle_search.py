@@ -181,7 +181,7 @@ def label_phases(
 
 
 _HINT = (
-    "Check cycles.control, cycles.band and the layout, or give the test the kind it is "
+    "Check cycles.control, cycles.band and the layout, or state the kind of the test "
     "(relaxation, creep, quasi-static, tensile)."
 )
 
@@ -204,8 +204,8 @@ _AT_TOP = 1e-3  # of the range
 _AT_TURNS = 0.9  # of the readings
 
 _BETWEEN = (
-    "Loops and moduli need the readings between: take the log that was not thinned. The ranges of"
-    " load and strain give K_ap alone, of which `reduction surface` takes a table of runs."
+    "Loops and moduli need the readings between them: use the log before thinning. The ranges of"
+    " load and strain give only K_ap; `reduction surface` takes a table of K_ap by run."
 )
 
 _NO_LOAD = 0.1  # of the greatest
@@ -217,8 +217,8 @@ def _let_back(tension: Floats, settings: CycleSettings) -> str:
     if settings.control == "load" or not bool((ends < _NO_LOAD * most).all()):
         return ""
     return (
-        "The load begins and ends near zero: of a specimen that is longer when it is let back to no"
-        ' load the cycle is found with control = "load". '
+        "The load begins and ends near zero: if the specimen does not return to its first length,"
+        ' state control = "load". '
     )
 
 
@@ -227,18 +227,18 @@ def _hint(time: Floats, values: Floats) -> str:
     step = median_step(time)
     if values.size > FEWEST_SAMPLES and turning_points(values).size > _AT_TURNS * values.size:
         return (
-            "Nearly every reading is a turn: the log holds the greatest and least value of each"
-            f" cycle. {_BETWEEN}"
+            "Nearly every reading is a turn: the log contains only the greatest and least value of"
+            f" each cycle. {_BETWEEN}"
         )
     top = float(np.nanmax(values))
     share = float(np.mean(values > top - _AT_TOP * (top - float(np.nanmin(values)))))
     cut_off = (
-        f"{100 * share:.0f} % of the samples stand at {top:.6g}, the greatest value: the channel is"
+        f"{100 * share:.0f} % of the samples are at {top:.6g}, the greatest value: the channel is"
         " saturated there, or the machine dwells. "
     )
     return (
-        f"{cut_off if share > _CUT_OFF else ''}{_HINT} The samples stand {step:.4g} s"
-        f" apart: cycles shorter than {FEWEST_SAMPLES * step:.4g} s need a log with more of them."
+        f"{cut_off if share > _CUT_OFF else ''}{_HINT} The samples are {step:.4g} s"
+        f" apart: cycles shorter than {FEWEST_SAMPLES * step:.4g} s need a faster log."
     )
 
 
@@ -758,8 +758,8 @@ def _refuse_coarse(
     >>> _refuse_coarse(time, np.array([0, 3]), np.array([2, 5]), np.array([3, 6]))
     Traceback (most recent call last):
     reduction.record.errors.DataError: too few samples in a cycle; found 3 in cycle 1, which lasts
-    12 s; needed 4 or more, and 12 for sound peaks and loops. Log every 1 s or faster, or take the
-    log that was not thinned.
+    12 s; needed 4 or more, and 12 for sound peaks and loops. Log every 1 s or faster, or use the
+    log before thinning.
     """
     counts = last - first
     duration = take_samples(time, last) - take_samples(time, first)
@@ -772,7 +772,7 @@ def _refuse_coarse(
             found=f"{counts[least]} in cycle {least + 1}, which lasts {duration[least]:.4g} s",
             needed=f"{FEWEST_SAMPLES} or more, and {ENOUGH_SAMPLES} for sound peaks and loops",
             hint=(_BOUNCE_HINT if is_pull else "")
-            + f"Log every {wanted}, or take the log that was not thinned.",
+            + f"Log every {wanted}, or use the log before thinning.",
         )
     if usual < ENOUGH_SAMPLES:
         return [note("few-samples-a-cycle", n_samples=usual, needed=ENOUGH_SAMPLES, step=wanted)]

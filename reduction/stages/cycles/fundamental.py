@@ -254,7 +254,7 @@ def cycle_basis(
     if is_flat.any():
         bad = int(np.flatnonzero(is_flat)[0])
         raise DataError(
-            f"the samples of cycle {bad + 1} stand too close in time to have a fundamental",
+            f"the samples of cycle {bad + 1} are too close in time to have a fundamental",
             found=f"{last[bad] - first[bad] + 1} samples from {time[first[bad]]:g} s to "
             f"{time[last[bad]]:g} s",
             needed="samples that are spread over the cycle",

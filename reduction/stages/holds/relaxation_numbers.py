@@ -323,7 +323,7 @@ def creep_rate(
     variation = _tension_variation(seconds, load, settled=settled)
     if variation > TENSION_TOLERANCE:
         raise DataError(
-            f"tension is not constant: it strays {100 * variation:.1f} % from its mean",
+            f"tension is not constant: it deviates by {100 * variation:.1f} % from its mean",
             needed=f"{100 * TENSION_TOLERANCE:.0f} % or less",
         )
     return rate_per_decade(logarithmic_blocks(seconds, stretch), ramp_duration=ramp_duration)

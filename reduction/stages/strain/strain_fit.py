@@ -521,7 +521,7 @@ def fit_to_marks(method: StrainMethod, readings: PooledMarks) -> StrainModel:
     stretched = readings.stretched_rows(method)
     if stretched.size == 0:
         raise DataError(
-            f"strain of '{marks.specimen}' by {method} has no mark to rest on",
+            f"strain of '{marks.specimen}' by {method} has no mark to use",
             needed="a stretched row of this specimen"
             + (" whose hold is found in the log" if method == "tension-driven" else ""),
             hint="tension-driven also needs the tension at the mark; the other methods do not."
@@ -906,7 +906,7 @@ def _default_method(
     if specimen.gauge_length is not None:
         return "gauge-length"
     raise DataError(
-        f"nothing says how position becomes strain of '{specimen.name}'",
+        f"no strain method applies to '{specimen.name}'",
         needed="splice marks, a strain channel, or a gauge length where there are no splices",
         hint='Give strain = { marks = "marks.csv" } under [defaults], or gauge_length under each'
         " [specimens.NAME], in campaign.toml.",

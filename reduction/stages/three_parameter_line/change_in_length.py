@@ -292,12 +292,12 @@ def _construction_strain(
     Examples
     --------
     >>> print(_construction_strain([], "", "").reason)
-    no step beds the rope in
+    there is no bedding-in step
     """
     absent = ChangeInLength("construction strain")
     place = _bedded_in(steps)
     if place is None:
-        return replace(absent, reason="no step beds the rope in")
+        return replace(absent, reason="there is no bedding-in step")
     one = steps[place]
     absent = replace(absent, step=one.name)
     if before or place > 0:
@@ -307,13 +307,13 @@ def _construction_strain(
     if cycles is None or np.isnan(cycles.permanent_strain.value):
         return replace(absent, reason="the cycles give no permanent strain")
     found = absent.with_number(cycles.permanent_strain)
-    reason = "of the cycles alone: the first rise does not pass the tension of their valleys"
+    reason = "from the cycles alone: the first rise does not pass the tension of their valleys"
     at_valley = _on_first_rise(one.first_rise, cycles)
     on_rise = at_valley is not None and np.isfinite(at_valley.value)
     if before_cycles and not on_rise:
         return replace(absent, reason=before_cycles)
     if at_valley is not None and not on_rise:
-        reason = "the first foot is taken to be on the first rise, which was held there"
+        reason = "the first valley is taken to be on the first rise, which has a hold there"
     elif at_valley is not None:
         reason = ""
         # the random error at the first foot is in the permanent strain with the opposite sign
@@ -379,7 +379,7 @@ _NO_RISE = (
     "a bedding-in step, the diameter must be stated"
 )
 
-_NO_PAIR = "no step holds one tension after a lower one"
+_NO_PAIR = "no step has a hold at a higher tension than the hold before it"
 
 _NO_ORDER = "the order of the tests is not stated"
 
@@ -407,7 +407,7 @@ def change_in_length(
     --------
     >>> found = change_in_length([])
     >>> print(len(found), found[1].name, "--", found[1].reason)
-    6 static stiffness -- no step holds one tension after a lower one
+    6 static stiffness -- no step has a hold at a higher tension than the hold before it
     """
     for one in steps:
         if not one.reference_time > 0:
@@ -465,7 +465,7 @@ def _original(steps: Sequence[StepOfProgramme], before: str, before_cycles: str)
     first = steps[0]
     absent = replace(absent, step=first.name)
     rise, cycles = first.first_rise, first.bedding
-    reason = "there is no curve of the first rise, which a log that begins slack gives"
+    reason = "there is no curve of the first rise; it needs a log that begins slack"
     if rise is not None:
         # a rope creeps on for a while as the load falls again: that is not part of its rise
         top = max(int(np.argmax(rise.tension)), 1)
@@ -473,7 +473,7 @@ def _original(steps: Sequence[StepOfProgramme], before: str, before_cycles: str)
         spanned = float(rise.tension[top] - rise.tension[0])
         if spanned < _LEAST_OF_RISE * (cycles.first_peak_tension - cycles.valley_tension):
             rise = None
-            reason = f"the curve of the first rise has {spanned:.4g} N of it, for want of readings"
+            reason = f"the curve of the first rise covers only {spanned:.4g} N (too few readings)"
     if rise is not None:
         gain = float(rise.strain[top] - rise.strain[0])
         stiffness = float(rise.tension[top] - rise.tension[0]) / gain
@@ -503,7 +503,7 @@ def _original(steps: Sequence[StepOfProgramme], before: str, before_cycles: str)
         absent.with_number(cycles.first_stiffness),
         low_tension=cycles.valley_tension,
         high_tension=cycles.first_peak_tension,
-        reason=f"of the first cycle: {reason}",
+        reason=f"from the first cycle: {reason}",
     )
 
 
@@ -534,7 +534,7 @@ def _dynamic(steps: Sequence[StepOfProgramme]) -> tuple[ChangeInLength, ...]:
         )  # fmt: skip
         found.append(bare.with_number(level.stiffness))
     # the cycles of bedding-in belong to a rope that is still settling
-    none = "no step is of cycles of a settled rope"
+    none = "no step has cycles other than bedding-in"
     return tuple(found) or (ChangeInLength("dynamic stiffness", reason=none),)
 
 
@@ -568,7 +568,7 @@ def _working(steps: Sequence[StepOfProgramme], is_ordered: bool) -> tuple[Change
     absent = ChangeInLength("working strain")
     place = _bedded_in(steps)
     if place is None:
-        return (replace(absent, reason="no step beds the rope in: construction would be in it"),)
+        return (replace(absent, reason="no bedding-in step: it would include construction strain"),)
     if not is_ordered:
         return (replace(absent, reason=f"{_NO_ORDER}: a hold may be of a rope not bedded in"),)
     pairs = [(one, pair) for one in steps[place + 1 :] for pair in one.pairs]
