@@ -531,13 +531,12 @@ def _say_run(result: CampaignResult, output: CommandOutput) -> None:
         )
     if result.replaced is not None:
         output.error(
-            f"{result.processed}: the results of {result.replaced} were here, which has the same"
-            " id, and are replaced. Give each campaign its own id, or another --processed and"
-            " --reports"
+            f"{result.processed}: replaced the results of {result.replaced}, which has the same id."
+            " Give each campaign its own id, or another --processed and --reports"
         )
     for path in result.superseded:
         output.error(
-            f"{path}: this campaign no longer makes it; moved there, and no answer uses it"
+            f"{path}: this campaign no longer makes it; it was moved there and is not used"
         )
     has_failed = bool(result.tests) and all(one.status == "failed" for one in result.tests)
     output.say(f"archives: {'none; all tests failed' if has_failed else result.processed}")

@@ -217,11 +217,11 @@ def test_a_campaign_of_the_same_id_is_told_that_it_replaces_another(reduced, com
     campaign.write_text(campaign.read_text().replace("n_cycles = 10", "n_cycles = 9"))
     done = command("run", campaign, "--quiet", cwd=reduced)
     assert done.returncode == 0
-    assert f"the results of {reduced / 'raw' / 'campaign.toml'} were here" in done.stderr
+    assert f"replaced the results of {reduced / 'raw' / 'campaign.toml'}" in done.stderr
     # the same campaign, moved
     shutil.move(reduced / "other", reduced / "moved")
     done = command("run", reduced / "moved" / "raw" / "campaign.toml", "--quiet", cwd=reduced)
-    assert done.returncode == 0 and "were here" not in done.stderr
+    assert done.returncode == 0 and "replaced the results" not in done.stderr
 
 
 def test_init_quotes_a_path_with_a_blank(small, command):
