@@ -56,7 +56,7 @@ from reduction.record.measurement import Floats
 from reduction.record.notes import Note, note
 from reduction.uncertainty.surface_errors import surfaces_between_runs
 
-_ROUNDING = 1e-9
+_EXACT = 1e-9
 
 
 class _ShownUnits:
@@ -246,7 +246,7 @@ def _kinds(precision: ExpectedPrecision) -> dict[str, int]:
     for kind in dict.fromkeys(precision.point_kind):
         places = np.flatnonzero([one == kind for one in precision.point_kind])
         # corners are equal except for rounding, which depends on the processor
-        is_worst = factor[places] >= (1 - _ROUNDING) * factor[places].max()
+        is_worst = factor[places] >= (1 - _EXACT) * factor[places].max()
         place = int(places[is_worst.argmax()])
         beyond = " (beyond the runs)" if precision.is_beyond_design[place] else ""
         worst[kind + beyond] = place
@@ -670,8 +670,6 @@ def _show_effects(
     output.say_each("note", notes)
 
 
-_ROUNDING = 1e-6  # coded: of a level that is converted to SI
-
 _NEAR_A_LEVEL = 0.1
 """Coded distance from -1 or 1 within which a screening level counts as that level."""
 
@@ -809,7 +807,7 @@ def _screen(runs: RunSeries) -> tuple[ScreeningEffects, tuple[str, ...]]:
             found=f"{runs.coded[run, factor]:.4g} coded",
             needed="-1 or 1, as in a two-level screening",
         )
-    if away.max() > _ROUNDING:
+    if away.max() > _EXACT:
         notes.append(f"levels up to {away.max():.2g} coded off the plan count as those of the plan")
     notes += map(str, screening_remarks(runs.dummy.shape[1], runs.blocks is not None))
     design = Design("plackett-burman", near, runs.dummy)
