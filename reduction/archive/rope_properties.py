@@ -44,8 +44,6 @@ from reduction.stages.three_parameter_line.change_in_length import (
 )
 from reduction.uncertainty.error_field import error_field
 
-_ALONG = ("property",)
-
 _U = "_standard_uncertainty"
 
 _MEASURED = ("property_stiffness", "property_stiffness_over_strength", "property_strain")
@@ -309,7 +307,7 @@ def _pairs(read: _Reader, specimen: str) -> tuple[PairOfHolds, ...]:
 def _pair(read: _Reader, row: int) -> PairOfHolds:
     reason = str(read.dataset.variables["static_refusal"].values[row])
     at = read.value("static_reference_time", row)
-    elapsed = _known(read.dataset, "static_elapsed_time", row)
+    elapsed = _known_times(read.dataset, row)
     if elapsed.size and not elapsed[0] <= at <= elapsed[-1]:
         reason = (
             f"extrapolated beyond the hold, which has points from {elapsed[0]:.3g} "
@@ -331,7 +329,8 @@ def _held(read: _Reader, name: str, row: int) -> StepNumber:
     return replace(found, contribution=np.where(is_kept, found.contribution, 0.0))
 
 
-def _known(dataset: xr.Dataset, name: str, row: int) -> Floats:
+def _known_times(dataset: xr.Dataset, row: int) -> Floats:
+    name = "static_elapsed_time"
     values: Floats = dataset.variables[name].values[row] if name in dataset else np.empty(0)
     return values[np.isfinite(values)]
 

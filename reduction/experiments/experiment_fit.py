@@ -55,10 +55,10 @@ _OFF_SCREENING = 0.1
 _OF_ORDER = ("pure-error-excludes-drift", "order-confounded")
 
 
-def _listed(words: Sequence[str], *, most: int = 5, between: str = ", ") -> str:
+def _listed(words: Sequence[str], *, between: str = ", ") -> str:
     """The first few of several words, and the number of the others."""
-    more = f" and {len(words) - most} more" if len(words) > most else ""
-    return between.join(words[:most]) + more
+    more = f" and {len(words) - 5} more" if len(words) > 5 else ""
+    return between.join(words[:5]) + more
 
 
 def _remarks_of_runs(runs: RunTable) -> list[Note]:

@@ -38,18 +38,18 @@ from reduction.record.measurement import Bools, Floats, read_only_arrays
 from reduction.record.notes import Note, note
 
 
-def _two_level_columns(name: str, columns: ArrayLike) -> Floats:
+def _two_level_columns(columns: ArrayLike) -> Floats:
     """Columns of a two-level design as numbers; a refusal names invalid ones.
 
     Examples
     --------
-    >>> print(_two_level_columns("the design", [[-1], [1]]).ravel())
+    >>> print(_two_level_columns([[-1], [1]]).ravel())
     [-1.  1.]
     """
-    levels = as_finite(name, columns)
+    levels = as_finite("the design", columns)
     if levels.ndim != 2 or not np.all(np.abs(levels) == 1):
         raise DataError(
-            f"{name} is not a table of two levels",
+            "the design is not a table of two levels",
             found=f"shape {levels.shape}, levels {sorted(set(levels.ravel().tolist()))[:5]}",
             needed="-1 and +1, one row a run",
         )
@@ -91,7 +91,7 @@ def alias_matrix(coded: ArrayLike) -> tuple[tuple[tuple[int, int], ...], Floats]
     >>> pairs[2], round(float(abs(alias[1, 2])), 3)  # the second and third factor in the first
     ((1, 2), 0.333)
     """
-    levels = _two_level_columns("the design", coded)
+    levels = _two_level_columns(coded)
     pairs = tuple(combinations(range(levels.shape[1]), 2))
     first = np.column_stack([np.ones(levels.shape[0]), levels])
     second = np.empty((levels.shape[0], len(pairs)))
@@ -251,7 +251,7 @@ def screening_effects(
     >>> print(screening_effects(design, life, names="ABCDEFG").effect.round(5))
     [ 0.32583  0.29383 -0.24583 -0.51617  0.14983  0.91517  0.18317]
     """
-    columns = _two_level_columns("the design", np.hstack([design.coded, design.dummy]))
+    columns = _two_level_columns(np.hstack([design.coded, design.dummy]))
     n_runs, n_columns = columns.shape
     cross = np.abs(np.column_stack([np.ones(n_runs), columns]).T @ columns)
     np.fill_diagonal(cross[1:], 0)

@@ -221,20 +221,20 @@ def _of_specimen(
     if summary is not None and test.cycles is not None:
         errors = errors_after_slip(test, index, errors, slice(cycles.break_in_cycles, None))
         of_loop = errors_of_loops(summary, index, errors, model, test.cycles, cycles, test.record)
-        yield _named(of_loop, "test_", left_out=_OF_CYCLES_ALONE)
+        yield _named_of_test(of_loop, left_out=_OF_CYCLES_ALONE)
         if np.isfinite(area):
-            yield _named(errors_of_dynamic_modulus(of_loop, summary, index, errors, area), "test_")
+            yield _named_of_test(errors_of_dynamic_modulus(of_loop, summary, index, errors, area))
         if test.line_of_test is not None and pull is not None:
             rest = quasi_static_contributions(
                 pull, origin or PullOrigin(errors, model),
                 np.asarray(summary.mean_tension[index]), of_loop, test.line_of_test, index,
             )  # fmt: skip
-            yield _named(rest, "test_")
+            yield _named_of_test(rest)
             line = test.line_of_test
             of_both = errors_of_loops(
                 summary, index, errors, model, test.cycles, cycles, test.record, line=line
             )
-            yield _named(errors_of_line(line, summary, index, of_both, rest), "test_")
+            yield _named_of_test(errors_of_line(line, summary, index, of_both, rest))
 
 
 def _contributions_to_cycles(
@@ -271,6 +271,5 @@ def _contributions_to_cycles(
     return merged(parts)
 
 
-def _named(found: Contributions, prefix: str, *, left_out: Sequence[str] = ()) -> Contributions:
-    names = [name for name in found.values if name not in left_out]
-    return renamed(found, {name: f"{prefix}{name}" for name in names})
+def _named_of_test(found: Contributions, *, left_out: Sequence[str] = ()) -> Contributions:
+    return renamed(found, {name: f"test_{name}" for name in found.values if name not in left_out})

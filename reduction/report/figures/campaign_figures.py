@@ -44,6 +44,11 @@ _STIFFNESS = "test_apparent_spring_constant"
 _CYCLES_OF = ", cycles "
 """Between specimen and cycles, in the name of what a ratio is of."""
 
+_LINE_AT_ONE = {
+    "type": "line", "xref": "paper", "x0": 0, "x1": 1, "y0": 1.0, "y1": 1.0,
+    "line": {"width": 1, "dash": "dot", "color": "#8C8C8C"},
+}  # fmt: skip
+
 
 def draw_ratios(tests: Sequence[TestView]) -> list[Figure]:
     """Draw ratios of moduli: a figure a branch, or one for both where one test alone has them."""
@@ -68,7 +73,7 @@ def draw_ratios(tests: Sequence[TestView]) -> list[Figure]:
                 " errors common to both. They differ where it excludes 1.",
                 [trace for trace in data if trace["y"]], synthetic=any_synthetic(tests),
                 xaxis=axis("strain [%]"), yaxis=_ratio_axis(data),
-                shapes=[_level(1.0)],
+                shapes=[_LINE_AT_ONE],
             )  # fmt: skip
             if figure.has_data:
                 found.append(figure)
@@ -128,13 +133,6 @@ def _heights(data: Sequence[Trace]) -> tuple[list[float], list[float]]:
     lines = [y for trace in data if "fill" not in trace for y in trace["y"] if y is not None]
     ends = [y for trace in data if "fill" in trace for y in trace["y"] if y is not None]
     return lines, ends
-
-
-def _level(height: float) -> Trace:
-    return {
-        "type": "line", "xref": "paper", "x0": 0, "x1": 1, "y0": height, "y1": height,
-        "line": {"width": 1, "dash": "dot", "color": "#8C8C8C"},
-    }  # fmt: skip
 
 
 def draw_all_moduli(tests: Sequence[TestView]) -> list[Figure]:
