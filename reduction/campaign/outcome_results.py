@@ -51,9 +51,8 @@ _T = TypeVar("_T")
 
 @dataclass(frozen=True)
 class _Column:
-    """A column with a unit: its quantity, and its header unchanged."""
+    """A column with a unit, and its header unchanged."""
 
-    stem: str
     unit: str | None
     header: str
 
@@ -139,7 +138,7 @@ def _columns(path: Path, header: list[str]) -> tuple[dict[str, list[_Column]], l
             unit = bracket.rstrip("] ") if bracket else name[len(known) :].lstrip("_ ")
             # a header may avoid the percent sign
             unit = re.sub(r"^pct[_ ]?", "%", unit)
-            measured.setdefault(known, []).append(_Column(known, unit or None, name))
+            measured.setdefault(known, []).append(_Column(unit or None, name))
         elif name in _WORDS:
             continue
         elif near := get_close_matches(_word(name), (*_WORDS, *_MEASURED, "value"), cutoff=0.75):

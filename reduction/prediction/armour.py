@@ -758,12 +758,6 @@ class _LayerStiffness:
     torque_per_strain: Floats
     torque_per_twist: Floats
 
-    @property
-    def free_tension_per_strain(self) -> Floats:
-        """Stiffness of a cable that is free to turn, shape (...). [N]."""
-        lost = self.torque_per_strain**2 / self.torque_per_twist
-        return np.asarray(self.tension_per_strain - lost)
-
 
 def _layer_stiffness(design: ArmourDesign) -> _LayerStiffness:
     """Stiffness of all wires of a layer together, at rest.
@@ -776,14 +770,12 @@ def _layer_stiffness(design: ArmourDesign) -> _LayerStiffness:
 
     Examples
     --------
-    30 wires at 20 deg, with EA of 124 MN in total: held, and free to turn
+    30 wires at 20 deg, with EA of 124 MN in total, held against turning
 
     >>> design = ArmourDesign(np.radians(20.0), 2.5e-3, 25e-3, 210e9, n_wires=30)
     >>> stiffness = _layer_stiffness(design)
     >>> print((stiffness.tension_per_strain / 1e6).round(2))
     102.65
-    >>> print((stiffness.free_tension_per_strain / 1e6).round(3))
-    1.748
     """
     angle = np.asarray(design.winding_angle, dtype=np.float64)
     sine, cosine, radius = np.sin(angle), np.cos(angle), design.helix_radius

@@ -58,7 +58,6 @@ class _Difference:
     curve: CurveName
     strain: Floats
     difference: Floats
-    n_strain: int
     bias: float
     rms: float
     relative_rms: float
@@ -378,7 +377,6 @@ def difference_of(
         curve=curve,
         strain=x,
         difference=error,
-        n_strain=int(both.sum()),
         bias=float(error[both].mean()),
         rms=rms,
         relative_rms=rms / level if level > 0 else float("nan"),

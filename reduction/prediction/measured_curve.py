@@ -70,7 +70,7 @@ class MeasuredCurve:
     count : ndarray of int, shape (n_cycle, 2, n_strain)
         Number of samples in the bin. [1]
     cycle_number : ndarray of int, shape (n_cycle,)
-        First cycle of each row; a row is one cycle unless ``cycles_pooled`` is above 1.
+        First cycle of each row; a row is one cycle, except in a long test, whose notes say so.
     branch_tension, branch_standard_uncertainty : ndarray, shape (2, n_strain)
         Mean over the cycles after break-in, and its standard uncertainty, type A alone. [N]
     midline_tension, midline_standard_uncertainty : ndarray, shape (n_strain,)
@@ -93,8 +93,6 @@ class MeasuredCurve:
     end_strain, end_tension, end_standard_uncertainty : float
         End of the judged curve beyond its last bin centre: mean of the samples between, and its
         type A uncertainty; NaN where there are none. [1], [N], [N]
-    cycles_pooled : int
-        Consecutive cycles in a row of ``tension``.
     notes : tuple of Note
         Remarks for the reader.
     """
@@ -116,7 +114,6 @@ class MeasuredCurve:
     end_strain: float = float("nan")
     end_tension: float = float("nan")
     end_standard_uncertainty: float = float("nan")
-    cycles_pooled: int = 1
     notes: tuple[Note, ...] = ()
 
     def __post_init__(self) -> None:
@@ -183,7 +180,6 @@ class _BranchSamples:
     tension: Floats
     row: Integers
     cycle_number: Integers
-    cycles_pooled: int
     n_break_in: int
     notes: tuple[Note, ...]
 
@@ -258,7 +254,6 @@ def _select_samples(
         tension=tensions[use],
         row=2 * k + side[use] - 1,
         cycle_number=there[::pooled],
-        cycles_pooled=pooled,
         n_break_in=min(-(-n_break_in // pooled), (there.size - 1) // pooled),
         notes=() if pooled == 1 else (note("cycles-pooled", n_cycles=pooled),),
     )
@@ -901,7 +896,6 @@ def measured_curve(
         end_strain=centre[0] + step * end[0],
         end_tension=end[1],
         end_standard_uncertainty=end[2],
-        cycles_pooled=samples.cycles_pooled,
         notes=samples.notes if is_paired else (*samples.notes, note("one-branch")),
     )
 

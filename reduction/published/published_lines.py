@@ -241,9 +241,7 @@ class _PublishedStrength:
     """Breaks of a line; NaN and None where not printed, or open."""
 
     tensile_strength: float
-    tensile_strength_standard_deviation: float
     strain_at_failure: float
-    strain_at_failure_standard_deviation: float
     n_samples: int | None
     table: str
     errata: tuple[str, ...]
@@ -445,13 +443,11 @@ def _strength(cells: _LineCells, row: str) -> _PublishedStrength | None:
     count = cells.get("10", row, f"{BREAK} number of samples")
     if not any(found):
         return None
-    mean, deviation, strain, strain_deviation = (_number_used(cell) for cell in found)
+    mean, _, strain, _ = (_number_used(cell) for cell in found)
     n_samples = _number_used(count)
     return _PublishedStrength(
         tensile_strength=mean * POUND,
-        tensile_strength_standard_deviation=deviation * POUND,
         strain_at_failure=strain,
-        strain_at_failure_standard_deviation=strain_deviation,
         n_samples=None if np.isnan(n_samples) else int(n_samples),
         table="10",
         errata=_errata_of_cells([cell for cell in [*found, count] if cell is not None]),
