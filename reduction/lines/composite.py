@@ -47,7 +47,7 @@ from numpy.typing import ArrayLike
 from reduction.lines.cycle_stiffness import LineLoop, LoadedTest
 from reduction.quantities.flags import BRANCH_VALUES
 from reduction.quantities.names import BRANCH_NAMES
-from reduction.record.arrays import as_finite, as_increasing, as_same_shape
+from reduction.record.arrays import as_finite, as_increasing, as_same_shape, runs_of_true
 from reduction.record.contributions import (
     Component,
     Contributions,
@@ -146,13 +146,6 @@ class CurvePiece:
         return Contributions(self.component, {"tension": table})
 
 
-def _runs(known: Bools) -> list[tuple[int, int]]:
-    """First and past-the-last index of each unbroken run of two points or more."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], known, [False]]).astype(np.int8)))
-    pairs = zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True)
-    return [(first, stop) for first, stop in pairs if stop - first >= _FEWEST]
-
-
 def pieces_of_branches(
     strain: ArrayLike,
     tension: ArrayLike,
@@ -211,7 +204,8 @@ def pieces_of_branches(
             known_errors.component,
             rows[:, low:high],
         )
-        for low, high in _runs(known)
+        for low, high in runs_of_true(known)
+        if high - low >= _FEWEST
     )
 
 

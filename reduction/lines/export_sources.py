@@ -56,6 +56,7 @@ from reduction.lines.line_lookup import Branch
 from reduction.lines.lookup_product import LineCurve, LineSource
 from reduction.quantities.digits import plain_number
 from reduction.quantities.names import BRANCH_NAMES
+from reduction.record.arrays import runs_of_true
 from reduction.record.contributions import combined_standard_uncertainty
 from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import Bools, Floats
@@ -617,11 +618,7 @@ def ranges_of(curve: CompositeCurve, flags: Bools) -> list[tuple[float, float]]:
     >>> ranges_of(curve, curve.is_gap)
     [(0.0, 0.5)]
     """
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]]).astype(np.int8)))
-    return [
-        (float(curve.strain[first]), float(curve.strain[stop]))
-        for first, stop in zip(edges[::2], edges[1::2], strict=True)
-    ]
+    return [tuple(curve.strain[ends].tolist()) for ends in runs_of_true(flags)]
 
 
 def composite_table(source: PieceSource, curve: CompositeCurve) -> ValueTable:

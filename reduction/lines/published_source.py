@@ -53,6 +53,7 @@ from reduction.published.published_lines import (
     strength_of,
 )
 from reduction.quantities.units import scale_to_si
+from reduction.record.arrays import runs_of_true
 from reduction.record.measurement import Bools, Floats
 from reduction.stages.strain.strain_fit import PooledMarks, fit_to_marks
 from reduction.stages.three_parameter_line.slow_pull import slope_of_cubic
@@ -217,11 +218,7 @@ def _within(curve: LineCurve, at: Floats, is_good: Bools, why: str) -> LineCurve
     """The curve over the longest good part of its range."""
     if is_good.all():
         return curve
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], is_good.astype(int), [0]])))
-    low, high = max(
-        ((at[first], at[last - 1]) for first, last in zip(edges[::2], edges[1::2], strict=True)),
-        key=lambda ends: ends[1] - ends[0],
-    )
+    low, high = max(at[runs_of_true(is_good) - [0, 1]], key=np.ptp)
     return replace(
         curve,
         low=float(low),

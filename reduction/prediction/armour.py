@@ -77,7 +77,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from reduction.prediction.hose_geometry import cord_stretch_ratio, hose_stretch_ratio
-from reduction.record.arrays import as_increasing, require_of_design
+from reduction.record.arrays import as_increasing, require_of_design, runs_of_true
 from reduction.record.errors import FitError, SettingsError
 from reduction.record.measurement import Bools, Floats, read_only_arrays
 from reduction.record.notes import Note, note
@@ -691,7 +691,7 @@ def _angles_of_use(design: ArmourDesign, strain: float, *, tolerance: float) -> 
     sentences = []
     for i, theory in enumerate(errors.theory):
         for j, quantity in enumerate(errors.quantity):
-            runs = _runs(is_within[i, j])
+            runs = runs_of_true(is_within[i, j]) - [0, 1]
             if runs.size:
                 ends[i, j] = angle[runs[np.argmax(runs[:, 1] - runs[:, 0])]]
             places = ", ".join(_degrees(angle[run]) for run in runs)
@@ -708,12 +708,6 @@ def _angles_of_use(design: ArmourDesign, strain: float, *, tolerance: float) -> 
         greatest_angle=ends[..., 1],
         statement=tuple(sentences),
     )
-
-
-def _runs(is_within: Bools) -> Floats:
-    """First and last index of each run of true values, shape (n_runs, 2)."""
-    edge = np.diff(np.concatenate([[0], is_within.astype(np.int8), [0]]))
-    return np.column_stack([np.flatnonzero(edge == 1), np.flatnonzero(edge == -1) - 1])
 
 
 def _degrees(ends: Floats) -> str:

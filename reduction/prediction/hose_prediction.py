@@ -25,6 +25,7 @@ from reduction.prediction.hose_tension import (
     torque_balanced_angle,
 )
 from reduction.prediction.hose_uncertainty import HoseUncertainty, propagate_hose, with_pick_up
+from reduction.record.arrays import runs_of_true
 from reduction.record.errors import SettingsError
 from reduction.record.measurement import Bools, Floats
 from reduction.record.notes import Note, note
@@ -288,10 +289,7 @@ def _notes_of_design(plan: HosePlan, prediction: HosePrediction) -> list[Note]:
 
 def _ranges(strain: Floats, is_so: Bools) -> str:
     """Ranges with a property; cords of a steep hose may touch at rest and again near the end."""
-    place = np.flatnonzero(is_so)
-    if not place.size:
-        return ""
-    runs = np.split(place, np.flatnonzero(np.diff(place) > 1) + 1)
     return " and ".join(
-        f"from {100 * strain[run[0]]:.1f} to {100 * strain[run[-1]]:.1f}" for run in runs
+        f"from {100 * strain[first]:.1f} to {100 * strain[stop - 1]:.1f}"
+        for first, stop in runs_of_true(is_so)
     )

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from reduction.record.errors import DataError, SettingsError
-from reduction.record.measurement import Bools, Floats
+from reduction.record.measurement import Bools, Floats, Integers
 from reduction.record.samples import BLOCK, any_sample, release_pages, trim_heap_after
 
 
@@ -68,6 +68,18 @@ def as_same_shape(**named: ArrayLike) -> tuple[Floats, ...]:
         found = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
         raise DataError("series do not pair up", found=found, needed="equal shapes")
     return tuple(arrays.values())
+
+
+def runs_of_true(flags: Bools) -> Integers:
+    """First and past-the-last place of each unbroken run of true values, shape (n_runs, 2).
+
+    Examples
+    --------
+    >>> print(runs_of_true(np.array([True, True, False, True])))
+    [[0 2]
+     [3 4]]
+    """
+    return np.flatnonzero(np.diff(flags, prepend=False, append=False)).reshape(-1, 2)
 
 
 def require_of_design(

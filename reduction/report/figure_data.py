@@ -16,6 +16,7 @@ from typing import Any, overload
 import numpy as np
 from numpy.typing import NDArray
 
+from reduction.record.arrays import runs_of_true
 from reduction.record.measurement import Floats, Integers
 from reduction.report.text_style import faded, plot_text, shorten
 
@@ -179,10 +180,9 @@ def band(
     finite = np.isfinite(x) & np.isfinite(low) & np.isfinite(high)
     outline_x: list[Floats] = []
     outline_y: list[Floats] = []
-    for run in np.split(np.arange(x.shape[0]), np.flatnonzero(np.diff(finite)) + 1):
-        if run.size and finite[run[0]]:
-            outline_x += [x[run], x[run[::-1]], np.array([np.nan])]
-            outline_y += [high[run], low[run[::-1]], np.array([np.nan])]
+    for first, stop in runs_of_true(finite):
+        outline_x += [x[first:stop], x[first:stop][::-1], np.array([np.nan])]
+        outline_y += [high[first:stop], low[first:stop][::-1], np.array([np.nan])]
     return {
         "type": "scatter",
         "mode": "lines",

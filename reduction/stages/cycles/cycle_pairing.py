@@ -17,6 +17,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from reduction.record.arrays import runs_of_true
 from reduction.record.measurement import Bools, Floats, Integers
 from reduction.record.notes import Note, note
 from reduction.record.samples import BLOCK, sample_blocks, step_of_codes, take_samples
@@ -128,8 +129,7 @@ def _usual_turn(
 
 def _longest_row(true: Bools) -> Indices:
     """Length of the row of true values that each value belongs to; 0 where false."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], true, [False]]).astype(np.int8)))
-    length = edges[1::2] - edges[::2]
+    length = np.ptp(runs_of_true(true), axis=1)
     rows = np.zeros(true.size, dtype=np.intp)
     rows[true] = np.repeat(length, length)
     return rows

@@ -10,12 +10,12 @@ References
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from reduction.record.arrays import runs_of_true
 from reduction.record.measurement import Floats
 from reduction.record.samples import take_samples
 from reduction.record.settings import Waveform
@@ -124,7 +124,8 @@ def find_levels(
     noise = _NOISE * np.median(np.abs(np.diff(read, axis=1)), axis=1) * 1.4826 / np.sqrt(2)
     change = _in_steps(read[:, :-1], read[:, 1:], noise)
     runs: list[tuple[int, int]] = []
-    for first, last in _runs(change < 0.5):
+    alike = runs_of_true(change < 0.5)  # steps between cycles: of one fewer than there are cycles
+    for first, last in alike[np.ptp(alike, axis=1) >= _FEWEST - 1].tolist():
         if runs and not _is_step(read, change, noise, (runs[-1][1], first)):
             runs[-1] = (runs[-1][0], last)
         else:
@@ -164,14 +165,6 @@ def _in_steps(one: Floats, other: Floats, noise: Floats) -> Floats:
     size = np.stack([2 * _STEP * least, *ratios])
     floor = np.reshape(noise, (3,) + (1,) * least.ndim)
     return np.asarray((np.abs(other - one) / np.maximum(size, floor)).max(axis=0))
-
-
-def _runs(is_joined: NDArray[np.bool_]) -> Iterator[tuple[int, int]]:
-    """First and last cycle of runs in which neighbours belong together, long enough for a level."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], is_joined, [False]]).astype(int)))
-    for first, last in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
-        if last - first + 1 >= _FEWEST:
-            yield first, last
 
 
 def _is_step(read: Floats, change: Floats, noise: Floats, between: tuple[int, int]) -> bool:

@@ -20,7 +20,7 @@ from operator import add
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reduction.record.arrays import as_positive, as_same_shape, run_blocks
+from reduction.record.arrays import as_positive, as_same_shape, run_blocks, runs_of_true
 from reduction.record.errors import DataError
 from reduction.record.measurement import Bools, Floats, Integers
 from reduction.record.notes import Note, note
@@ -100,10 +100,9 @@ class _CycleMeans:
         curve = np.full_like(mean, np.nan)
         for branch in range(mean.shape[0]):
             joined = self.step.n_curves[branch] > 0
-            ends = np.flatnonzero(np.diff(np.concatenate([[False], joined, [False]]).astype(int)))
             alone = np.flatnonzero(n_curves[branch] > 0)
             curve[branch, alone] = mean[branch, alone]
-            for first, last in zip(ends[::2], ends[1::2], strict=True):
+            for first, last in runs_of_true(joined):
                 part = slice(first, last + 1)
                 most = n_curves[branch, part].max()
                 if self.step.n_curves[branch, first:last].min() == most:
