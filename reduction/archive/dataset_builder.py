@@ -131,7 +131,7 @@ def variable_of(
     if dims != (name,):
         return xr.Variable(dims, values, attributes, encoding, fastpath=True)
     index = pd.Index(values, dtype=object if values.dtype.kind in "UO" else None)
-    made: xr.IndexVariable = xr.IndexVariable(dims, index, attributes, encoding)  # type: ignore[no-untyped-call]
+    made: xr.IndexVariable = xr.IndexVariable(dims, index, attributes, encoding)
     return made
 
 

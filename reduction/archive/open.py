@@ -14,7 +14,7 @@ from itertools import product
 from pathlib import Path
 from typing import Any, Literal
 
-import h5py  # type: ignore[import-untyped]
+import h5py
 import netCDF4
 import numpy as np
 import xarray as xr
@@ -234,7 +234,8 @@ def _read_own(path: Path) -> xr.Dataset | None:
     Dimensions and attributes of variables are taken from the schema instead of the file, which
     takes a fifth of the time.  Unusual files are left to `open_archive`.
     """
-    with suppress(OSError, RuntimeError, KeyError, ValueError, UnicodeError):
+    # each is a file of another form, which `open_archive` reads or refuses with its reason
+    with suppress(OSError, RuntimeError, KeyError, ValueError):
         refuse_no_file(path)
         with h5py.File(path, "r", locking=False) as file:
             attributes = {

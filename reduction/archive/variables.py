@@ -62,7 +62,7 @@ def at_places(variable: xr.Variable, dim: Hashable, places: Integers) -> xr.Vari
         return variable
     if isinstance(variable, xr.IndexVariable):
         labels = variable.to_index()[places]
-        return xr.IndexVariable(variable.dims, labels, variable.attrs)  # type: ignore[no-untyped-call]
+        return xr.IndexVariable(variable.dims, labels, variable.attrs)
     taken = np.take(variable.values, places, axis=variable.dims.index(dim))
     return xr.Variable(variable.dims, taken, variable.attrs, fastpath=True)
 

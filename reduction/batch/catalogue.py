@@ -13,10 +13,10 @@ from typing import Any, Final
 
 import numpy as np
 import pandas as pd
-import pyarrow  # type: ignore[import-untyped]
-import pyarrow.compute  # type: ignore[import-untyped]
-import pyarrow.csv  # type: ignore[import-untyped]
-import pyarrow.parquet  # type: ignore[import-untyped]
+import pyarrow
+import pyarrow.compute
+import pyarrow.csv
+import pyarrow.parquet
 from numpy.typing import NDArray
 
 from reduction import __version__

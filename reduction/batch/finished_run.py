@@ -63,6 +63,7 @@ def finished_run(
     campaign: Path, processed: Path, reports: Path, choices: Mapping[str, str]
 ) -> CampaignResult | None:
     """Result of the last run of a campaign if everything it read and wrote is unchanged."""
+    # whatever is missing, damaged or of another version: the run is simply done again
     with suppress(OSError, ValueError, LookupError, TypeError, ReductionError):
         name = tomllib.loads(campaign.read_text(encoding="utf-8-sig"))["campaign"]["id"]
         folder, report = processed / name, reports / name

@@ -606,7 +606,7 @@ def survey_log(campaign: Campaign, name: str, *, reader: Reader = read_record) -
     plan = campaign.tests[name]
     try:
         return _read_test(campaign, plan, reader=reader)
-    except Exception as error:
+    except Exception as error:  # fails only this test, even for a defect of this program
         if isinstance(error, OSError) and error.errno is not None:
             error = unreadable(error.filename or plan.files[0][0], error)
         return [Survey(plan, error=as_reduction_error(error))]

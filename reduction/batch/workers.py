@@ -151,7 +151,7 @@ def _ended(
         raise _scheduler_lost() from None
     except ReductionError:
         raise
-    except Exception as error:
+    except Exception as error:  # those of a test are results: this one is of the worker itself
         raise WorkerError(
             "a worker could not do what it was asked",
             found=f"{type(error).__name__}: {error}",
@@ -206,7 +206,7 @@ def local_workers(number: int) -> Iterator[Workers]:
     try:
         _start(pool, number)
         yield Workers(pool, _end_children, number=number)
-    except BaseException:
+    except BaseException:  # an interrupt too: children would outlive the run
         _end_children()
         raise
     finally:

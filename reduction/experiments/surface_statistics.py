@@ -51,7 +51,7 @@ Regressions = Mapping[int, Any]
 
 def regress(response: Floats, matrix: Floats, covariance: Floats | None = None) -> Any:
     """Least squares of one response, generalized where its runs share a covariance."""
-    from statsmodels.regression.linear_model import GLS, OLS  # type: ignore[import-untyped]
+    from statsmodels.regression.linear_model import GLS, OLS
 
     model = OLS(response, matrix) if covariance is None else GLS(response, matrix, covariance)
     return model.fit()
@@ -194,9 +194,7 @@ def term_tests(
 
 def ratio_of_variances(response: Floats, matrix: Floats, block: Integers) -> float:
     """Variance between blocks over that within, by restricted maximum likelihood [4]_."""
-    from statsmodels.regression.mixed_linear_model import (  # type: ignore[import-untyped]
-        MixedLM,
-    )
+    from statsmodels.regression.mixed_linear_model import MixedLM
 
     # the warnings concern a variance of zero, which is a valid answer
     with warnings.catch_warnings(), np.errstate(divide="ignore", invalid="ignore"):

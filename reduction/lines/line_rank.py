@@ -159,7 +159,8 @@ def _ties(
     """Other lines whose intervals overlap; None where there is no interval."""
 
     def ends(values: DesignValues) -> tuple[float, float]:
-        return tuple(float(getattr(values, f"{which}_{end}").ravel()[0]) for end in ("low", "high"))  # type: ignore[return-value]
+        low, high = (float(getattr(values, f"{which}_{end}").ravel()[0]) for end in ("low", "high"))
+        return low, high
 
     low, high = ends(found[place][1])
     if not np.isfinite([low, high]).all():

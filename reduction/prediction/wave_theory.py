@@ -629,7 +629,7 @@ def high_stokes_wave(
     17.42
     """
     try:
-        from raschii import StokesWave  # type: ignore[import-untyped]
+        from raschii import StokesWave
     except ImportError:
         raise SettingsError(
             "Stokes waves above second order are computed by raschii, which is not installed",

@@ -22,7 +22,7 @@ import traceback
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
-from typing import IO, Any, TypeVar
+from typing import IO, Any, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -58,6 +58,7 @@ class _Reader:
             stderr=subprocess.DEVNULL,
             env=os.environ | _ENVIRONMENT,
         )
+        self.pipes = cast("tuple[IO[bytes], IO[bytes]]", (self.process.stdin, self.process.stdout))
         self.parent = os.getpid()
 
     def is_ready(self) -> bool:
@@ -66,20 +67,20 @@ class _Reader:
 
     def ask(self, request: bytes) -> tuple[Any, Exception | None]:
         """Value or error; `EOFError` if the process ended without an answer."""
-        requests, answers = self.process.stdin, self.process.stdout
+        requests, answers = self.pipes
         try:
-            requests.write(request)  # type: ignore[union-attr]  # both are pipes
-            requests.flush()  # type: ignore[union-attr]
-            found: tuple[Any, Exception | None] = pickle.load(answers)  # type: ignore[arg-type]  # noqa: S301
+            requests.write(request)
+            requests.flush()
+            found: tuple[Any, Exception | None] = pickle.load(answers)  # noqa: S301  # of this package
         except (BrokenPipeError, pickle.UnpicklingError) as error:
             raise EOFError from error
         return found
 
     def end(self) -> None:
         self.process.kill()
-        for stream in (self.process.stdin, self.process.stdout):
-            with suppress(OSError):
-                stream.close()  # type: ignore[union-attr]
+        for stream in self.pipes:
+            with suppress(OSError):  # what is left in a broken pipe
+                stream.close()
         self.process.wait()
 
 
@@ -135,7 +136,7 @@ def bounded(
 
 def _how_it_ended(status: int) -> str:
     if status < 0:
-        with suppress(ValueError):
+        with suppress(ValueError):  # a signal without a name
             return f"an end by {signal.Signals(-status).name}"
     return f"an end with status {status}"
 
@@ -184,8 +185,8 @@ def _is_answered(requests: IO[bytes], answers: IO[bytes], silence: int) -> bool:
         folder, scratch, limits, path, work = pickle.load(requests)  # noqa: S301  # of the run
     except EOFError:
         return False
-    with suppress(OSError):
-        os.chdir(folder)  # for relative paths
+    with suppress(OSError):  # a folder that is gone matters to relative paths alone
+        os.chdir(folder)
     name_scratch_files(scratch[1])
     answer: tuple[Any, Exception | None]
     watch = Watch(path, limits)
@@ -196,7 +197,7 @@ def _is_answered(requests: IO[bytes], answers: IO[bytes], silence: int) -> bool:
         _bound_memory(limits.unpacked_size)
         watch = Watch(path, limits)  # loading time before this does not count
         answer = function(path, *given, watch=watch, **named), None
-    except Exception as error:
+    except Exception as error:  # the run raises it
         answer = None, _portable_error(error)
     except BaseException as error:  # a failed check in a Rust library
         answer = None, watch.broken(f"{type(error).__name__}: {error}"[:200])
@@ -230,8 +231,8 @@ def _portable_error(error: Exception) -> Exception:
     if isinstance(error, (ReductionError, MemoryError)):
         return error
     try:
-        made: Exception = pickle.loads(pickle.dumps(error))  # noqa: S301
-    except Exception:
+        made: Exception = pickle.loads(pickle.dumps(error))  # noqa: S301  # made here
+    except Exception:  # of any library, whose class may fail in any way
         made = RuntimeError(f"{type(error).__name__}: {error}")
     made.add_note(place)
     return made

@@ -96,7 +96,7 @@ def fetch(address: str, target: Path, *, fault: Fault = LogError) -> None:
                 shown, "the transfer was interrupted", found=f"{size} bytes",
                 needed=f"{before[0]} bytes", hint="Run again.",
             )  # fmt: skip
-    except Exception as error:
+    except Exception as error:  # of any package that reads addresses
         told = _fault_of(error, address, fault)
     if told is not None:
         with suppress(OSError):  # a name that no disk accepts

@@ -16,9 +16,9 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-import nptdms  # type: ignore[import-untyped]
+import nptdms
 import numpy as np
-from nptdms.log import log_manager  # type: ignore[import-untyped]
+from nptdms.log import log_manager
 from numpy.typing import NDArray
 
 from reduction.readers.columns import (

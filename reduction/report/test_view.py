@@ -341,7 +341,7 @@ def _shared(data: xr.Dataset, known: dict[str, str]) -> xr.Dataset:
         }
         # a pandas index is used as it is; for an array xarray asks Dask
         found[name] = (
-            xr.IndexVariable(variable.dims, pd.Index(values, dtype=values.dtype), attributes)  # type: ignore[no-untyped-call]
+            xr.IndexVariable(variable.dims, pd.Index(values, dtype=values.dtype), attributes)
             if name in data.dims
             else xr.Variable(variable.dims, values, attributes or None, fastpath=True)
         )
