@@ -1,7 +1,5 @@
 """HDF5 files that mean harm: each is a function that writes one, by what it does."""
 
-import os
-
 import h5py
 import numpy as np
 
@@ -343,13 +341,6 @@ def attributes_without_end(path, count=3_000):
         _columns(file)
         for number in range(count):
             file.attrs[f"a{number}"] = number
-    return path
-
-
-def cut_off(path, part=0.5):
-    with h5py.File(path, "w") as file:
-        _columns(file, rows=500)
-    os.truncate(path, int(part * path.stat().st_size))
     return path
 
 

@@ -9,7 +9,6 @@ from nptdms import ChannelObject, TdmsWriter
 
 N = 30
 _COLUMNS = {"t": 0.1 * np.arange(N), "x": 1.0 + 0.01 * np.arange(N), "F": 5.0 + np.arange(N)}
-_MEGA = 1 << 20
 _META, _NEW, _RAW, _MIXED, _DAQMX = 2, 4, 8, 32, 128
 _DOUBLE, _STRING, _VOID = 10, 32, 0
 

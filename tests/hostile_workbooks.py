@@ -340,10 +340,6 @@ def many_sheets(path, count=2_000):
     return write_xlsx(path, {f"s{i}": [["t"]] for i in range(count)} | {"log": ROWS})
 
 
-def wide_sheet(path):
-    return write_xlsx(path, {"log": [[f"c{i}" for i in range(26)]] * 40})
-
-
 def _cfb(streams):
     """A compound file with streams, in sectors of 512 bytes."""
     sectors, starts = [], {}

@@ -14,7 +14,7 @@ from reduction.campaign.load import load_campaign
 pytestmark = pytest.mark.nightly
 
 RAW = Path(__file__).parents[2] / "raw" / "hose-synthetic"
-LBF, INCH, LENGTH = 4.4482216152605, 0.0254, 96.0
+LBF, LENGTH = 4.4482216152605, 96.0
 PLAN = {"L-64": "H64-static", "S-64": "H64-pull"}
 STATED = """
 [uncertainty]

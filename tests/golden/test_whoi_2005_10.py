@@ -28,9 +28,7 @@ HERE = Path(__file__).parent
 INCH, FOOT, LBF = 0.0254, 0.3048, 4.4482216152605
 PSI = LBF / INCH**2
 HALF_OF_A_TENTH = 0.05  # percentages are printed to a tenth
-HALF_OF_A_HUNDREDTH = 0.005  # feet are printed to a hundredth
 TETHERS = ("new", "used")
-METHODS = ("marks", "strain-ratio", "constant-fraction")
 # strain minus the printed actual stretch at 75, 100 and 125 %, in points, worked out by hand
 # from the printed marks, with the ratio of strain slopes of constant-fraction to the method
 EXPECTED_MISS = {

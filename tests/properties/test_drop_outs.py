@@ -17,7 +17,6 @@ STEP = 0.1  # s
 N_CYCLES, PER_CYCLE = 8, 80
 KNOTS = np.cumsum([0, 120, 60, *[PER_CYCLE // 2] * (2 * N_CYCLES), 60, 120])
 LEVELS = [1.0, 1.0, *[1.5, 2.5] * N_CYCLES, 1.5, 1.0, 1.0]
-CYCLING = slice(KNOTS[2], KNOTS[-3])
 PART = {"rest": (8, 110), "ramp": (122, 178), "cycling": (186, KNOTS[-3] - 8)}
 
 

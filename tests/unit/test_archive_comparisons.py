@@ -16,7 +16,6 @@ from reduction.archive.uncertainty_budget import budget_from_archive
 from reduction.archive.write import write_archive
 from reduction.prediction.comparison_error import EventDifference
 from reduction.quantities.names import COMPARISON_SCHEMA
-from reduction.record.measurement import Origin
 
 CURVES = ("ascending", "descending", "midline")
 
@@ -288,15 +287,3 @@ def test_equal_comparisons_give_equal_bytes(path, tmp_path):
         hashlib.sha256(one.read_bytes()).hexdigest() for one in (path, tmp_path / "again.nc")
     )
     assert first == second
-
-
-def empty_or_twice(named):
-    from reduction.archive.campaign_products import comparisons_to_dataset
-
-    return comparisons_to_dataset(
-        named,
-        origin=Origin(
-            campaign_id="c", attributes={}, sources=(), steps=(), settings_json="{}",
-            version="1", command="reduction run campaign.toml",
-        ),
-    )  # fmt: skip

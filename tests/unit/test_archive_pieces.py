@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import xarray as xr
+from refusals import refusals
 
 from reduction.archive.variables import note_values
 from reduction.lines.archive_pieces import (
@@ -347,8 +348,4 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize("what", REFUSED)
-def test_refusals(what):
-    call, error, message = REFUSED[what]
-    with pytest.raises(error, match=message):
-        call()
+test_refusals = refusals(REFUSED)

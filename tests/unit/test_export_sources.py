@@ -474,7 +474,7 @@ def test_the_header_of_a_table_that_ends_below_the_loads_of_a_test():
 
 STRAIN_OF_SPREAD = np.array([0.1, 0.2, 0.3])
 UP_OF_SPREAD, DOWN_OF_SPREAD = 500 * STRAIN_OF_SPREAD, 480 * STRAIN_OF_SPREAD
-CELL, TAPE = Component("tension_gain", "cell"), Component("strain_calibration", "new", 2)
+CELL = Component("tension_gain", "cell")
 
 
 @pytest.fixture

@@ -9,6 +9,7 @@ import pytest
 import yaml
 from export_lines import constant, line, rubber
 from export_readers import CableExpression, abaqus, cable_material, cable_pairs, orcaflex
+from refusals import refusals
 
 from reduction.lines.composite import CompositeRule, compose
 from reduction.lines.deck_formats import (
@@ -451,8 +452,4 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize("what", REFUSED)
-def test_refusals(what):
-    call, error, message = REFUSED[what]
-    with pytest.raises(error, match=message):
-        call()
+test_refusals = refusals(REFUSED)

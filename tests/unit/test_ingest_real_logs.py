@@ -15,7 +15,7 @@ from reduction.record.measurement import Quality
 from reduction.record.settings import QualitySettings
 
 pytestmark = needs_measured_logs
-FOOT, POUND, INCH = 0.3048, 4.4482216152605, 0.0254
+POUND, INCH = 4.4482216152605, 0.0254
 
 
 def layout(*, position, tension, time=None, more=None, **settings):

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from assemblies import RUBBER, curve_of, spring
+from refusals import refusals
 
 from reduction.lines.assembly import (
     SeriesPart,
@@ -278,8 +279,4 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize("what", REFUSED)
-def test_refusals(what):
-    call, error, message = REFUSED[what]
-    with pytest.raises(error, match=message):
-        call()
+test_refusals = refusals(REFUSED)

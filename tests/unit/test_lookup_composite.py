@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from assemblies import DRIVEN
+from refusals import refusals
 
 from reduction.lines.assembly import SeriesPart, _assemble, _equal_tethers, _Tether
 from reduction.lines.composite import (
@@ -641,8 +642,4 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize("what", REFUSED)
-def test_refusals(what):
-    call, error, message = REFUSED[what]
-    with pytest.raises(error, match=message):
-        call()
+test_refusals = refusals(REFUSED)

@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from refusals import refusals
 from scipy.signal import lfilter
 
 from reduction.pipeline.located_test import slips_of
@@ -520,8 +521,4 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize("what", REFUSED)
-def test_refusals(what):
-    call, error, message = REFUSED[what]
-    with pytest.raises(error, match=message):
-        call()
+test_refusals = refusals(REFUSED)

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from refusals import refusals
 
 from reduction.experiments.outcomes import REASONS
 from reduction.experiments.strength_statistics import (
@@ -306,8 +307,4 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize("what", REFUSED)
-def test_refusals(what):
-    call, error, message = REFUSED[what]
-    with pytest.raises(error, match=message):
-        call()
+test_refusals = refusals(REFUSED)

@@ -4,6 +4,7 @@ import sys
 
 import numpy as np
 import pytest
+from refusals import refusals
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipj, ellipk
 
@@ -758,8 +759,4 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize("what", REFUSED)
-def test_refusals(what):
-    call, error, message = REFUSED[what]
-    with pytest.raises(error, match=message):
-        call()
+test_refusals = refusals(REFUSED)

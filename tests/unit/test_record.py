@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from refusals import refusals
 
 from reduction.record.arrays import as_finite, as_increasing, as_positive, as_same_shape, as_spread
 from reduction.record.errors import DataError, SettingsError
@@ -116,8 +117,4 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize("what", REFUSED)
-def test_refusals(what):
-    call, error, message = REFUSED[what]
-    with pytest.raises(error, match=message):
-        call()
+test_refusals = refusals(REFUSED)

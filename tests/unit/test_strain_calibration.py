@@ -6,6 +6,7 @@ independent way to the same number.
 
 import numpy as np
 import pytest
+from refusals import refusals
 from scipy.optimize import curve_fit
 
 from reduction.record.errors import DataError, FitError
@@ -264,8 +265,4 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize("what", REFUSED)
-def test_refusals(what):
-    call, error, message = REFUSED[what]
-    with pytest.raises(error, match=message):
-        call()
+test_refusals = refusals(REFUSED)

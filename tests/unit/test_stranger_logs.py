@@ -218,11 +218,6 @@ TEXTS = {
     ),
 }  # fmt: skip
 
-ROWS = [
-    dict(zip(("time", "x", "F"), map(float, row), strict=True))
-    for row in zip(TIME, TRAVEL, LOAD, strict=True)
-]
-
 JSON = {
     "an object of columns": {"Time (s)": [*TIME], "Stroke (mm)": [*TRAVEL], "Force (N)": [*LOAD]},
     "columns in a place": {

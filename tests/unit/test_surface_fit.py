@@ -8,7 +8,7 @@ from scipy import stats
 from statsmodels.formula.api import ols
 from statsmodels.stats.anova import anova_lm
 
-from reduction.experiments.designs import box_behnken, model_matrix, quadratic_exponents, term_names
+from reduction.experiments.designs import box_behnken, model_matrix, quadratic_exponents
 from reduction.experiments.fit_results import (
     FIT_REASONS,
     LACK_OF_FIT_REASONS,
@@ -28,7 +28,6 @@ from reduction.experiments.surface_statistics import anova_table, diagnose, regr
 from reduction.record.errors import DataError, SettingsError
 
 EXPONENTS = quadratic_exponents(3)
-NAMES = term_names(EXPONENTS, ["f", "Tm", "dT"])
 RUNS = box_behnken(3).coded
 MATRIX = model_matrix(RUNS, EXPONENTS)
 

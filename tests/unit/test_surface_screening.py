@@ -137,8 +137,6 @@ def test_lenths_estimate_leaves_out_effects_beyond_two_and_a_half_times_the_firs
 
 # aliases of main effects and interactions
 
-RNG_OF_CONFOUNDING = np.random.default_rng(12)
-
 
 def test_in_twelve_runs_each_interaction_is_a_third_of_every_other_main_effect():
     pairs, alias = alias_matrix(plackett_burman(11, n_runs=12).coded)

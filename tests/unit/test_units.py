@@ -1,6 +1,7 @@
 """Units at the edge; factors are the international definitions, written out here."""
 
 import pytest
+from refusals import refusals
 
 from reduction.quantities.units import (
     _PER_SI,
@@ -216,8 +217,4 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize("what", REFUSED)
-def test_refusals(what):
-    call, error, message = REFUSED[what]
-    with pytest.raises(error, match=message):
-        call()
+test_refusals = refusals(REFUSED)
