@@ -611,6 +611,8 @@ class ColumnTable:
         Whether a column may be named by its number.
     sizes : tuple of int
         Number of values in each column if the file states it, else empty.
+    is_turned : bool
+        Whether the columns are the rows of a matrix.
     """
 
     names: tuple[str, ...]
@@ -620,6 +622,7 @@ class ColumnTable:
     where: str = "the file"
     in_order: bool = True
     sizes: tuple[int, ...] = ()
+    is_turned: bool = False
 
 
 class _Matrix(Protocol):
@@ -633,8 +636,28 @@ class _Matrix(Protocol):
     def dtype(self) -> np.dtype[Any]:
         """Type of the values, with fields if the columns have names."""
 
+    @property
+    def T(self) -> _Matrix:  # noqa: N802 (as in numpy)
+        """Rows and columns exchanged."""
+
     def __getitem__(self, rows: slice, /) -> NDArray[Any]:
         """Selected rows."""
+
+
+def is_wide(matrix: _Matrix) -> bool:
+    """Whether a matrix has a row per channel: Simulink writes a column per reading.
+
+    Examples
+    --------
+    >>> is_wide(np.zeros((3, 1000))), is_wide(np.zeros((1000, 3)))
+    (True, False)
+    """
+    if matrix.dtype.names is not None or len(matrix.shape) != 2:
+        return False
+    return matrix.shape[1] > _WIDE * matrix.shape[0]
+
+
+_WIDE = 3  # columns per row of a matrix that is no table of readings
 
 
 def matrix_table(
@@ -644,9 +667,11 @@ def matrix_table(
     where: str,
     names: tuple[str, ...] | None = None,
     units: tuple[str, ...] | None = None,
-    n_together: int = 1,
 ) -> ColumnTable:
-    """Columns of a matrix, shape (n_rows, n_columns), or of a table with named fields."""
+    """Columns of a matrix, its rows if it has a row per channel, or a table's named fields."""
+    is_turned = is_wide(matrix)
+    if is_turned:
+        matrix = matrix.T
     fields = matrix.dtype.names
     if fields is not None:
         if len(matrix.shape) != 1:
@@ -673,7 +698,7 @@ def matrix_table(
 
     def load(place: int, n_rows: int) -> Iterator[NDArray[Any]]:
         n_rows = max(min(n_rows, _PART // row_size), 1)  # all columns are read; few may be wanted
-        for part in row_parts(total, n_rows, n_together):
+        for part in row_parts(total, n_rows, getattr(matrix, "n_together", 1)):
             if not held or held[0][0] != part:
                 held[:] = [(part, matrix[part])]
             rows = held[0][1]
@@ -686,6 +711,7 @@ def matrix_table(
         n_rows=total,
         where=where,
         sizes=(total,) * n_columns,
+        is_turned=is_turned,
     )
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -17,7 +17,7 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from reduction.readers.columns import ColumnTable, matrix_table, read_columns, row_parts
+from reduction.readers.columns import ColumnTable, is_wide, matrix_table, read_columns, row_parts
 from reduction.readers.layout import Layout, LogParts, Watch, short_metadata
 from reduction.readers.raw_log import RawLog, hash_source
 from reduction.record.errors import LogError
@@ -236,10 +236,20 @@ class _DataSet:
     path: Path
     dataset: h5py.Dataset
     watch: Watch
+    is_turned: bool = False
 
     @property
     def shape(self) -> tuple[int, ...]:
-        return tuple(self.dataset.shape)
+        return tuple(self.dataset.shape)[:: -1 if self.is_turned else 1]
+
+    @property
+    def n_together(self) -> int:
+        """Rows stored together in the file."""
+        return _chunk_length(self.dataset, int(self.is_turned))
+
+    @property
+    def T(self) -> _DataSet:  # noqa: N802 (as in numpy)
+        return replace(self, is_turned=not self.is_turned)
 
     @property
     def ndim(self) -> int:
@@ -257,7 +267,9 @@ class _DataSet:
     def __getitem__(self, rows: slice, /) -> NDArray[Any]:
         start, stop, _ = rows.indices(self.shape[0])
         n_values = max(stop - start, 0) * math.prod(self.shape[1:])
-        return _values(self.path, self.dataset, rows, n_values, self.watch)
+        selection = (slice(None), rows) if self.is_turned else rows
+        values = _values(self.path, self.dataset, selection, n_values, self.watch)
+        return values.T if self.is_turned else values
 
 
 def data_set(path: Path, dataset: h5py.Group | h5py.Dataset, watch: Watch) -> _DataSet:
@@ -309,16 +321,9 @@ def _hdf5_table(
             for entry in (layout.matrix_names, layout.matrix_units)
         )
         matrix = data_set(path, find_member(path, group, layout.matrix), watch)
-        if matrix.ndim == 2:
+        if matrix.ndim == 2 and not is_wide(matrix):
             watch.check_columns(matrix.shape[1])
-        return matrix_table(
-            path,
-            matrix,
-            where=f"'{layout.matrix}'",
-            names=names,
-            units=units,
-            n_together=_chunk_length(matrix.dataset, 0),
-        )
+        return matrix_table(path, matrix, where=f"'{layout.matrix}'", names=names, units=units)
     if not isinstance(group, h5py.Group):
         raise LogError(
             path, f"'{layout.group}' is not a group", found="a data set",

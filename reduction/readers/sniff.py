@@ -28,7 +28,7 @@ from reduction.readers.channel_names import (
     is_unit,
     propose_channels_table,
 )
-from reduction.readers.columns import CLOCK_TEXT, ColumnTable, matrix_table, plain_date
+from reduction.readers.columns import CLOCK_TEXT, ColumnTable, is_wide, matrix_table, plain_date
 from reduction.readers.delimited import without_comment_name
 from reduction.readers.hdf5 import data_set, group_table, open_hdf5, read_texts
 from reduction.readers.json_matrix import json_content
@@ -592,7 +592,7 @@ def _named_matrix(
     settings["matrix"] = key
     given: dict[str, tuple[str, ...]] = {}
     for name, entries in texts.items():
-        if matrix.ndim == 2 and len(entries) == matrix.shape[1]:
+        if matrix.ndim == 2 and len(entries) == matrix.shape[0 if is_wide(matrix) else 1]:
             filled = [text for text in entries if text]
             kind = "units" if 2 * sum(map(is_unit, filled)) >= len(filled) else "names"
             if kind not in given:
@@ -696,16 +696,18 @@ def _look_at_binary(path: Path, kind: Format, watch: Watch) -> _SeenTable:
             parquet = stack.enter_context(open_parquet(path))
             candidates = iter([({}, parquet_table(path, parquet, watch))])
         best: tuple[dict[str, object], list[SeenColumn]] = ({}, [])
-        count = 0
+        count, is_turned = 0, False
         for settings, table in candidates:
             columns = _seen(table)
             count += len(columns) > 1
             if sum(c.values.size for c in columns) > sum(c.values.size for c in best[1]):
-                best = settings, columns
+                best, is_turned = (settings, columns), table.is_turned
         settings, columns = best
         if kind == "tdms" and columns:
             columns = columns + _waveform(file, settings, columns)
     remarks = [f"sure: {len(columns)} columns of numbers of one length"]
+    if is_turned:
+        remarks.append("guess: the rows of the matrix are the columns, because it has fewer rows")
     if count > 1:
         remarks.append(f"guess: the largest of {count} tables of the file is the log")
     return _SeenTable(kind, columns, settings, tuple(remarks))
@@ -761,6 +763,8 @@ def _look_at_json(path: Path, watch: Watch) -> _SeenTable:
         settings = {key: value for key, value in settings.items() if value}
         columns = _seen(table)
         remark = f"sure: '{place}' is a matrix of {len(table.names)} columns"
+        if table.is_turned:
+            remark += " (its rows, because it has fewer rows)"
     stated = {
         name: value
         for name, value in (content.items() if isinstance(content, dict) else ())

@@ -2,8 +2,9 @@ import h5py
 import numpy as np
 import pytest
 
-from reduction.readers.hdf5 import read_hdf5
-from reduction.readers.layout import Layout
+from reduction.readers.columns import matrix_table
+from reduction.readers.hdf5 import data_set, open_hdf5, read_hdf5
+from reduction.readers.layout import Layout, Watch
 from reduction.record.errors import LogError
 
 
@@ -61,6 +62,18 @@ def test_columns_of_a_matrix_go_by_number_or_by_the_names_beside_it(path):
     numbers = {"time": {"column": 1, "unit": "s"}, "tension": {"1": {"column": 2, "unit": "kN"}}}
     assert read(path, matrix="M", channels=numbers).columns["tension.1"].tolist() == [1, 3, 5]
     assert read(path, matrix="M", matrix_names="names").columns["time"].tolist() == [0, 2, 4]
+
+
+def test_the_rows_of_a_wide_matrix_are_read_in_parts_of_whole_chunks(path):
+    with h5py.File(path, "a") as file:
+        values = np.stack([np.arange(20.0), np.arange(20.0) ** 2])
+        file["run/1"].create_dataset("W", data=values, chunks=(2, 8))
+    with open_hdf5(path) as file:
+        matrix = data_set(path, file["run/1/W"], Watch(path))
+        table = matrix_table(path, matrix, where="'W'")
+        parts = [part.tolist() for part in table.load(1, 9)]
+    assert [len(part) for part in parts] == [8, 8, 4]
+    assert sum(parts, []) == [float(i) ** 2 for i in range(20)]  # noqa: RUF017
 
 
 def test_units_beside_a_matrix_are_checked(path):

@@ -118,6 +118,18 @@ def test_columns_of_a_matrix_go_by_number_or_by_the_names_beside_it(write):
         read(path, matrix="M", matrix_names="names", matrix_units="units")
 
 
+def test_the_rows_of_a_wide_matrix_are_the_columns(write):
+    """As the block To File of Simulink writes it: a row per signal, the first one the time."""
+    path = write(train=np.stack([np.arange(50) / 10, np.arange(50.0) ** 2]))
+    channels = {"time": {"column": 1, "unit": "s"}, "tension": {"1": {"column": 2, "unit": "N"}}}
+    log = read(path, matrix="train", channels=channels)
+    assert (log.n_rows_read, log.columns["time"][-1], log.columns["tension.1"][-1]) == (
+        50,
+        4.9,
+        2401,
+    )
+
+
 def test_a_missing_column_lists_what_there_is(write):
     with pytest.raises(LogError, match=r"'F' is not in the file; found .*'load'"):
         read(write(t=column(TIME), load=column(LOAD)))

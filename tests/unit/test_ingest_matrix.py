@@ -46,6 +46,11 @@ def test_columns_have_names_where_the_file_gives_them(read):
     assert log.columns["tension.1"].tolist() == [1.0]
 
 
+def test_the_rows_of_a_wide_matrix_are_the_columns(read):
+    log = read({"data": [list(range(20)), [0.5] * 20, list(range(3, 23))], **UNITS})
+    assert (log.n_rows_read, log.columns["tension.1"][-1]) == (20, 22)
+
+
 def test_null_and_declared_words_are_missing(read):
     log = read('{"data": [[0, 1, null], [1, NaN, 3], [2, "--", 4]], "displacement units": "in"}',
                missing=("", "NaN", "--"))  # fmt: skip

@@ -589,6 +589,15 @@ def test_a_binary_file_without_columns_is_refused(tmp_path):
         sniff_layout(tmp_path / "log")
 
 
+def test_the_rows_of_a_wide_matrix_are_proposed_as_columns(tmp_path):
+    path = tmp_path / "log.mat"
+    names = np.array(["t", "x", "F"], dtype=object)
+    rows = np.stack([np.arange(40.0)] * 3)
+    scipy.io.savemat(path, {"train": rows, "names": names})
+    assert "guess: the rows of the matrix are the columns" in " ".join(sniff_layout(path).remarks)
+    assert proposed(path)["channels"]["time"]["column"] == "t"
+
+
 def test_what_objects_of_matlab_keep_in_a_file_is_no_column(tmp_path):
     path = tmp_path / "log.mat"
     scipy.io.savemat(path, {"x": np.arange(300) % 256})

@@ -146,13 +146,13 @@ def test_rows_that_the_file_keeps_together_are_read_once_for_all_columns():
     asked = []
 
     class Rows:
-        shape, dtype = (10, 2), np.dtype(float)
+        shape, dtype, n_together = (10, 2), np.dtype(float), 4
 
         def __getitem__(self, rows):
             asked.append((rows.start, rows.stop))
             return np.arange(20.0).reshape(10, 2)[rows]
 
-    made = matrix_table(PATH, Rows(), where="'M'", names=("t", "F"), n_together=4)
+    made = matrix_table(PATH, Rows(), where="'M'", names=("t", "F"))
     parts = LogParts(in_memory=0, n_bytes=80)
     columns, _ = read_columns(PATH, layout(), made, parts=parts)
     assert asked == [(0, 4), (4, 8), (8, 10)]
