@@ -329,10 +329,10 @@ def _pull_rows(view: TestView, *, is_of_lines: bool) -> Iterator[list[TableCell]
                 half_way = reached / 2
                 if strain[usable[0]] > half_way:  # the pull begins under load
                     half_way = (strain[usable[0]] + reached) / 2
-                middle = int(usable[np.argmin(np.abs(strain[usable] - half_way))])
+                there = stiffness.between(strain, half_way)
                 area = float("nan") if areas is None else float(np.ravel(areas)[place])
-                line = stiffness.cell(middle, force, area if is_modulus else 1.0)
-                material = stiffness.cell(middle, stress, 1.0 if is_modulus else 1.0 / area)
+                line = there.cell(0, force, area if is_modulus else 1.0)
+                material = there.cell(0, stress, 1.0 if is_modulus else 1.0 / area)
         ends = [
             cell if own is None else own.cell(0, unit)
             for own, cell, unit in zip(known, ends, (strain_unit, force), strict=True)
@@ -369,6 +369,12 @@ class _Series:
         unknown = np.full(values.shape, np.nan)
         return cls(values, unknown, unknown)
 
+    def between(self, places: Floats, where: float) -> _Series:
+        """One value, from those on both sides of it: on a grid the nearest one is off by a step."""
+        known = np.isfinite(self.values)
+        parts = (self.values, self.half, self.factor)
+        return _Series(*(np.interp([where], places[known], one[known]) for one in parts))
+
     def cell(self, place: int, unit: Shown, times: float = 1.0) -> TableCell:
         """One value, multiplied by a number."""
         value, half = times * self.values[place], times * self.half[place]
@@ -390,13 +396,8 @@ def _rise(view: TestView, place: int) -> tuple[Floats, _Series, _Series, bool] |
     if pulled is not None and strain is not None and np.isfinite(pulled.values).any():
         load = _Series.known(np.asarray(view.array("tension_grid")))
         cubic = strain.values, load, _at_one_strain(view, place, pulled, load.values), False
-        if view.is_rope:  # the cubic is a law for ropes only; the curve of a rubber bends twice
+        if view.is_rope:
             return cubic
-        if any(
-            one.code == "pull-misfit" and _is_of(one, view.specimens[place]) for one in view.notes
-        ):
-            unknown = np.full(load.values.shape, np.nan)
-            cubic = (unknown, load, _Series.known(unknown), False)
     weights, middles = series("interval_modulus"), view.array("interval_strain")
     if weights is not None and middles is not None:
         rising = view.array_like("interval_branch", middles) == 1

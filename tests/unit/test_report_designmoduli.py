@@ -240,8 +240,9 @@ def test_a_break_has_its_own_load_and_strain_and_a_line_no_modulus():
         "pull_peak_tension": 600.0, "pull_peak_tension_standard_uncertainty": 10.0,
     }.items()}  # fmt: skip
     table = pull_table([pulled("tensile", of="rope", **more)])
+    # half of 45 %: a quarter of the way from 2 MPa at 20 % to 3 MPa at 30 %
     assert texts(table) == [
-        ["new", "P-1", "break", "45.0 ± 2.0", "600 ± 20", "1,000.0 ± 9.8", "reduced"]
+        ["new", "P-1", "break", "45.0 ± 2.0", "600 ± 20", "1,125.0 ± 9.8", "reduced"]
     ]
 
 
@@ -306,14 +307,19 @@ MISSED = {
 }  # fmt: skip
 
 
-def test_a_curve_that_a_cubic_misses_answers_at_its_own_strains():
-    # a coupon that yields: the cubic has half the strain at the wrong load
+def test_k_0_is_at_half_the_strain_and_not_at_the_tension_of_the_grid_next_to_it():
+    more = MISSED | {"quasi_static_strain": ((S, "tension_grid"), [[0.02, 0.06, 0.10]])}
+    (row,) = texts(pull_table([pulled(of="rope", **more)]))
+    assert row[3:6] == ["10.00", "300.0", "3,750"]
+
+
+def test_a_curve_that_a_cubic_misses_answers_with_the_spline_where_no_area_is_stated():
     (row,) = texts(pull_table([pulled(of="other", **MISSED)]))
     assert row[3:6] == ["40.00", "500.0 ± 2.0", "1,000.0 ± 9.8"]
-    # without a first rise, as where the log begins under a load, there is no strain to go by
+    # without a first rise, as without an area or where the log begins under a load
     view = pulled(of="other", **MISSED)
     (row,) = texts(pull_table([replace(view, data=view.data.drop_dims("branch_name"))]))
-    assert row[3:6] == [NOT_GIVEN, "300.0", NOT_GIVEN]
+    assert row[3:6] == ["10.00", "300.0", "4,000"]
 
 
 def test_ea_is_at_half_the_strain_of_the_greatest_load_not_of_the_end():
@@ -335,7 +341,7 @@ def test_a_pull_that_begins_under_a_load_has_k_0_in_its_middle():
     assert row[5] == "4,000 ± 200"
 
 
-def test_weights_have_the_modulus_between_the_readings_half_way():
+def test_weights_have_the_modulus_half_way():
     more = {
         "tension": ("step", [0.0, 100.0, 200.0, 100.0]), "strain": ("step", [0.0, 0.1, 0.4, 0.2]),
         "interval_strain": ("interval", [0.05, 0.25, 0.3]),
@@ -345,7 +351,8 @@ def test_weights_have_the_modulus_between_the_readings_half_way():
     }  # fmt: skip
     view = pulled("stepwise", **more)
     (row,) = texts(pull_table([replace(view, data=view.data.drop_dims("branch_name"))]))
-    assert row[3:7] == ["40.00", "200.0", "500.0 ± 9.8", "1.000 ± 0.020"]
+    # at 20 %, three quarters of the way from 2 MPa at 5 % to 1 MPa at 25 %
+    assert row[3:7] == ["40.00", "200.0", "625.0 ± 9.8", "1.250 ± 0.020"]
 
 
 def test_a_relaxation_test_has_its_longest_hold_and_others_have_neither_table():
