@@ -272,6 +272,7 @@ _PRONY = (
     "prony_tension_standard_uncertainty",
     "prony_time",
     "prony_time_standard_uncertainty",
+    "prony_left",
 )
 
 

@@ -437,6 +437,13 @@ OF_LINE: tuple[Quantity, ...] = (
             "prony_tension", "N", "tension of a Prony term", shares_errors=True, tables=("prony",)
         ),
         measured("prony_time", "s", "relaxation time of a Prony term", tables=("prony",)),
+        stated(
+            "prony_left",
+            "1",
+            "fraction of a Prony term left at the end of the ramp",
+            CHECK,
+            tables=("prony",),
+        ),
         group="holds",
     ),
 )

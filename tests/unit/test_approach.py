@@ -247,13 +247,19 @@ def test_terms_are_known_to_what_the_shape_of_the_ramp_makes_of_them(bend):
     assert abs(off) < 2
 
 
-def test_a_ramp_of_two_rates_has_no_series():
-    """The last 30 s add less than half of a constant rate: the term is twice what it makes."""
+@pytest.mark.parametrize("slower", [2, 10])
+def test_a_ramp_of_two_rates_has_the_terms_of_a_step(slower):
+    """The last part of the ramp leaves half, or less, of the term that a constant rate would."""
     time = np.arange(0.0, 200.0, 0.05)
-    place = np.interp(time, [10.0, 20.0, 50.0], [0.0, 0.7, 1.0])
+    place = np.interp(time, [10.0, 20.0, 20.0 + 3 * slower], [0.0, 0.7, 1.0])
     hold = hold_of(time, place, relaxed(time, place))
-    assert not hold.prony_tension.size
-    assert "the ramp is not of constant rate" in hold.refused
+    assert hold.prony_tension == pytest.approx([40], rel=0.01)
+    assert abs(hold.prony_tension - 40) < 3 * hold.prony_tension_standard_uncertainty
+    assert hold.prony_tension_standard_uncertainty < 1
+    # by the integral of exp(-t / 10 s) over the ramp as it was driven
+    left = 0.7 * (np.exp(-0.3 * slower) - np.exp(-1 - 0.3 * slower))
+    left += (1 - np.exp(-0.3 * slower)) / slower
+    assert hold.prony_left == pytest.approx([left], rel=0.01)
 
 
 def test_a_ramp_within_two_steps_of_the_log_is_known_to_what_a_decade_takes():

@@ -107,22 +107,19 @@ def _one_hold(
 
 
 def _prony(view: TestView, hold: int, since: Floats, start: float) -> tuple[Floats, Floats] | None:
-    tension, times = view.array("prony_tension"), view.array("prony_time")
-    long_time = view.array("long_time_tension")
-    if tension is None or times is None or long_time is None or np.isnan(long_time[hold]):
+    names = ("prony_tension", "prony_left", "prony_time")
+    found = [view.array(name) for name in names]
+    long_time, ended = view.array("long_time_tension"), view.array("hold_ramp_end_time")
+    if long_time is None or np.isnan(long_time[hold]):
         return None
-    given = np.isfinite(tension[hold]) & np.isfinite(times[hold])
+    tension, left, times = (one[hold] for one in found if one is not None)
+    given = np.isfinite(tension)
     moments = np.geomspace(since[0], since[-1], FIT_POINTS)
-    # the ramp that the terms are corrected for ends half its duration after its centre
-    centre, duration = (
-        float(np.nan_to_num(view.array_like(name, long_time)[hold], nan=missing))
-        for name, missing in (("hold_ramp_centre_time", start), ("hold_ramp_duration", 0.0))
-    )
+    end = start if ended is None or np.isnan(ended[hold]) else float(ended[hold])
     series = prony_tension(
-        moments + start - (centre + duration / 2),
-        ramp_duration=duration,
-        tension=tension[hold, given],
-        relaxation_time=times[hold, given],
+        moments + start - end,
+        tension=(tension * left)[given],
+        relaxation_time=times[given],
         long_time_tension=float(long_time[hold]),
     )
     return moments, series

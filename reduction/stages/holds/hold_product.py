@@ -40,6 +40,8 @@ class HoldResult:
     prony_tension, prony_time : ndarray, shape (n_terms,)
         Terms of the series; empty where refused. [N], [s]
     prony_tension_standard_uncertainty, prony_time_standard_uncertainty : ndarray, shape (n_terms,)
+    prony_left : ndarray, shape (n_terms,)
+        Fraction of each term left at the end of the ramp. [1]
     long_time_tension, long_time_tension_standard_uncertainty : float
         [N]
     criterion : str
@@ -54,8 +56,8 @@ class HoldResult:
         Time at which the ramp acts as a step: zero of time for the rate per decade; NaN where the
         record does not show the ramp. [s]
     ramp_end_time, ramp_duration : float
-        End of the ramp, between two samples; duration of the equivalent constant-rate ramp used
-        for the Prony terms. [s]
+        End of the ramp, between two samples; duration of the equivalent constant-rate ramp,
+        whose triple the rate per decade leaves out. [s]
     logged_peak_tension, ramp_end_tension : float
         Greatest logged tension near the end of the ramp; tension of the Prony series at the end
         of the ramp. [N]
@@ -87,6 +89,7 @@ class HoldResult:
     prony_tension_standard_uncertainty: Floats
     prony_time: Floats
     prony_time_standard_uncertainty: Floats
+    prony_left: Floats
     long_time_tension: float
     long_time_tension_standard_uncertainty: float
     criterion: str = ""

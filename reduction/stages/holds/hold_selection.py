@@ -65,13 +65,22 @@ class _Ramp:
     duration: float
     stiffness: float
     end_uncertainty: float = 0.0
-    # tension above its value at the start, at even times up to the end; empty if none is added [N]
-    added: Floats = field(default_factory=lambda: _EMPTY)
+    # tension at even times up to the end, NaN after the last reading; empty if none is added [N]
+    tension: Floats = field(default_factory=lambda: _EMPTY)
 
     @property
     def length(self) -> float:
         """Duration from its first sample to its end. [s]."""
         return self.end_time - self.start_time
+
+    def added(self, at_end: float) -> Floats | None:
+        """Tension added at even times up to the end, where it is ``at_end``; None where none is."""
+        if not self.tension.size:
+            return None
+        tension = np.append(self.tension[:-1], at_end)
+        known = np.flatnonzero(np.isfinite(tension))
+        even: Floats = np.interp(np.arange(tension.size), known, tension[known]) - tension[0]
+        return even
 
 
 def _find_ramp(
@@ -132,6 +141,7 @@ def _find_ramp(
     centre = end - before
     spread = max(0.0, square - before**2)
     ended, end_uncertainty = ramp_end_time(seconds, place, band=band)
+    on_ramp = int(np.searchsorted(seconds, ended))
     return _Ramp(
         start_time=float(seconds[0]),
         end_time=ended,
@@ -139,7 +149,12 @@ def _find_ramp(
         duration=min(end - float(seconds[0]), float(np.sqrt(12 * spread))),
         stiffness=_upper_slope(place, load),
         end_uncertainty=end_uncertainty,
-        added=np.interp(np.linspace(seconds[0], ended, _TIMES_OF_RAMP), seconds, load - lowest)
+        # a chord across the corner at the end would lie below it
+        tension=np.interp(
+            np.linspace(seconds[0], ended, _TIMES_OF_RAMP),
+            np.append(seconds[:on_ramp], ended),
+            np.append(load[:on_ramp], np.nan),
+        )
         if adds is load
         else _EMPTY,
     )

@@ -14,6 +14,7 @@ References
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -87,64 +88,64 @@ def _exponentials(elapsed: Floats, relaxation_time: Floats) -> Floats:
     return columns
 
 
-def terms_by_shape_of_ramp(
+def left_by_ramp(
     added: ArrayLike,
-    duration: float,
-    tension: Floats,
+    at_end: Floats,
     relaxation_time: Floats,
     long_time_tension: float,
     *,
     ramp_duration: float,
-    since_end: float,
 ) -> Floats:
-    """Terms after a step in length, by the ramp as logged instead of one of constant rate.
+    """Fraction of each Prony term left at the end of a ramp of any shape, from its tension.
 
-    The tension that the ramp would add without relaxation follows from that added, by the terms.
+    What the ramp would add without relaxation follows from what it added, by the terms themselves.
 
     Parameters
     ----------
     added : array_like, shape (n_times,)
         Tension that the ramp had added at even times up to its end. [N]
-    duration : float
-        Duration of the ramp. [s]
-    tension, relaxation_time : ndarray, shape (n_terms,)
-        Terms for a ramp of constant rate. [N], [s]
-    long_time_tension : float
-        [N]
-    ramp_duration, since_end : float
-        Duration of that ramp, and the time by which it ends after the logged one. [s]
+    at_end, relaxation_time : ndarray, shape (n_terms,)
+        Terms as they are at the end of the ramp. [N], [s]
+    long_time_tension, ramp_duration : float
+        [N], [s]
 
     Returns
     -------
-    tension : ndarray, shape (n_terms,)
-        [N]
+    left : ndarray, shape (n_terms,)
+        [1]
 
     Examples
     --------
     A constant-rate ramp of a term that relaxes as fast:
 
-    >>> elastic = np.linspace(0.0, 400.0, 65)
     >>> t = np.linspace(0.0, 5.0, 65)
-    >>> logged = 0.6 * elastic + 0.4 * 80 * 5 * (1 - np.exp(-t / 5))
-    >>> print(terms_by_shape_of_ramp(logged, 5.0, np.array([160.0]), np.array([5.0]), 240.0,
-    ...                              ramp_duration=5.0, since_end=0.0).round(1))
-    [160.]
+    >>> left = _ramp_factor([5.0], ramp_duration=5.0)
+    >>> logged = 240 * t / 5 + 160 * (1 - np.exp(-t / 5))
+    >>> print(left.round(3),
+    ...       left_by_ramp(logged, 160 * left, np.array([5.0]), 240.0, ramp_duration=5.0).round(3))
+    [0.632] [0.632]
     """
     logged = np.asarray(added, dtype=np.float64)
-    ratio = duration / (logged.size - 1) / relaxation_time
+    ratio = ramp_duration / (logged.size - 1) / relaxation_time
     decay, gain = np.exp(-ratio), -np.expm1(-ratio) / ratio
-    share = tension / (long_time_tension + tension.sum())
-    rest = 1.0 - share.sum()
-    elastic, states = 0.0, np.zeros(relaxation_time.size)
-    for load in logged[1:]:
-        states = states * decay
-        push = (load - rest * elastic - states.sum()) / (rest + share @ gain)
-        elastic += push
-        states = states + share * gain * push
-    # of each term at the end of the ramp, over the remainder of a step to its length
-    left = np.divide(states, share * elastic, out=np.ones_like(states), where=share > 0)
-    at_end = tension * _ramp_factor(relaxation_time, ramp_duration=ramp_duration)
-    return np.asarray(at_end * np.exp(since_end / relaxation_time) / left)
+    left = np.ones_like(at_end)
+    for _ in range(MOST_PASSES):
+        before, step = left, at_end / left
+        share = step / (long_time_tension + step.sum())
+        rest = 1.0 - share.sum()
+        elastic, states = 0.0, np.zeros(relaxation_time.size)
+        for load in logged[1:]:
+            states = states * decay
+            push = (load - rest * elastic - share @ states) / (rest + share @ gain)
+            elastic += push
+            states = states + gain * push
+        left = np.clip(states / elastic, SMALLEST_RATIO, 1.0)
+        if np.allclose(left, before, rtol=1e-4):
+            break
+    return left
+
+
+MOST_PASSES = 30
 
 
 _DEGENERATE = "terms not positive, or not distinct"
@@ -184,6 +185,8 @@ class PronyFit:
         Terms after a step in length, shortest time first. [N], [s]
     tension_standard_uncertainty, time_standard_uncertainty : ndarray, shape (n_terms,)
         [N], [s]
+    left : ndarray, shape (n_terms,)
+        Fraction of each term left at the end of the ramp. [1]
     long_time_tension, long_time_tension_standard_uncertainty : float
         [N]
     criterion : str
@@ -194,6 +197,7 @@ class PronyFit:
     tension_standard_uncertainty: Floats
     time: Floats
     time_standard_uncertainty: Floats
+    left: Floats
     long_time_tension: float
     long_time_tension_standard_uncertainty: float
     criterion: str
@@ -252,6 +256,7 @@ def fit_prony(
     tension: ArrayLike,
     *,
     ramp_duration: float = 0.0,
+    added: ArrayLike | None = None,
     maximum_terms: int = 3,
     weights: ArrayLike | None = None,
     known_to: float = 0.0,
@@ -266,7 +271,10 @@ def fit_prony(
     tension : array_like, shape (n_samples,)
         Tension at constant length. [N]
     ramp_duration : float, optional
-        Duration of the constant-rate ramp before it. [s]
+        Duration of the ramp before it. [s]
+    added : array_like, shape (n_times,), optional
+        Tension that the ramp had added at even times up to its end; without it the ramp has a
+        constant rate. [N]
     maximum_terms : int, optional
         Largest number of terms tried. [1]
     weights : array_like, shape (n_samples,), optional
@@ -374,36 +382,50 @@ def fit_prony(
     if np.exp(fits[n_terms].shape.max()) > longest:
         criterion += "; the slowest time is longer than the hold, so its term is extrapolated"
     texts = [criterion, *sorted(refused)]
-    return _reported(fits[n_terms], longest, ramp_duration, "; ".join(texts))
+
+    def left(times: Floats, at_end: Floats, level: float) -> Floats:
+        if added is None:
+            return _ramp_factor(times, ramp_duration=ramp_duration)
+        return left_by_ramp(added, at_end, times, level, ramp_duration=ramp_duration)
+
+    return _reported(fits[n_terms], longest, left, "; ".join(texts))
 
 
-def _reported(fit: SeparableFit, longest: float, ramp_duration: float, criterion: str) -> PronyFit:
+def _reported(
+    fit: SeparableFit,
+    longest: float,
+    left: Callable[[Floats, Floats, float], Floats],
+    criterion: str,
+) -> PronyFit:
     """Amplitudes for a step, corrected for the ramp, with propagated uncertainties."""
     order = np.argsort(fit.shape)
     n_terms = order.size
-    log_times = fit.shape[order]
-    times = np.exp(log_times)
+    times, at_end = np.exp(fit.shape[order]), fit.amplitude[1 + order]
+    level = float(fit.amplitude[0])
     index = np.concatenate([[0], 1 + order, 1 + n_terms + order])
     covariance = fit.covariance[np.ix_(index, index)] * lag_one_inflation(fit.residual)
-    factor = _ramp_factor(times, ramp_duration=ramp_duration)
-    size = fit.amplitude[1 + order] / factor
-    ratio = ramp_duration / times
+    factor = left(times, at_end, level)
+    size = at_end / factor
     # d(ln factor) / d(ln time): 0 for a step, 1 for terms much shorter than the ramp.
-    growth = 1 - np.exp(-ratio) / factor
+    growth = np.log(left(_A_LITTLE * times, at_end, level) / factor) / np.log(_A_LITTLE)
     slopes = np.zeros((2 * n_terms, 2 * n_terms + 1))
     terms = np.arange(n_terms)
     slopes[terms, 1 + terms] = 1 / factor
     slopes[terms, 1 + n_terms + terms] = -size * growth
     slopes[n_terms + terms, 1 + n_terms + terms] = times
     variance = np.diag(slopes @ covariance @ slopes.T)
-    ending = fit.amplitude[1 + order] @ (longest / times * np.exp(-longest / times))
+    ending = at_end @ (longest / times * np.exp(-longest / times))
     unseen = STILL_RELAXES * float(np.log(10) * ending)
     return PronyFit(
         tension=size,
         tension_standard_uncertainty=np.sqrt(variance[:n_terms]),
         time=times,
         time_standard_uncertainty=np.sqrt(variance[n_terms:]),
-        long_time_tension=float(fit.amplitude[0]),
+        left=factor,
+        long_time_tension=level,
         long_time_tension_standard_uncertainty=float(np.hypot(np.sqrt(covariance[0, 0]), unseen)),
         criterion=criterion,
     )
+
+
+_A_LITTLE = 1.001

@@ -43,11 +43,8 @@ from reduction.stages.holds.hold_selection import (
     select_hold,
 )
 from reduction.stages.holds.prony_series import (
-    LARGEST_SHARE,
     PronyFit,
     fit_prony,
-    prony_tension,
-    terms_by_shape_of_ramp,
 )
 from reduction.stages.holds.ramp_end import (
     MOTION_KNOWN_TO,
@@ -527,14 +524,18 @@ def _prony(hold: Hold, ends: _Ends, settings: HoldSettings, *, known_to: float) 
             note("drop-not-told-from-zero", drop=ends.drop, spread=ends.drop_uncertainty)
         )
         return None
-    ramp_end = _equivalent_end(hold)
-    later = int(np.searchsorted(hold.time, ramp_end, side="right"))
-    blocks = logarithmic_blocks(shifted(hold.time[later:], ramp_end), hold.tension[later:])
+    since = shifted(hold.time, hold.ramp_end_time)
+    later = int(np.searchsorted(since, 0.0, side="right"))
+    blocks = logarithmic_blocks(since[later:], hold.tension[later:])
+    length, added = 0.0, None
+    if hold.ramp is not None:
+        length, added = hold.ramp.length, hold.ramp.added(ends.initial)
     try:
         fit = fit_prony(
             blocks.elapsed,
             blocks.value,
-            ramp_duration=hold.ramp_duration,
+            ramp_duration=length,
+            added=added,
             maximum_terms=settings.maximum_terms,
             weights=blocks.weight,
             known_to=known_to,
@@ -542,33 +543,24 @@ def _prony(hold: Hold, ends: _Ends, settings: HoldSettings, *, known_to: float) 
     except FitError as error:
         hold.refusals.append(note("no-prony-series", reason=error.problem, found=error.found))
         return None
-    modelled = _at_ramp_end(hold, fit)
+    modelled = _at_ramp_end(fit)
     spread = float(np.hypot(ends.initial_uncertainty, START_KNOWN_TO * ends.initial))
     if abs(modelled - ends.initial) > SIGNIFICANT * spread:
         hold.refusals.append(
             note("prony-misses-ramp-end", modelled=modelled, initial=ends.initial, spread=spread)
         )
         return None
-    return fit
+    if added is None:
+        return fit
+    # more tension at the end of the ramp is more of what it left
+    of_ramp = ends.initial_uncertainty / added[-1] * (1 - fit.left) / fit.left
+    spread = np.hypot(fit.tension_standard_uncertainty, fit.tension * of_ramp)
+    return replace(fit, tension_standard_uncertainty=spread)
 
 
-def _at_ramp_end(hold: Hold, fit: PronyFit) -> float:
+def _at_ramp_end(fit: PronyFit) -> float:
     """Tension of a series at the end of the ramp. [N]."""
-    (modelled,) = prony_tension(
-        [hold.ramp_end_time - _equivalent_end(hold)],
-        tension=fit.tension,
-        relaxation_time=fit.time,
-        long_time_tension=fit.long_time_tension,
-        ramp_duration=hold.ramp_duration,
-    )
-    return float(modelled)
-
-
-def _equivalent_end(hold: Hold) -> float:
-    """End of the constant-rate ramp of the same centre and spread: half its duration later."""
-    if hold.ramp is None:
-        return float(hold.time[0])
-    return max(hold.ramp_end_time, hold.ramp.centre_time + hold.ramp.duration / 2)
+    return float(fit.long_time_tension + fit.tension @ fit.left)
 
 
 def _creep(hold: Hold) -> Rate | None:
@@ -591,11 +583,10 @@ def _describe(hold: Hold, rate: Rate | None, *, follows_hold: bool) -> None:
     """Say how the ramp was treated and what was left out."""
     if hold.ramp is not None:
         added = "length" if hold.on_tension else "tension"
-        use = "counts" if hold.on_tension else "enters the Prony terms"
         hold.made.append(
             f"ramp of {hold.ramp.end_time - hold.ramp.start_time:.3g} s; it acts as a step "
             f"{hold.ramp.end_time - hold.ramp.centre_time:.3g} s before the hold (centre of the "
-            f"{added} it adds) and {use} as {hold.ramp.duration:.3g} s at constant rate"
+            f"{added} it adds) and counts as {hold.ramp.duration:.3g} s at constant rate"
         )
     if rate is not None:
         hold.made.append(
@@ -644,31 +635,6 @@ def _less_known(fit: PronyFit, unknown: float) -> PronyFit:
             np.hypot(fit.long_time_tension_standard_uncertainty, unknown)
         ),
     )
-
-
-def _with_shape_of_ramp(fit: PronyFit, hold: Hold) -> PronyFit | None:
-    """A series with the uncertainty of its terms by the shape of the ramp, or a refusal.
-
-    The equivalent constant-rate ramp has the centre and the spread of the logged tension,
-    which relaxed during the ramp.
-    """
-    ramp = hold.ramp
-    if ramp is None or not ramp.added.size:
-        return fit
-    since_end = _equivalent_end(hold) - ramp.end_time
-    own = terms_by_shape_of_ramp(
-        ramp.added, ramp.length, fit.tension, fit.time, fit.long_time_tension,
-        ramp_duration=hold.ramp_duration, since_end=since_end,
-    )  # fmt: skip
-    off = np.abs(own - fit.tension)
-    if np.any(off > LARGEST_SHARE * fit.tension):
-        change = 100 * float((off / fit.tension).max())
-        found = f"a term changes by {change:.0f} % with the shape of its ramp"
-        reason = "the ramp is not of constant rate"
-        hold.refusals.append(note("no-prony-series", reason=reason, found=found))
-        return None
-    spread = np.hypot(fit.tension_standard_uncertainty, off)
-    return replace(fit, tension_standard_uncertainty=spread)
 
 
 def _result(
@@ -736,10 +702,8 @@ def _result(
             rate = _rate(kept, ends, known_to=of_motion, of_zero=of_zero)
             prony = _prony(kept, ends, settings, known_to=unknown)
             if prony is not None:
-                modelled = _at_ramp_end(kept, prony)
-                prony = _with_shape_of_ramp(_less_known(prony, unknown), kept)
-            if prony is None:
-                modelled = np.nan
+                modelled = _at_ramp_end(prony)
+                prony = _less_known(prony, unknown)
     _describe(hold, rate, follows_hold=follows_hold)
     shown = rate or Rate(np.nan, np.nan, np.nan, np.nan)
     return HoldResult(
@@ -761,6 +725,7 @@ def _result(
         prony_tension_standard_uncertainty=(
             _EMPTY if prony is None else prony.tension_standard_uncertainty
         ),
+        prony_left=_EMPTY if prony is None else prony.left,
         prony_time=_EMPTY if prony is None else prony.time,
         prony_time_standard_uncertainty=(
             _EMPTY if prony is None else prony.time_standard_uncertainty
@@ -783,7 +748,7 @@ def _result(
         hold_final_tension_standard_uncertainty=ends.final_uncertainty,
         tension_at_time_standard_uncertainty=tension_at[1],
         strain_at_time_standard_uncertainty=strain_at[1],
-        is_unloading=hold.ramp is not None and not hold.ramp.added.size,
+        is_unloading=hold.ramp is not None and not hold.ramp.tension.size,
     )
 
 
@@ -839,7 +804,7 @@ def reduce_holds(
     The zero of time for rates is the centre of the added tension or, where the
     machine controls the tension, of the added length; for
     ``times`` it is the first sample of the hold.  The Prony terms are corrected for the
-    ramp exactly if it has a constant rate.  Uncertainties are type A.  Cost grows
+    ramp by the tension that it adds.  Uncertainties are type A.  Cost grows
     with the samples of the holds: series are fitted on 40 block means a decade of time.
 
     Examples
