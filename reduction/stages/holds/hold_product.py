@@ -40,8 +40,6 @@ class HoldResult:
     prony_tension, prony_time : ndarray, shape (n_terms,)
         Terms of the series; empty where refused. [N], [s]
     prony_tension_standard_uncertainty, prony_time_standard_uncertainty : ndarray, shape (n_terms,)
-    prony_left : ndarray, shape (n_terms,)
-        Fraction of each term left at the end of the ramp. [1]
     long_time_tension, long_time_tension_standard_uncertainty : float
         [N]
     criterion : str
@@ -69,6 +67,8 @@ class HoldResult:
         Shape (n_times,), or empty. [N], [1]
     is_unloading : bool
         Whether tension fell on the ramp that led to the hold.
+    prony_left : ndarray, shape (n_terms,)
+        Fraction of each term left at the end of the ramp. [1]
     """
 
     specimen: str
@@ -89,7 +89,6 @@ class HoldResult:
     prony_tension_standard_uncertainty: Floats
     prony_time: Floats
     prony_time_standard_uncertainty: Floats
-    prony_left: Floats
     long_time_tension: float
     long_time_tension_standard_uncertainty: float
     criterion: str = ""
@@ -107,6 +106,7 @@ class HoldResult:
     tension_at_time_standard_uncertainty: Floats = field(default_factory=lambda: np.empty(0))
     strain_at_time_standard_uncertainty: Floats = field(default_factory=lambda: np.empty(0))
     is_unloading: bool = False
+    prony_left: Floats = field(default_factory=lambda: np.empty(0))
 
     @property
     def refused(self) -> str:
