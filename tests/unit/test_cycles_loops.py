@@ -14,6 +14,7 @@ from reduction.record.settings import CycleSettings, PhaseSettings
 from reduction.stages.cycles.cycle_product import Cycles
 from reduction.stages.cycles.cycle_search import find_cycles
 from reduction.stages.cycles.fundamental import (
+    bridge_gaps,
     cycle_basis,
     fundamental,
     part_means,
@@ -2522,3 +2523,30 @@ def test_the_last_valley_of_strokes_of_load_that_shrink_creeps_as_the_valleys_do
     stroke = 0.2 * (1 - 0.05 * 9)
     expected = 3000 * stroke / (stroke + 0.02)
     assert loops.apparent_spring_constant[0, -1] == pytest.approx(expected, rel=2e-3)
+
+
+@pytest.mark.parametrize("lost", [1, 3, 6])
+@pytest.mark.parametrize("channel", ["tension", "strain", "both"])
+@pytest.mark.parametrize("turn", ["peak", "valley"])
+def test_a_corner_of_ramps_without_its_readings_is_where_the_ramps_meet(lost, channel, turn):
+    """Synthetic: a spring of 1,000 N in straight ramps of 40 readings, with noise of 0.01 %."""
+    time = np.arange(0.0, 401.0)
+    strain = 0.02 + 0.01 * np.interp(time % 80, [0, 40, 80], [-1, 1, -1])
+    rng = np.random.default_rng(4)
+    tension = 1e3 * strain + 1e-3 * rng.standard_normal(time.size)
+    strain = strain + 1e-6 * rng.standard_normal(time.size)
+    middle = 160 + 40 * (turn == "peak")
+    gap = slice(middle - lost // 2, middle - lost // 2 + lost)
+    for series, name in ((tension, "tension"), (strain, "strain")):
+        if channel in (name, "both"):
+            series[gap] = np.nan
+    loops = close_loops(time, tension[None], strain[None], cycles_of(80, 5, time.size))
+    assert loops.apparent_spring_constant == pytest.approx(np.full((1, 5), 1e3), rel=1e-3)
+
+
+def test_a_rounded_turn_without_its_readings_is_on_a_chord_and_not_on_tangents():
+    wave = np.cos(2 * np.pi * np.arange(-40, 41) / 80)
+    gap = wave.copy()
+    gap[37:44] = np.nan
+    bridged, _ = bridge_gaps(gap, np.array([0]), np.array([80]))
+    assert bridged.max() == pytest.approx(wave[36])

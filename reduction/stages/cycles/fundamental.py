@@ -62,7 +62,8 @@ def bridge_gaps(
 
     Notes
     -----
-    Over a tenth of a cycle a straight line is wrong by up to 5 % of its amplitude at a turn.  For a
+    Over a tenth of a cycle a straight line is wrong by up to 20 % of its amplitude at the corner of
+    two ramps: there the lines through the readings on either side meet (`_on_corners`).  For a
     series that ``is_smooth`` a cubic is used, through the readings beside the gap and those
     one length of the gap away from them: for a sine its error there is 0.4 %.
 
@@ -92,18 +93,17 @@ def bridge_gaps(
     bridged = values.copy()
     gaps = np.flatnonzero(missing)
     bridged[gaps] = np.interp(gaps, present, values[present])
+    after = np.searchsorted(present, gaps)
+    inside = (after > 0) & (after < present.size)
+    gaps, after = gaps[inside], after[inside]
+    length = present[after] - present[after - 1] - 1
+    beside = np.stack([length, 0 * length], axis=1)
+    places = np.hstack([after[:, None] - 1 - beside, after[:, None] + beside[:, ::-1]])
+    known = (places[:, 0] >= 0) & (places[:, 3] < present.size)
+    gaps, nodes = gaps[known], present[places[known]]
     if is_smooth:
-        after = np.searchsorted(present, gaps)
-        inside = (after > 0) & (after < present.size)
-        gaps, after = gaps[inside], after[inside]
-        length = present[after] - present[after - 1] - 1
-        places = after[:, None] + np.stack(
-            [-1 - length, 0 * length - 1, 0 * length, length], axis=1
-        )
-        known = (places[:, 0] >= 0) & (places[:, 3] < present.size)
-        gaps, nodes = gaps[known], present[places[known]].astype(np.float64)
         bridged[gaps] = sum(
-            values[nodes[:, one].astype(np.intp)]
+            values[nodes[:, one]]
             * np.prod(
                 [
                     (gaps - nodes[:, other]) / (nodes[:, one] - nodes[:, other])
@@ -114,7 +114,32 @@ def bridge_gaps(
             )
             for one in range(4)
         )
+    else:
+        bridged[gaps] = _on_corners(values, gaps, nodes, bridged[gaps])
     return bridged, too_many
+
+
+def _on_corners(values: Floats, gaps: Integers, nodes: Integers, on_chords: Floats) -> Floats:
+    """Readings of gaps on the lines through two readings on either side, where these meet inside.
+
+    Elsewhere, and where the series bends before or behind the gap as it does in it, on the chord.
+    """
+    outer = np.clip(2 * nodes[:, [0, 3]] - nodes[:, [1, 2]], 0, values.size - 1)
+    times = np.column_stack([outer[:, 0], nodes, outer[:, 1]])
+    slopes = np.diff(values[times], axis=1) / np.diff(times, axis=1)
+    earlier, arrives, chord, leaves, later = slopes.T
+    bend = arrives - leaves
+    is_corner = np.abs(bend) > np.maximum(np.abs(arrives), np.abs(leaves))
+    is_corner &= np.fmax(np.abs(arrives - earlier), np.abs(leaves - later)) < np.abs(bend) / 8
+    is_corner &= (arrives - chord) * (chord - leaves) > 0
+    on_lines = np.stack(
+        [
+            values[nodes[:, 1]] + arrives * (gaps - nodes[:, 1]),
+            values[nodes[:, 2]] - leaves * (nodes[:, 2] - gaps),
+        ]
+    )
+    corner = np.where(bend > 0, on_lines.min(axis=0), on_lines.max(axis=0))
+    return np.asarray(np.where(is_corner, corner, on_chords))
 
 
 _PLACES = 1 << 12  # a power of two, so that whole turns are removed from an index by a bit mask

@@ -1478,7 +1478,7 @@ def close_loops(
     hypot(K', K''), and K' itself is the slope of the regression of tension on strain.  An
     open loop is closed by a straight line and corrected for its drift (`without_drift`), as
     are the amplitudes of other waves: half the range less a quarter of the drift.  In a
-    cycle that lacks up to a tenth of its readings, these are bridged by straight lines; a cycle
+    cycle that lacks up to a tenth of its readings, these are bridged (`bridge_gaps`); a cycle
     that lacks more is NaN throughout.
 
     Examples
