@@ -35,6 +35,12 @@ def reduction(*arguments, cwd=ROOT, **environment):
     return subprocess.CompletedProcess(words, done.status, done.out, done.errors)
 
 
+def answered(done):
+    """What a command that succeeded printed as one object."""
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
 @cache
 def loaded_process():
     """The process from which commands are forked; it ends with that of the tests."""

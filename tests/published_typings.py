@@ -8,6 +8,8 @@ of exposure, loads at which a curve is entered and what was seen on one sample a
 import csv
 from pathlib import Path
 
+from csvrows import csv_rows
+
 from reduction.published.printed_cells import cells_of, errata_of, number_of
 
 ROOM = Path(__file__).parent / "golden" / "published"
@@ -79,8 +81,7 @@ def said(text):
 
 def claims_typed(report):
     """Rows of the second typing of the claims of the text."""
-    with (ROOM / report / "claims.csv").open(encoding="utf-8", newline="") as lines:
-        return list(csv.DictReader(lines))
+    return csv_rows(ROOM / report / "claims.csv")
 
 
 def faults_of_the_claims(report, of_text):

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from commandruns import answered
 
 DOCS = Path(__file__).parents[2] / "docs" / "assemblies"
 RAW = Path(__file__).parents[2] / "raw" / "tmt-synthetic"
@@ -214,8 +215,7 @@ def test_every_node_is_written(command, tmp_path):
 def test_an_assembly_is_exported_as_one_line(command, tmp_path):
     path = written(tmp_path)
     done = command("export", path, "--to", "json", "--out", tmp_path / "a.json", "--json")
-    assert done.returncode == 0, done.stderr
-    answer = json.loads(done.stdout)
+    answer = answered(done)
     found = assembly(command, path)
     written_ = json.loads((tmp_path / "a.json").read_text())["values"]
     assert written_["tension"] == pytest.approx(found["tension"])

@@ -5,6 +5,7 @@ import shutil
 
 import pyarrow.parquet
 import pytest
+from commandruns import answered
 
 
 @pytest.fixture(scope="module")
@@ -17,8 +18,7 @@ def processed(synthetic, static, tmp_path_factory):
 
 
 def rows_of(done):
-    assert done.returncode == 0, done.stderr
-    return json.loads(done.stdout)["rows"]
+    return answered(done)["rows"]
 
 
 def test_a_question_is_answered_as_a_table(command, processed):

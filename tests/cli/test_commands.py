@@ -1,6 +1,5 @@
 """The commands on small campaigns: what they answer, what they refuse, and what they leave alone."""
 
-import csv
 import json
 import re
 import shutil
@@ -10,6 +9,8 @@ from pathlib import Path
 
 import pytest
 import smallcampaign
+from commandruns import answered
+from csvrows import csv_rows
 
 from reduction.archive.open import open_archive
 
@@ -56,8 +57,7 @@ def reduced(reduced_once, tmp_path):
 def test_check_prints_what_it_found_and_writes_nothing(small, command):
     before = sorted(small.rglob("*"))
     done = command("check", small / "raw" / "campaign.toml", "--json", cwd=small)
-    assert done.returncode == 0, done.stderr
-    answer = json.loads(done.stdout)
+    answer = answered(done)
     assert [test["id"] for test in answer["tests"]] == ["A", "B"]
     assert [test["n_cycles"] for test in answer["tests"]] == [10, 10]
     assert answer["tests"][0]["n_rows"] == 7632
@@ -100,8 +100,10 @@ def test_a_failed_test_keeps_its_older_product_and_lets_the_others_run(reduced, 
     assert "A.csv:1001 [crosshead_ft]" in statuses["A"]["message"]
     assert "ovrflw" in done.stderr and "Traceback" not in done.stderr
     assert (reduced / "processed" / "small" / "A.nc").read_bytes() == old
-    with (reduced / "processed" / "small" / "status.csv").open(newline="") as file:
-        assert {row["test"]: row["status"] for row in csv.DictReader(file)}["A"] == "failed"
+    assert {
+        row["test"]: row["status"]
+        for row in csv_rows(reduced / "processed" / "small" / "status.csv")
+    }["A"] == "failed"
     # the marks of A can no longer be used: B is made without them, and says which and why
     assert statuses["B"]["status"] == "check"
     assert (reduced / "processed" / "small" / "B.nc").read_bytes() != beside
@@ -168,8 +170,7 @@ def test_a_log_in_steps_gives_one_product_a_step(small, command):
         )
     )
     done = command("run", campaign, "--json", cwd=small)
-    assert done.returncode == 0, done.stderr
-    statuses = {test["id"]: test["n_cycles"] for test in json.loads(done.stdout)["tests"]}
+    statuses = {test["id"]: test["n_cycles"] for test in answered(done)["tests"]}
     assert statuses == {"A.first-five": 5, "A.hold": 0}
     names = {path.name for path in (small / "processed" / "small").glob("*.nc")}
     assert names == {"A.first-five.nc", "A.hold.nc"}
@@ -371,8 +372,7 @@ def test_whatever_a_product_says_is_part_of_what_makes_it_unchanged(reduced, com
             )
         )
     done = command("run", campaign, "--json", "--test", "A", cwd=reduced)
-    assert done.returncode == 0, done.stderr
-    assert json.loads(done.stdout)["tests"][0]["status"] == "check"
+    assert answered(done)["tests"][0]["status"] == "check"
 
 
 @pytest.mark.nightly
@@ -411,8 +411,7 @@ def test_marks_of_a_log_in_steps_serve_the_other_tests_as_before(reduced, comman
 def test_one_test_alone_leaves_the_rows_of_the_others_in_the_status(reduced, command):
     campaign = reduced / "raw" / "campaign.toml"
     assert command("run", campaign, "--quiet", "--test", "B", cwd=reduced).returncode == 0
-    with (reduced / "processed" / "small" / "status.csv").open(newline="") as file:
-        rows = {row["test"]: row for row in csv.DictReader(file)}
+    rows = {row["test"]: row for row in csv_rows(reduced / "processed" / "small" / "status.csv")}
     assert rows["A"]["status"] == "check" and "after position" in rows["A"]["message"]
     assert rows["B"]["status"] == "unchanged" and "after position" in rows["B"]["message"]
 

@@ -7,6 +7,8 @@ import re
 import numpy as np
 import pytest
 import xarray as xr
+from commandruns import answered
+from csvrows import csv_rows
 
 from reduction.archive.dataset_builder import SCHEMA_VERSION
 from reduction.archive.open import open_archive
@@ -190,8 +192,7 @@ def test_export_of_a_campaign_is_the_composite_and_its_header_says_so(command, s
     done = command(
         "export", synthetic.processed, "--specimen", "new", "--to", "json", "--out", out, "--json"
     )
-    assert done.returncode == 0, done.stderr
-    answer, written = json.loads(done.stdout), json.loads(out.read_text())
+    answer, written = answered(done), json.loads(out.read_text())
     whole = composite(command, synthetic.processed, "--specimen", "new")
     assert written["values"]["tension"] == pytest.approx(whole["tension"])
     assert answer["curve"] == "composite of 7 tests, mean of both branches; one curve, no loop"
@@ -281,8 +282,7 @@ def test_a_table_names_pieces_in_words_and_its_notes_once(command, tmp_path):
     path = tmp_path / "u.csv"
     # far from a test, which the file says too
     assert command("composite", "rubber-tether-used", "--out", path).returncode == 4
-    with path.open(newline="", encoding="utf-8") as lines:
-        first, *others = csv.DictReader(lines)
+    first, *others = csv_rows(path)
     assert {"T-1 cycles", "T-6 cycles"} < {row["piece"] for row in others}
     assert "a straight line from zero" in first["source"]
     assert {row["source"] for row in others} == {""}

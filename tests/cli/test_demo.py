@@ -1,9 +1,7 @@
 """The campaigns that come with the package are copied and run; nothing that is there is lost."""
 
-import json
-
 import pytest
-from commandruns import ROOT
+from commandruns import ROOT, answered
 from shortcampaign import write_short
 
 from reduction.cli import campaigns
@@ -27,8 +25,7 @@ def test_the_campaigns_of_a_checkout_are_those_of_raw():
 def test_each_campaign_is_copied_and_run(one_short, command):
     folder = one_short / "Prüf stand ü"
     done = command("demo", folder, "--json")
-    assert done.returncode == 0, done.stderr
-    (answer,) = json.loads(done.stdout)["campaigns"]
+    (answer,) = answered(done)["campaigns"]
     assert {test["id"] for test in answer["tests"]} == {"A", "B"}
     assert (folder / "raw" / "short" / "A.csv").is_file()
     assert (folder / "processed" / "short" / "A.nc").is_file()

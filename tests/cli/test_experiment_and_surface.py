@@ -1,10 +1,11 @@
 """`reduction experiment` and `reduction surface`: from a plan to a form to a surface, and refusals."""
 
 import csv
-import json
 
 import numpy as np
 import pytest
+from commandruns import answered
+from csvrows import csv_rows
 
 SPEC = """
 [experiment]
@@ -63,11 +64,6 @@ def told(done, status, *texts):
     assert "Traceback" not in line and not done.stdout
 
 
-def answered(done):
-    assert done.returncode == 0, done.stderr
-    return json.loads(done.stdout)
-
-
 def test_the_fifteen_runs_of_the_report_by_rising_peak_load(plan):
     answer = answered(plan("--json"))
     runs = answer["runs"]
@@ -121,8 +117,7 @@ def test_a_screening_has_dummies_and_the_smallest_effect_to_expect(plan, tmp_pat
 def test_a_form_that_was_filled_in_gives_the_law_back(plan, fit, tmp_path):
     done = plan("--out", "sheet.csv")
     assert done.returncode == 0 and "run sheet: sheet.csv" in done.stdout
-    with (tmp_path / "sheet.csv").open(newline="") as file:
-        rows = list(csv.DictReader(file))
+    rows = csv_rows(tmp_path / "sheet.csv")
     coded = [[float(row[f"{name} [coded]"]) for name in (
         "frequency", "mean_tension", "tension_amplitude")] for row in rows]  # fmt: skip
     for row, value in zip(rows, stiffness(coded), strict=True):
@@ -372,18 +367,15 @@ def test_a_surface_is_written_with_its_analysis_of_variance_and_figures(tmp_path
         [np.ones(15), coded, coded**2, f * mean, f * amplitude, mean * amplitude]
     )
     wanted, residual, *_ = np.linalg.lstsq(terms, y)
-    with (tables / "anova.csv").open(newline="") as file:
-        squares = {row["source"]: row for row in csv.DictReader(file)}
+    squares = {row["source"]: row for row in csv_rows(tables / "anova.csv")}
     assert float(squares["residuals"]["sum_of_squares"]) == pytest.approx(residual[0], rel=1e-9)
     assert float(squares["residuals"]["degrees_of_freedom"]) == 5
     total = float(np.sum((y - y.mean()) ** 2))
     assert float(squares["total"]["sum_of_squares"]) == pytest.approx(total, rel=1e-9)
-    with (tables / "coefficients.csv").open(newline="") as file:
-        found = {row["label"]: row for row in csv.DictReader(file)}
+    found = {row["label"]: row for row in csv_rows(tables / "coefficients.csv")}
     assert float(found["B1"]["coefficient"]) == pytest.approx(wanted[0], rel=1e-9)
     assert found["B1"]["response"] == "'=stiffness"
-    with (tables / "runs.csv").open(newline="") as file:
-        runs = list(csv.DictReader(file))
+    runs = csv_rows(tables / "runs.csv")
     assert [float(row["'=stiffness fitted"]) for row in runs] == pytest.approx(terms @ wanted)
     page = (tmp_path / "made" / "index.html").read_text(encoding="utf-8")
     assert page.count("contour-0-") >= 3
@@ -410,8 +402,11 @@ def test_an_energy_per_length_keeps_its_unit_in_print_and_tables(tmp_path, comma
     assert done.returncode == 0, done.stderr
     assert "loss [J m-1]" in done.stdout
     assert "J m-1 Hz-2" in done.stdout
-    with (tmp_path / "made" / "tables" / "coefficients.csv").open(newline="") as file:
-        rows = [row for row in csv.DictReader(file) if row["term"] == "mean_tension^2"]
+    rows = [
+        row
+        for row in csv_rows(tmp_path / "made" / "tables" / "coefficients.csv")
+        if row["term"] == "mean_tension^2"
+    ]
     assert [row["unit"] for row in rows] == ["J m-1", "N"]
     assert [row["unit_engineering"] for row in rows] == ["J m-1 N-2", "N-1"]
     head = (tmp_path / "made" / "tables" / "runs.csv").read_text(encoding="utf-8").splitlines()[0]

@@ -1,11 +1,12 @@
 """The command export: what it writes of an archive and of a published line, and how it refuses."""
 
-import csv
 import json
 from pathlib import Path
 
 import numpy as np
 import pytest
+from commandruns import answered
+from csvrows import csv_rows
 from export_readers import moordyn_sections, moordyn_table, orcaflex
 
 from reduction.archive.open import reading
@@ -19,8 +20,7 @@ def test_a_reduced_test_becomes_a_deck_and_its_table(command, synthetic, tmp_pat
         "export", archive, "--specimen", "new", "--to", "moordyn", "--out", tmp_path / "t.dat",
         "--linear-density", "0.6 kg/m", "--json",
     )  # fmt: skip
-    assert done.returncode == 0, done.stderr
-    answer = json.loads(done.stdout)
+    answer = answered(done)
     assert answer["files"] == [str(tmp_path / "t_table.txt"), str(tmp_path / "t.dat")]
     assert answer["synthetic"] is True
     assert answer["curve"].startswith("mean of the ascending and descending branches")
@@ -137,8 +137,7 @@ def test_a_test_without_cycles_is_exported_by_its_rise(command, nylon_campaign, 
     done = command("export", archive, "--to", "csv", "--out", out)
     assert done.returncode == 0, done.stderr
     assert done.stdout.startswith("line-1: composite of 1 test, ascending branch")
-    with out.open() as file:
-        rows = list(csv.DictReader(file))
+    rows = csv_rows(out)
     strain, tension = (
         np.array([float(row[name]) for row in rows]) for name in ("strain [1]", "tension [N]")
     )
@@ -267,8 +266,7 @@ def test_a_share_of_the_break_strength_is_one_tension_for_every_option(command, 
         path = tmp_path / f"leg{number}.dat"
         done = command("export", line, *SYROPE, "--greatest-mean-tension", greatest, "--out", path,
                        "--json")  # fmt: skip
-        assert done.returncode == 0, done.stderr
-        told.append(json.loads(done.stdout)["sources"][-1])
+        told.append(answered(done)["sources"][-1])
     assert "greatest mean tension" in " ".join(told)
     assert told[0] == told[1]
 

@@ -1,10 +1,10 @@
 """Hostile logs, campaigns, tables, paths and names: a status and a message, soon and in little memory."""
 
-import csv
 import os
 import tomllib
 
 import pytest
+from csvrows import csv_rows
 from hostile import DeadlinePassed, alone, complaints, deadline, in_here
 from hostile_text import CASES, HEADER, campaign, log, one_line, rows, sparse
 
@@ -61,8 +61,7 @@ def test_a_first_campaign_of_strangers_files_is_toml_and_names_them_as_they_are(
     document = tomllib.loads((tmp_path / "campaign.toml").read_text())
     assert set(document) - {"tests"} == {"campaign", "specimens", "defaults", "layouts"}
     assert "a link that leads out of the folder" in (tmp_path / "campaign.toml").read_text()
-    with (tmp_path / "tests.csv").open(newline="") as file:
-        written = {row["file"].removeprefix("'") for row in csv.DictReader(file)}
+    written = {row["file"].removeprefix("'") for row in csv_rows(tmp_path / "tests.csv")}
     assert written == set(names)
 
 

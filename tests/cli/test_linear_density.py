@@ -1,11 +1,12 @@
 """A mass per length that a campaign states: in the archive, the tables, the look-up, the export."""
 
-import csv
 import json
 import shutil
 from pathlib import Path
 
 import pytest
+from commandruns import answered
+from csvrows import csv_rows
 
 from reduction.archive.open import open_archive
 
@@ -47,8 +48,7 @@ def test_an_archive_without_one_has_no_such_variable(synthetic):
 
 
 def test_it_is_in_the_table_of_specimens(processed):
-    with (processed / "tables" / "specimens.csv").open(newline="") as file:
-        rows = {row["specimen"]: row for row in csv.DictReader(file)}
+    rows = {row["specimen"]: row for row in csv_rows(processed / "tables" / "specimens.csv")}
     assert float(rows["new"]["linear_density [kg m-1]"]) == pytest.approx(0.6)
     assert rows["used"]["wet_linear_density [kg m-1]"] == ""
 
@@ -73,8 +73,7 @@ def test_an_export_needs_nobody_to_state_it_again(command, processed, tmp_path, 
         "export", processed / source, "--specimen", "new", "--to", "moordyn", "--out",
         tmp_path / "t.dat", "--json",
     )  # fmt: skip
-    assert done.returncode == 0, done.stderr
-    assert json.loads(done.stdout)["linear_density"]["value"] == pytest.approx(0.6)
+    assert answered(done)["linear_density"]["value"] == pytest.approx(0.6)
     refused = command(
         "export", processed / "T-1.nc", "--specimen", "used", "--to", "moordyn", "--out",
         tmp_path / "u.dat",

@@ -1,10 +1,10 @@
 """A log above the longest record that is stored whole, from its file to its archive and page."""
 
-import csv
 import re
 
 import numpy as np
 import pytest
+from csvrows import csv_rows
 
 import reduction
 
@@ -69,8 +69,7 @@ def run(command, folder, name, *lines):
         "run", campaign, "--processed", folder / name, "--reports", folder / f"{name}-page"
     )
     assert done.returncode == 0, done.stderr
-    with (folder / name / "long" / "status.csv").open(encoding="utf-8", newline="") as file:
-        (row,) = csv.DictReader(file)
+    (row,) = csv_rows(folder / name / "long" / "status.csv")
     return folder / name / "long", row
 
 

@@ -1,6 +1,5 @@
 """None"""
 
-import csv
 import json
 import re
 from dataclasses import replace
@@ -8,6 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import xarray as xr
+from commandruns import answered
+from csvrows import csv_rows
 
 from reduction.archive.open import reading
 from reduction.batch import campaign_status
@@ -28,8 +29,7 @@ LEVELS = (
 
 def test_one_value_with_interval_range_and_source(command):
     done = command("lookup", NYLON, "--quantity", "apparent_spring_constant", *LEVELS, "--json")
-    assert done.returncode == 0, done.stderr
-    answer = json.loads(done.stdout)
+    answer = answered(done)
     assert {"value", "unit", "interval", "inside", "source", "errata"} <= answer.keys()
     assert answer["value"] == pytest.approx(3.451e4 * LBF)
     assert answer["unit"] == "N"
@@ -148,8 +148,7 @@ def test_what_the_last_run_could_not_reduce_is_answered_with_a_warning(
 
 def test_a_tether_has_its_stiffness_at_the_level_of_each_test(command, two_tests):
     done = command("lookup", two_tests, "--line", "T-1 new", "--quantity", "K_ap", "--json")
-    assert done.returncode == 0, done.stderr
-    answer = json.loads(done.stdout)
+    answer = answered(done)
     with reading(two_tests / "T-1.nc") as archive:
         place = archive["specimen"].to_numpy().astype(str).tolist().index("new")
         cycles = archive["apparent_spring_constant"].to_numpy()[place]
@@ -171,8 +170,7 @@ def test_old_line_stands_against_new(command):
         "lookup", f"{PLAIT}-new", "--quantity", "apparent_spring_constant", "--against",
         f"{PLAIT}-4-years", *LEVELS, "--json",
     )  # fmt: skip
-    assert done.returncode == 0, done.stderr
-    answer = json.loads(done.stdout)
+    answer = answered(done)
     # B1 of Table 5; the text of sec. 4.4.1 says 30 %
     assert answer["ratio"] == pytest.approx(8.252 / 6.317)
     assert answer["difference"] == pytest.approx((8.252 - 6.317) * 1e4 * LBF)
@@ -216,8 +214,7 @@ def test_a_grid_of_two_lines_is_over_what_both_boxes_have(command, tmp_path):
     # 12 % of 7,000 lb to 30 % of 6,400 lb
     assert (min(mean), max(mean)) == pytest.approx((840 * LBF, 1920 * LBF))
     assert answer["files"] == [str(tmp_path / "both.csv")]
-    with (tmp_path / "both.csv").open(newline="") as file:
-        rows = list(csv.DictReader(file))
+    rows = csv_rows(tmp_path / "both.csv")
     assert [float(row["ratio [1]"]) for row in rows] == pytest.approx(answer["ratio"])
     assert {row["is_different"] for row in rows} == {"yes", "no"}
 
@@ -241,8 +238,7 @@ def test_two_lines_of_one_source_stand_against_each_other(command, synthetic):
     ask = ("lookup", archive, "--line", "new", "--quantity", "tangent_modulus", "--strain", "100 %",
            "--branch", "descending")  # fmt: skip
     done = command(*ask, "--against", "used", "--json")
-    assert done.returncode == 0, done.stderr
-    answer = json.loads(done.stdout)
+    answer = answered(done)
     sides = [
         json.loads(command(*ask[:3], name, *ask[4:], "--json").stdout)["value"]
         for name in ("new", "used")
@@ -258,8 +254,7 @@ def test_the_line_that_was_said_is_that_of_both_tests_and_another_has_to_be_name
     ask = ("lookup", synthetic.processed / "T-1.nc", "--quantity", "branch_tension", "--strain",
            "100 %", "--branch", "ascending", "--against", synthetic.processed / "T-2.nc")  # fmt: skip
     done = command(*ask, "--line", "new", "--json")
-    assert done.returncode == 0, done.stderr
-    answer = json.loads(done.stdout)
+    answer = answered(done)
     for side, test in (("first", "T-1"), ("second", "T-2")):
         assert f"{test}, specimen new" in answer[side]["source"]
     said = command(*ask, "--line", "new").stdout
@@ -634,8 +629,7 @@ def name(size):
 
 def test_the_diameters_of_figure_4_with_ties_and_the_erratum(command):
     done = command(*ASKED, "--frequency", "0.3 Hz", "--json")
-    assert done.returncode == 0, done.stderr
-    answer = json.loads(done.stdout)
+    answer = answered(done)
     ranked = answer["ranked"]
     assert [one["line"] for one in ranked] == [name(size) for size in ("1", "0.75", "1.25")]
     # Table 3 by hand, 1e4 lbf: reference audit of the report

@@ -9,6 +9,7 @@ import netCDF4
 import numpy as np
 import pytest
 from commandruns import ROOT, run_once, shared_by_processes
+from csvrows import csv_rows
 from scipy import stats
 from typer.testing import CliRunner
 
@@ -144,8 +145,7 @@ def test_a_table_has_the_levels_that_were_tested(command, rope, tmp_path):
         "--medium", "wet", "--out", out,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
-    with out.open(newline="") as file:
-        (row,) = csv.DictReader(file)
+    (row,) = csv_rows(out)
     with reading(rope / "R02.nc") as archive:
         own = float(archive[f"test_{K_AP}"][0])
     assert float(row[f"{K_AP} [N]"]) == pytest.approx(own, rel=1e-4)

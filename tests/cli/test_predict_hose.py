@@ -1,10 +1,11 @@
 """`reduction predict hose`: what is printed, the keys of --json, the files, and refusals."""
 
-import csv
 import json
 
 import numpy as np
 import pytest
+from commandruns import answered
+from csvrows import csv_rows
 
 from reduction.archive.open import open_archive
 
@@ -47,11 +48,6 @@ def predict(tmp_path, command):
         return command("predict", "hose", "gumby.toml", *options, cwd=tmp_path)
 
     return run
-
-
-def answered(done):
-    assert done.returncode == 0, done.stderr
-    return json.loads(done.stdout)
 
 
 def rows(text):
@@ -152,8 +148,10 @@ def test_out_has_archive_tables_and_a_page_with_the_same_numbers(predict, tmp_pa
         assert archive["tension"].values[0].tolist() == answer["tension"]
         assert archive.attrs["raw_file"] == "gumby.toml"
         assert "--out" not in archive.attrs["command"]
-    with (tmp_path / "made" / "tables" / "predictions.csv").open(newline="") as file:
-        assert [float(row["tension [N]"]) for row in csv.DictReader(file)] == answer["tension"]
+    assert [
+        float(row["tension [N]"])
+        for row in csv_rows(tmp_path / "made" / "tables" / "predictions.csv")
+    ] == answer["tension"]
     page = (tmp_path / "made" / "index.html").read_text(encoding="utf-8")
     assert f'data-value="{answer["events"]["working"]["tension"]!r}"' in page
     assert "Prediction of hose gumby" in page and "SYNTHETIC DATA" not in page

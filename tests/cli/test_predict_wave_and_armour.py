@@ -1,13 +1,13 @@
 """`reduction predict wave-load` and `armour`: text, keys of --json, files, exit statuses."""
 
-import csv
-import json
-
 import numpy as np
 import pytest
+from commandruns import answered
+from csvrows import csv_rows
 from predicted_cases import ARMOUR, LEAST_WAVE, WAVE, changed
 
 SETTINGS, DATA, FIT = 2, 4, 5
+
 OF_WIRE = {
     "axial_force", "shear_force", "bending_moment", "torsion_moment", "axial_stress",
     "bending_stress", "torsion_stress",
@@ -24,16 +24,6 @@ def predict(tmp_path, command):
         return command("predict", what, "case.toml", *options, cwd=tmp_path)
 
     return run
-
-
-def answered(done):
-    assert done.returncode == 0, done.stderr
-    return json.loads(done.stdout)
-
-
-def rows(path):
-    with path.open(encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
 
 
 def test_a_wave_load_has_the_keys_of_the_contract(predict):
@@ -91,7 +81,7 @@ def test_a_theory_that_does_not_hold_is_the_first_line(predict):
 def test_a_wave_load_has_a_table_and_a_page(predict, tmp_path):
     done = predict("wave-load", WAVE, "--out", "p")
     assert done.returncode == 0, done.stderr
-    found = rows(tmp_path / "p" / "tables" / "wave_load.csv")
+    found = csv_rows(tmp_path / "p" / "tables" / "wave_load.csv")
     assert [*found[0]] == [
         "time [s]", "horizontal [N m-1]", "vertical [N m-1]", "horizontal_classic [N m-1]",
         "vertical_classic [N m-1]",
@@ -166,14 +156,14 @@ def test_an_armour_is_told_in_words(predict):
 
 def test_an_armour_has_tables_and_a_page(predict, tmp_path):
     answer = answered(predict("armour", ARMOUR, "--json", "--out", "p"))
-    wires = rows(tmp_path / "p" / "tables" / "armour_wires.csv")
+    wires = csv_rows(tmp_path / "p" / "tables" / "armour_wires.csv")
     assert [(row["theory"], row["layer"]) for row in wires] == [
         (theory, layer) for theory in THEORIES for layer in ("inner", "outer")
     ]
     assert float(wires[0]["axial_force [N]"]) == answer["small"]["axial_force"][0]
     # the spring has no core to press on
     assert wires[4]["theory"] == "large" and wires[4]["angle_change [rad]"] == ""
-    layers = rows(tmp_path / "p" / "tables" / "armour_layers.csv")
+    layers = csv_rows(tmp_path / "p" / "tables" / "armour_layers.csv")
     assert [row["layer"] for row in layers] == ["inner", "outer"]
     tension = [float(row["layer_tension [N]"]) for row in layers]
     assert sum(tension) == pytest.approx(answer["cable"]["tension"])

@@ -1,10 +1,11 @@
 """`reduction reproduce`: text, keys of --json, files, exit statuses."""
 
-import csv
 import json
 from dataclasses import replace
 
 import pytest
+from commandruns import answered
+from csvrows import csv_rows
 
 from reduction.published import reproduce_page as reports
 from reduction.published.printed_cells import REPORTS, cells_of, errata_of
@@ -15,8 +16,7 @@ KEYS = {"cells", "derived", "closed", "repeated", "erratum", "open", "measured",
 
 def test_keys_of_the_contract(command):
     done = command("reproduce", "--json")
-    assert done.returncode == 0
-    answer = json.loads(done.stdout)
+    answer = answered(done)
     assert list(answer["reports"]) == list(REPORTS)
     assert all(set(counts) == KEYS for counts in answer["reports"].values())
     assert sum(one["cells"] for one in answer["reports"].values()) == len(answer["items"])
@@ -53,8 +53,7 @@ def test_page_and_table_go_to_a_folder(command, tmp_path):
     assert {path.name for path in (tmp_path / "found").iterdir()} == {
         "reproduce.html", "reproduce.csv",
     }  # fmt: skip
-    with (tmp_path / "found" / "reproduce.csv").open(encoding="utf-8", newline="") as file:
-        rows = list(csv.DictReader(file))
+    rows = csv_rows(tmp_path / "found" / "reproduce.csv")
     assert [row["printed"] for row in rows] == [cell.printed for cell in cells_of("Wang-2022")]
     assert "page: found/reproduce.html" in done.stdout
     again = command("reproduce", "Wang-2022", "--out", "found", "--json", cwd=tmp_path)

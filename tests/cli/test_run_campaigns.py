@@ -1,6 +1,5 @@
 """The main job end to end on the two campaigns of the project, against the truth and the page."""
 
-import csv
 import hashlib
 import json
 import os
@@ -12,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from csvrows import csv_rows
 from rulesofcf import held_against_cf
 
 from reduction.archive.open import in_memory, open_archive, reading
@@ -23,11 +23,6 @@ TESTS = [f"T-{n}" for n in range(1, 7)]
 TEN = {
     *TESTS, "T-4-extended", "T-4-extended-start", "T-4-extended-end", "overnight-hold",
 }  # fmt: skip
-
-
-def table(path):
-    with path.open(encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
 
 
 @cache
@@ -75,7 +70,7 @@ def test_products_stand_where_the_contract_says(synthetic):
     assert {f"tables/{name}.csv" for name in ("moduli", "cycles", "relaxation", "columns")} <= set(
         files
     )
-    assert [row["test"] for row in table(synthetic.processed / "status.csv")] != []
+    assert [row["test"] for row in csv_rows(synthetic.processed / "status.csv")] != []
     assert (synthetic.reports / "index.html").stat().st_size < 15e6
 
 
@@ -110,7 +105,7 @@ def test_strain_against_the_truth(synthetic, test):
 
 
 def test_slips_of_the_extended_test_are_found_and_dated(synthetic):
-    rows = table(synthetic.processed / "tables" / "slips.csv")
+    rows = csv_rows(synthetic.processed / "tables" / "slips.csv")
     assert [row["specimen"] for row in rows] == ["new", "new"]
     assert {row["test"] for row in rows} == {"T-4-extended"}
     for row, onset in zip(rows, (601, 1501), strict=True):
@@ -125,14 +120,14 @@ def test_synthetic_data_say_so_wherever_they_go(synthetic):
             assert "synthetic" in archive.attrs["source"].lower()
     for path in (synthetic.processed / "tables").glob("*.csv"):
         if path.name != "columns.csv":
-            assert all(row["synthetic"] == "yes" for row in table(path)), path.name
+            assert all(row["synthetic"] == "yes" for row in csv_rows(path)), path.name
     assert "SYNTHETIC" in (synthetic.reports / "index.html").read_text(encoding="utf-8")
 
 
 def test_first_tests_have_no_history_and_later_ones_the_sum_of_it(synthetic):
     rows = {
         (row["test"], row["specimen"]): row
-        for row in table(synthetic.processed / "tables" / "history.csv")
+        for row in csv_rows(synthetic.processed / "tables" / "history.csv")
     }
     assert float(rows["T-1", "new"]["earlier_cycles [1]"]) == 0
     assert float(rows["T-6", "new"]["earlier_cycles [1]"]) == 50
@@ -190,7 +185,7 @@ def test_a_check_lists_strain_models_where_there_are_some(process):
 
 def test_static_test_is_reduced_and_its_odd_rows_are_flagged(static):
     assert static.done.returncode == 0, static.done.stderr
-    rows = {row["clock"]: row for row in table(static.processed / "tables" / "stepwise.csv")}
+    rows = {row["clock"]: row for row in csv_rows(static.processed / "tables" / "stepwise.csv")}
     assert len(rows) == 15
     flags = {clock: row["step_flag"] for clock, row in rows.items() if row["step_flag"]}
     assert set(flags) == {"1205", "1325"}

@@ -1,12 +1,12 @@
 """Comparisons end to end: three specimens in one test, and static beside dynamic tests."""
 
-import csv
 import shutil
 import tomllib
 from pathlib import Path
 
 import numpy as np
 import pytest
+from csvrows import csv_rows
 
 pytestmark = pytest.mark.slow
 
@@ -14,8 +14,7 @@ RAW = Path(__file__).parents[2] / "raw"
 
 
 def table(folder, name):
-    with (folder / f"{name}.csv").open(encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
+    return csv_rows(folder / f"{name}.csv")
 
 
 def run(command, folder):
@@ -185,6 +184,5 @@ def test_a_logged_fill_pressure_is_compared_beside_the_tension(command, tmp_path
 
 
 def known_pressure(name):
-    with (RAW / "hose-synthetic" / "truth" / name).open(encoding="utf-8") as lines:
-        rows = list(csv.DictReader(line for line in lines if not line.startswith("#")))
+    rows = csv_rows(RAW / "hose-synthetic" / "truth" / name, comment="#")
     return np.array([[float(row[key]) for row in rows] for key in ("strain", "fill_pressure_psi")])

@@ -8,6 +8,7 @@ from pathlib import Path
 import netCDF4
 import numpy as np
 import pytest
+from commandruns import answered
 
 from reduction.archive import open as opening
 from reduction.archive.open import open_archive
@@ -131,8 +132,7 @@ def test_runs_with_one_log_are_told(folder):
 
 def test_a_check_lists_runs_pulls_and_what_would_go_slack(command):
     done = command("check", RAW / "campaign.toml", "--json")
-    assert done.returncode == 0, done.stderr
-    (found,) = json.loads(done.stdout)["experiments"]
+    (found,) = answered(done)["experiments"]
     assert (found["id"], found["kind"]) == ("nylon", "box-behnken")
     assert found["runs"] == found["runs_found"] == [f"R{number:02d}" for number in range(1, 16)]
     assert found["runs_failed"] == [] and found["notes"] == []

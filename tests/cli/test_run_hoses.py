@@ -1,12 +1,12 @@
 """Two synthetic hoses, from their logs and their designs to a verdict and what was built."""
 
-import json
 import shutil
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
+from commandruns import answered
 from commandruns import run_campaign as run_by_command
 from measured_hoses import Truth
 from rulesofcf import held_against_cf
@@ -184,8 +184,7 @@ def test_the_command_compare_gives_what_the_campaign_gives(run, comparisons, com
     ended = command(
         "compare", run.processed / "L-64.nc", spec, "--json", "--out", tmp_path / "products"
     )
-    assert ended.returncode == 0, ended.stderr
-    answer = json.loads(ended.stdout)
+    answer = answered(ended)
     # the text, the archive and the page did not say so
     assert answer["synthetic"] is True
     with open_archive(tmp_path / "products" / "comparisons.nc") as archive:

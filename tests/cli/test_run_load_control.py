@@ -1,9 +1,8 @@
 """Tests under load control, end to end: creep at constant tension, and cycles of tension."""
 
-import csv
-
 import numpy as np
 import pytest
+from csvrows import csv_rows
 from scipy.signal import lfilter
 
 pytestmark = pytest.mark.slow
@@ -65,8 +64,7 @@ def run(command, folder, time, position, tension, *lines):
 
 
 def table(folder, name):
-    with (folder / f"{name}.csv").open(encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
+    return csv_rows(folder / f"{name}.csv")
 
 
 @pytest.fixture(scope="module")
@@ -111,8 +109,7 @@ def test_a_relaxation_test_stated_as_creep_is_a_check(command, tmp_path):
     strain = np.interp(time, [0, 20, 24], [0, 0, 0.3])
     tension = np.interp(time, [20, 24], [0, 1]) * (300 + 200 * np.exp(-(time - 24) / 100))
     run(command, tmp_path, time, 1 + strain, tension, 'kind = "creep"')
-    with (tmp_path / "processed/load-control/status.csv").open(encoding="utf-8") as file:
-        (row,) = csv.DictReader(file)
+    (row,) = csv_rows(tmp_path / "processed/load-control/status.csv")
     assert row["status"] == "check"
     assert "the machine held the position" in row["message"]
     assert 'kind = "relaxation"' in row["message"]

@@ -1,11 +1,12 @@
 """A campaign of outcomes without a log, and the same beside tests: from the table to the page."""
 
-import csv
 import json
 import shutil
 from pathlib import Path
 
 import pytest
+from commandruns import answered
+from csvrows import csv_rows
 from rulesofcf import held_against_cf
 
 from reduction.archive.open import open_archive
@@ -63,13 +64,7 @@ def run(command, folder):
         "run", folder / "campaign.toml", "--processed", folder / "p", "--reports", folder / "r",
         "--json",
     )  # fmt: skip
-    assert done.returncode == 0, done.stderr
-    return json.loads(done.stdout)
-
-
-def read(path):
-    with path.open(encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
+    return answered(done)
 
 
 def test_a_check_counts_the_outcomes_and_writes_nothing(command, folder, tmp_path):
@@ -106,10 +101,10 @@ def test_outcomes_alone_give_archive_tables_and_report(run, folder):
 @pytest.mark.usefixtures("run")
 def test_numbers_are_those_that_made_the_table(folder):
     tables = folder / "p" / "lines" / "tables"
-    (exposure,) = read(tables / "exposure.csv")
+    (exposure,) = csv_rows(tables / "exposure.csv")
     assert float(exposure["strength_slope [N year-1]"]) == pytest.approx(-600 * 4.4482216152605)
     assert float(exposure["share_lost_per_year [year-1]"]) == pytest.approx(600 / 6500)
-    (life,) = read(tables / "load_life.csv")
+    (life,) = csv_rows(tables / "load_life.csv")
     assert (life["failed_count"], life["suspended_count"]) == ("6", "1")
     # a load in pounds-force over the strength on the sheet of the specimen
     assert float(life["peak_load_ratio_low [1]"]) == pytest.approx(0.27)

@@ -1,7 +1,6 @@
 """Campaigns on several workers: the same bytes, whoever does the work and whoever dies at it."""
 
 import contextlib
-import csv
 import json
 import os
 import platform
@@ -13,6 +12,7 @@ from dataclasses import replace
 
 import psutil
 import pytest
+from csvrows import csv_rows
 from manytests import ROOT, archives, products, run, start, wait_for, write_many
 from nopage import leave_out_page
 
@@ -68,8 +68,7 @@ def _dask(opened, *words):
 
 
 def of_tests(folder):
-    with (folder / "processed" / "many" / "status.csv").open(newline="") as file:
-        return {row["test"]: row for row in csv.DictReader(file)}
+    return {row["test"]: row for row in csv_rows(folder / "processed" / "many" / "status.csv")}
 
 
 def is_at_work(folder, *, made=1):

@@ -1,17 +1,11 @@
 """No number of a synthetic campaign's tables lacks its uncertainty, or columns.csv says why."""
 
-import csv
-
 import pytest
+from csvrows import csv_rows
 
 pytestmark = pytest.mark.slow
 
 _WORDLESS = ("", "label", "is an uncertainty")
-
-
-def read(path):
-    with path.open(encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
 
 
 def is_number(text):
@@ -30,10 +24,10 @@ def tables(request):
 
 
 def test_every_numeric_column_has_its_uncertainty_or_columns_csv_says_why(tables):
-    explained = {(row["table"], row["column"]): row for row in read(tables / "columns.csv")}
+    explained = {(row["table"], row["column"]): row for row in csv_rows(tables / "columns.csv")}
     checked = 0
     for path in sorted(tables.glob("*.csv")):
-        rows = read(path)
+        rows = csv_rows(path)
         header = list(rows[0])
         for place, column in enumerate(header):
             cells = [row[column] for row in rows if row[column]]
@@ -59,7 +53,7 @@ _UNKNOWN = {
 
 def test_every_number_that_has_a_column_for_its_uncertainty_has_one_in_it(tables):
     for path in sorted(tables.glob("*.csv")):
-        for row in read(path):
+        for row in csv_rows(path):
             for column, cell in row.items():
                 base, found, unit = column.partition("_standard_uncertainty")
                 if not found or base.endswith("_random") or base in _UNKNOWN:
@@ -69,7 +63,7 @@ def test_every_number_that_has_a_column_for_its_uncertainty_has_one_in_it(tables
 
 
 def test_what_instruments_share_is_more_than_scatter_in_what_is_a_plain_reading(tables):
-    rows = read(tables / "relaxation.csv")
+    rows = csv_rows(tables / "relaxation.csv")
     assert rows
     for row in rows:
         tension = float(row["hold_initial_tension [N]"])

@@ -5,6 +5,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
+from csvrows import csv_rows
 from published_typings import (
     ROOM,
     cells_in_order,
@@ -20,8 +21,7 @@ HERE = ROOM / REPORT
 
 
 def typed(name):
-    with open(HERE / name, encoding="utf-8", newline="") as lines:
-        return list(csv.DictReader(lines))
+    return csv_rows(HERE / name)
 
 
 def printed_of(table):
@@ -335,8 +335,10 @@ NEUTRAL = ("sec 1.2.1", "stretch hose", "neutral wrap angle")
 
 def test_stated_numbers_of_a_third_reading():
     cells = {cell.key: cell for cell in cells_of("WHOI-2004-06")}
-    with (ROOM / "WHOI-2004-06" / "stated_numbers.csv").open(encoding="utf-8") as lines:
-        stated = {row["quantity"]: float(row["value"]) for row in csv.DictReader(lines)}
+    stated = {
+        row["quantity"]: float(row["value"])
+        for row in csv_rows(ROOM / "WHOI-2004-06" / "stated_numbers.csv")
+    }
     assert cells[NEUTRAL].printed == f"about {stated.pop('neutral_angle'):g} degrees"
     assert stated.keys() == PLACES.keys()
     for name, place in PLACES.items():

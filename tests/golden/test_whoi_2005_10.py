@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from csvrows import csv_rows
 
 from reduction.lines.assembly import (
     SeriesPart,
@@ -339,8 +340,7 @@ MISPRINTS = {
 
 
 def segments_of(table):
-    with open(HERE / f"whoi_2005_10_table_{table}.csv", encoding="utf-8") as lines:
-        typed = list(csv.DictReader(line for line in lines if not line.startswith("#")))
+    typed = csv_rows(HERE / f"whoi_2005_10_table_{table}.csv", comment="#")
     place = {}
     for row in typed:
         key = (row["test"], row["tether"])

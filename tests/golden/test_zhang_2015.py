@@ -1,10 +1,10 @@
 """Tables 5 to 8 of Zhang et al. (2015), as printed, and the answer that its own physics gives."""
 
-import csv
 from pathlib import Path
 
 import numpy as np
 import pytest
+from csvrows import csv_rows
 from scipy import integrate, optimize
 
 from reduction.prediction.wave_load import _find_extremes, immerse_hose, wave_load
@@ -38,8 +38,7 @@ LEFT_OUT = "4.00"  # of Stokes' rows, in both of their columns of Table 8
 
 
 def typed(theory):
-    with open(TABLE_7, encoding="utf-8") as lines:
-        rows = list(csv.DictReader(line for line in lines if not line.startswith("#")))
+    rows = csv_rows(TABLE_7, comment="#")
     return [row for row in rows if row["theory"] == theory]
 
 

@@ -4,10 +4,9 @@ raschii measures z from the bed.  Its Stokes wave of second order has the veloci
 of that theory, and with them the celerity of the next order; so comparisons are at time 0.
 """
 
-import csv
-
 import numpy as np
 import pytest
+from csvrows import csv_rows
 from measured_logs import LOGS
 from raschii import AiryWave, FentonWave, StokesWave, check_breaking_criteria
 
@@ -152,8 +151,7 @@ def test_the_limit_of_miche_is_that_of_raschii(depth):
 @pytest.mark.skipif(not KINEMATICS.exists(), reason="computed waves are not part of the project")
 @pytest.mark.parametrize("theory", MAKERS)
 def test_stored_kinematics_of_raschii_come_back(theory):
-    with open(KINEMATICS, encoding="utf-8") as lines:
-        rows = [row for row in csv.DictReader(lines) if row["model"] == theory]
+    rows = [row for row in csv_rows(KINEMATICS) if row["model"] == theory]
     assert len(rows) > 100
     n_wet = 0
     for row in rows:
@@ -176,8 +174,7 @@ def test_stored_kinematics_of_raschii_come_back(theory):
 
 @pytest.mark.skipif(not KINEMATICS.exists(), reason="computed waves are not part of the project")
 def test_stokes_is_nearer_to_the_stream_function_than_airy():
-    with open(KINEMATICS, encoding="utf-8") as lines:
-        rows = [row for row in csv.DictReader(lines) if row["model"] == "Fenton"]
+    rows = [row for row in csv_rows(KINEMATICS) if row["model"] == "Fenton"]
     misses = {airy_wave: [], stokes_wave: []}
     for row in rows:
         place = {name: float(value) for name, value in row.items() if name != "model"}

@@ -5,6 +5,7 @@ import json
 
 import numpy as np
 import pytest
+from csvrows import csv_rows
 from measured_logs import LOGS, needs_measured_logs
 from typer.testing import CliRunner
 
@@ -18,8 +19,7 @@ DIGITS = 1e-8
 
 
 def rows(name):
-    with (BOX / name).open(encoding="ascii", newline="") as file:
-        return list(csv.DictReader(file))
+    return csv_rows(BOX / name)
 
 
 def answer(*arguments):

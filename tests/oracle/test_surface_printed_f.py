@@ -4,11 +4,11 @@ Which of them follow from the printed r2, and with which degrees of freedom, is 
 tables as printed; 3.48 is the critical value they are printed against.
 """
 
-import csv
 from decimal import Decimal
 
 import numpy as np
 import pytest
+from csvrows import csv_rows
 from measured_logs import LOGS, needs_measured_logs
 
 from reduction.experiments.least_squares_fit import statistics_from_r2
@@ -36,8 +36,7 @@ FAILING = {
 
 @pytest.fixture(scope="module")
 def columns():
-    with TABLE.open(encoding="utf-8", newline="") as file:
-        found = {tuple(row[key] for key in COLUMN): row for row in csv.DictReader(file)}
+    found = {tuple(row[key] for key in COLUMN): row for row in csv_rows(TABLE)}
     return found
 
 

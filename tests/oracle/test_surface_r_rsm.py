@@ -1,9 +1,8 @@
 """Two published Box-Behnken experiments against the fits of R 4.2.2 with rsm 2.10.6."""
 
-import csv
-
 import numpy as np
 import pytest
+from csvrows import csv_rows
 from measured_logs import LOGS, needs_measured_logs
 
 from reduction.experiments.response_surfaces import fit_surfaces
@@ -17,8 +16,7 @@ pytestmark = needs_measured_logs
 
 
 def rows(name):
-    with (DATA / name).open(encoding="ascii", newline="") as file:
-        return list(csv.DictReader(line for line in file if not line.startswith("#")))
+    return csv_rows(DATA / name, comment="#")
 
 
 def numbers(name, column):

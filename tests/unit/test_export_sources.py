@@ -1,12 +1,12 @@
 """Line types from an archive, a look-up, a composite curve, with their spread."""
 
-import csv
 import json
 from dataclasses import replace
 
 import numpy as np
 import pytest
 import xarray as xr
+from csvrows import csv_rows
 from export_lines import line
 from export_sources import LEVELS, source
 from predicted_hoses import dataset, predicted
@@ -528,8 +528,7 @@ def test_every_table_of_a_test_has_the_uncertainty_of_its_curve(
     wanted = {"standard": both, "random_standard": random, "shared_standard": shared}
     for form in ("csv", "json", "netcdf"):
         export_line(one, form, tmp_path / form)
-    with (tmp_path / "csv").open(newline="") as file:
-        rows = list(csv.DictReader(file))
+    rows = csv_rows(tmp_path / "csv")
     document = json.loads((tmp_path / "json").read_text())
     with xr.open_dataset(tmp_path / "netcdf") as found:
         for part, value in wanted.items():

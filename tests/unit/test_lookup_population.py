@@ -1,11 +1,11 @@
 """Tolerance limits against published tables of factors and by trial; specimens as one line."""
 
-import csv
 import json
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from csvrows import csv_rows
 from typer.testing import CliRunner
 
 import reduction
@@ -141,8 +141,7 @@ def test_the_command_prints_factors_and_writes_every_specimen(monkeypatch, tmp_p
     done = CliRunner().invoke(app, [*asked, "--out", str(out)], catch_exceptions=False)
     assert done.exit_code == 0, done.output
     assert "factor 5.144" in done.output
-    with out.open(newline="") as file:
-        rows = list(csv.DictReader(file))
+    rows = csv_rows(out)
     assert [float(row["specimen_4 [N]"]) for row in rows] == [VALUES[3], 2 * VALUES[3]]
     assert float(rows[0]["lower_limit [N]"]) == pytest.approx(
         1.0075e7 - 5.144 * 3.774917e5 - 1.96 * 5e4, rel=1e-4

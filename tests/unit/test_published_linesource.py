@@ -1,11 +1,11 @@
 """Published lines as they are looked up, against numbers typed from the tables."""
 
-import csv
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from csvrows import csv_rows
 
 from reduction.lines.composite import CompositeRule, compose
 from reduction.lines.line_lookup import look_up
@@ -348,8 +348,7 @@ OPEN = {("T-1", "new")}
 
 
 def rows():
-    with TABLE.open(encoding="utf-8") as lines:
-        return list(csv.DictReader(line for line in lines if line[0] != "#"))
+    return csv_rows(TABLE, comment="#")
 
 
 @pytest.mark.parametrize("tether", ["new", "used"])

@@ -17,6 +17,7 @@ from compared_hoses import (
     judged_as,
     trading,
 )
+from reportparts import column, numbers, traces
 
 from reduction.archive.write import write_archive
 from reduction.cli.output import CommandOutput
@@ -59,22 +60,9 @@ def view(named, **options):
     return one
 
 
-def column(table, heading):
-    place = next(i for i, name in enumerate(table.columns) if name.startswith(heading))
-    return [row[place].text for row in table.rows]
-
-
 def values(table, heading):
     place = next(i for i, name in enumerate(table.columns) if name.startswith(heading))
     return [row[place].value for row in table.rows]
-
-
-def traces(figure):
-    return {trace["name"]: trace for trace in figure.data}
-
-
-def numbers(values):
-    return np.array([np.nan if one is None else one for one in values])
 
 
 def all_figures(one):

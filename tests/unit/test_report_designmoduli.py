@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import xarray as xr
+from reportparts import texts
 
 from reduction.report.answer_tables import (
     _at_one_strain,
@@ -56,10 +57,6 @@ def make_view(test="T-1", *, units="si", kind="rubber tether", whole=(1.2e6, 1.1
         "strain_bin": [0.9, 1.1, 1.3], "cycle": np.arange(1, 11),
     }  # fmt: skip
     return TestView(test, xr.Dataset(data, own, {"test": test}), units)
-
-
-def texts(table):
-    return [[cell.text for cell in row] for row in table.rows]
 
 
 def test_a_row_says_range_branches_and_cycles():

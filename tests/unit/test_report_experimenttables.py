@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from experiment_views import CODED, law_experiment, view_of
 from experiments import HIGH, LOW, STRENGTH, screening_experiment, surface_experiment
+from reportparts import texts
 
 from reduction.report.experiment_tables import (
     anova_table,
@@ -37,10 +38,6 @@ POUND = 4.4482216152605  # exactly, in newton
 
 def law(frequency, mean, amplitude):
     return 1000 + 50 * frequency + 200 * mean - 30 * amplitude + 40 * mean**2 + 9 * mean * amplitude
-
-
-def texts(table):
-    return [[cell.text for cell in row] for row in table.rows]
 
 
 def column(table, start):

@@ -20,6 +20,7 @@ from predicted_hoses import (
     stretch_at,
     working_tension,
 )
+from reportparts import traces
 
 from reduction.archive.write import write_archive
 from reduction.prediction.cord_curve import CordCurve
@@ -63,10 +64,6 @@ def view(*arguments, units="si", synthetic="", **options):
 def bare(**options):
     """A hose below the neutral angle with neither uncertainty nor idle layers."""
     return predicted("stiff", 50.0, uncertain={}, layers=(), **options)
-
-
-def traces(figure):
-    return {trace["name"]: trace for trace in figure.data}
 
 
 def figures_of(section):

@@ -9,6 +9,7 @@ import plotly.graph_objects as go
 import pytest
 import xarray as xr
 from pagefigures import figures_of
+from reportparts import column, texts
 
 from reduction.archive.campaign_products import outcomes_to_dataset
 from reduction.archive.rope_properties import properties_to_dataset
@@ -68,11 +69,6 @@ SURVIVED = [
 
 def view(outcomes, synthetic="", units="us"):
     return OutcomeView(tuple(outcomes), {"synthetic": synthetic}, units)
-
-
-def column(table, heading):
-    place = next(i for i, name in enumerate(table.columns) if name.startswith(heading))
-    return [row[place].text for row in table.rows]
 
 
 def test_strength_has_its_change_against_new_with_an_interval():
@@ -324,10 +320,6 @@ def ropes():
 
 def views():
     return {"D": TestView("test-0", level()), "Q": TestView("test-1", held())}
-
-
-def texts(table):
-    return [[cell.text for cell in row] for row in table.rows]
 
 
 def test_a_rope_has_its_steps_in_order_and_those_without_an_archive_are_left_out(ropes):

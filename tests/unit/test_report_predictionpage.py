@@ -6,6 +6,7 @@ import numpy as np
 import plotly.graph_objects as go
 import pytest
 from predicted_cases import ARMOUR, LEAST_ARMOUR, WAVE, changed
+from reportparts import numbers, traces
 
 from reduction.campaign.prediction_specs import load_armour_case, load_wave_case
 from reduction.prediction.armour import predict_armour_case
@@ -59,14 +60,6 @@ def armour(tmp_path):
         )
 
     return predicted
-
-
-def traces(figure):
-    return {trace["name"]: trace for trace in figure.data}
-
-
-def numbers(values):
-    return np.array([np.nan if one is None else one for one in values])
 
 
 def shown_of(table):

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from experiment_views import law_experiment, view_of
+from reportparts import texts
 from scipy import stats
 
 from reduction.report.answer_tables import answer_budgets, budget_sentences, budget_table
@@ -82,10 +83,6 @@ def make_view(stated=STATED, *, is_old=False, units="si", test="T-1", sources=SO
         ),
         units,
     )  # fmt: skip
-
-
-def texts(table):
-    return [[cell.text for cell in row] for row in table.rows]
 
 
 def test_scatter_has_the_factor_of_its_degrees_of_freedom_and_what_is_shared_that_of_known_things():

@@ -1,9 +1,8 @@
 """Tables of predicted hoses: from their archive alone, every number with its unit and its u."""
 
-import csv
-
 import numpy as np
 import pytest
+from csvrows import csv_rows
 from predicted_hoses import LAYERS, UNCERTAIN, dataset, pick_up_strain, predicted, working_tension
 
 from reduction.archive.csv_definitions import PREDICTION_TABLES
@@ -16,14 +15,9 @@ def tables(tmp_path):
     def written(*hoses, synthetic="yes"):
         write_archive(dataset(*hoses, synthetic=synthetic), tmp_path / "predictions.nc")
         paths = write_tables((), tmp_path / "tables", predictions=tmp_path / "predictions.nc")
-        return {path.stem: read(path) for path in paths}
+        return {path.stem: csv_rows(path) for path in paths}
 
     return written
-
-
-def read(path):
-    with path.open(encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
 
 
 @pytest.fixture

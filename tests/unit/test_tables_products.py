@@ -1,10 +1,9 @@
 """Tables of comparisons and of outcomes."""
 
-import csv
-
 import numpy as np
 import pytest
 from compared_hoses import LOOP, NOT_APART, agreeing, dataset, differing, trading
+from csvrows import csv_rows
 
 from reduction.archive.campaign_products import outcomes_to_dataset
 from reduction.archive.csv_columns import OUTCOME_TABLES
@@ -15,15 +14,10 @@ from reduction.experiments.outcomes import Outcome
 from reduction.record.measurement import Origin, Source, Step
 
 
-def read(path):
-    with path.open(encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
-
-
 def written(folder, *named, **options):
     write_archive(dataset(*named, **options), folder / "comparisons.nc")
     paths = write_tables((), folder / "tables", comparisons=folder / "comparisons.nc")
-    return {path.stem: read(path) for path in paths}
+    return {path.stem: csv_rows(path) for path in paths}
 
 
 @pytest.fixture(scope="module")
@@ -168,7 +162,9 @@ def test_outcomes_fill_every_table_of_theirs(tables_of_outcomes):
 
 
 def test_numbers_stand_in_si_under_a_header_with_the_unit(tables_of_outcomes):
-    strength, exposure, fatigue, load_life, _ = map(read, tables_of_outcomes([*BREAKS, *CYCLES]))
+    strength, exposure, fatigue, load_life, _ = map(
+        csv_rows, tables_of_outcomes([*BREAKS, *CYCLES])
+    )
     assert [row["tensile_strength [N]"] for row in strength] == ["6500.0", "5300.0", "4100.0"]
     assert strength[1]["tensile_strength_change [1]"] == repr(5300 / 6500 - 1)
     assert strength[0]["tensile_strength_change [1]"] == ""
@@ -182,15 +178,17 @@ def test_numbers_stand_in_si_under_a_header_with_the_unit(tables_of_outcomes):
 
 def test_every_table_says_whether_the_data_are_synthetic_in_outcomes(tables_of_outcomes):
     for path in tables_of_outcomes([*BREAKS, *CYCLES])[:-1]:
-        assert {row["synthetic"] for row in read(path)} == {"yes"}
-    assert {row["synthetic"] for row in read(tables_of_outcomes(BREAKS, synthetic="")[0])} == {"no"}
+        assert {row["synthetic"] for row in csv_rows(path)} == {"yes"}
+    assert {row["synthetic"] for row in csv_rows(tables_of_outcomes(BREAKS, synthetic="")[0])} == {
+        "no"
+    }
 
 
 def test_every_column_is_explained(tables_of_outcomes):
     *paths, columns = tables_of_outcomes([*BREAKS, *CYCLES])
-    explained = {(row["table"], row["column"]): row for row in read(columns)}
+    explained = {(row["table"], row["column"]): row for row in csv_rows(columns)}
     for path in paths:
-        header = list(read(path)[0])
+        header = list(csv_rows(path)[0])
         for name, after in zip(header, [*header[1:], ""], strict=True):
             row = explained[path.name, name]
             assert row["meaning"]

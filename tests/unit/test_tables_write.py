@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
+from csvrows import csv_rows
 from experiments import ABOUT, screening_experiment, surface_experiment
 from table_cells import table_rows, text_of_columns
 
@@ -47,11 +48,6 @@ from reduction.quantities.names import QUANTITIES, RESPONSES, TEST_SCHEMA
 from reduction.quantities.row import SUFFIXES
 from reduction.record.contributions import Component, Contributions
 from reduction.record.errors import ArchiveError, SettingsError
-
-
-def read(path):
-    with path.open(encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
 
 
 @pytest.fixture(scope="session")
@@ -93,7 +89,7 @@ def test_the_paths_given_back_are_the_files(archives, tmp_path):
 
 
 def test_moduli_and_cycles_have_what_the_contract_names(tables):
-    moduli = set(read(tables / "moduli.csv")[0])
+    moduli = set(csv_rows(tables / "moduli.csv")[0])
     assert {
         "test", "specimen", "branch", "segment", "segment_tension_low [N]",
         "segment_tension_high [N]", "segment_strain_low [1]", "segment_strain_high [1]",
@@ -104,11 +100,11 @@ def test_moduli_and_cycles_have_what_the_contract_names(tables):
         "mean_strain [1]", "strain_amplitude [1]", "peak_tension [N]", "valley_tension [N]",
         "apparent_spring_constant [N]", "hysteresis_energy [J m-1]", "loss_factor [1]",
         "storage_spring_constant [N]", "loss_spring_constant [N]",
-    } <= set(read(tables / "cycles.csv")[0])  # fmt: skip
+    } <= set(csv_rows(tables / "cycles.csv")[0])  # fmt: skip
 
 
 def test_every_column_of_every_table_is_explained(tables):
-    explained = {(row["table"], row["column"]): row for row in read(tables / "columns.csv")}
+    explained = {(row["table"], row["column"]): row for row in csv_rows(tables / "columns.csv")}
     for path in tables.iterdir():
         with path.open(encoding="utf-8", newline="") as file:
             header = next(csv.reader(file))
@@ -170,7 +166,7 @@ def test_tests_stand_in_the_order_of_their_history(bare_test, write, tmp_path):
         about = replace(bare_test.description, test_id=name, order=order)
         paths.append(write(replace(bare_test, description=about)))
     write_tables(paths, tmp_path / "tables")
-    rows = read(tmp_path / "tables" / "trend.csv")
+    rows = csv_rows(tmp_path / "tables" / "trend.csv")
     assert [row["test"] for row in rows] == ["T-9", "T-3", "T-2", "T-10"]
 
 
@@ -203,12 +199,12 @@ def test_a_failed_run_keeps_the_tables_of_the_last_one(folder, tmp_path):
 
 
 def test_a_note_that_looks_like_a_formula_is_escaped(tables):
-    notes = [row["note"] for row in read(tables / "notes.csv")]
+    notes = [row["note"] for row in csv_rows(tables / "notes.csv")]
     assert "'=1+1 looks like a formula" in notes
 
 
 def test_synthetic_rows_say_so(tables):
-    assert {(row["test"], row["synthetic"]) for row in read(tables / "notes.csv")} >= {
+    assert {(row["test"], row["synthetic"]) for row in csv_rows(tables / "notes.csv")} >= {
         ("T-1", "yes"),
         ("static", "no"),
     }
