@@ -1442,8 +1442,9 @@ _OF_LINE: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "no-strain-at-failure": (
         "refusal",
-        "strain at failure not given: the strain at the peak is not known, or did not change while"
-        " the load rose to it, as with an extensometer that was taken off",
+        "strain at failure not given: the strain at the peak is not known, or did not grow while"
+        " the load rose to it: an extensometer was taken off, or the position counts the other way"
+        " (sign = -1)",
     ),
     "no-break-strength": (
         "note", "no rated break strength is stated: results relative to it are not given",

@@ -191,7 +191,8 @@ def test_a_pull_without_strain_has_a_strength_alone():
     assert found.tensile.is_break.tolist() == [True]
     assert tuple(map(str, found.notes)) == (
         "line: strain at failure not given: the strain at the peak is not known, or did not"
-        " change while the load rose to it, as with an extensometer that was taken off",
+        " grow while the load rose to it: an extensometer was taken off, or the position counts"
+        " the other way (sign = -1)",
     )
 
 
