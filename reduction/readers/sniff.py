@@ -892,9 +892,10 @@ def _look(path: Path, sheet: str | None, watch: Watch) -> _SeenTable:
     return text
 
 
-def sheets_with_tables(path: Path) -> list[str]:
-    """Names of the sheets of a workbook that contain a table of numbers."""
-    return [name for name, _ in bounded(_table_sheets, path, watch=Watch(path, _LIMITS))]
+def sheets_with_tables(path: Path) -> dict[str, int]:
+    """Sheets of a workbook that contain a table of numbers, and its rows as far as it is seen."""
+    found = bounded(_table_sheets, path, watch=Watch(path, _LIMITS))
+    return {name: len(table.rows) for name, table in found}
 
 
 _RATES = re.compile(

@@ -122,11 +122,23 @@ def _is_marks(path: Path) -> bool:
     return names >= _MARKS and any(name.startswith("near_toe") for name in names)
 
 
-def _logs_of(path: Path) -> list[_Log]:
+def _logs_of(path: Path, refused: list[str]) -> list[_Log]:
     sheets: list[str | None] = [None]
     if format_of(path) == "spreadsheet":
-        sheets = [*sheets_with_tables(path)]
+        tables = sheets_with_tables(path)
+        fewest = min(_FEWEST_READINGS, max(tables.values(), default=0))
+        sheets = [name for name, n_rows in tables.items() if n_rows >= fewest]
+        refused += [
+            f"{path.name}, sheet '{name}': {n_rows} rows, as of a table of results"
+            for name, n_rows in tables.items()
+            if n_rows < fewest
+        ]
+        if not tables:
+            refused.append(f"{path.name}: no sheet holds a table of numbers")
     return [_Log(path.name, sheet, sniff_layout(path, sheet=sheet)) for sheet in sheets]
+
+
+_FEWEST_READINGS = 10  # of a sheet beside others: testXpert adds one of means and deviations
 
 
 def starter_campaign(folder: Path) -> dict[str, str]:
@@ -150,7 +162,7 @@ def starter_campaign(folder: Path) -> dict[str, str]:
             if _is_marks(path):
                 marks.append(path.name)
                 continue
-            found = _logs_of(path)
+            found = _logs_of(path, refused)
         except LogError as error:
             refused.append(". ".join(filter(None, (f"{path.name}: {error.problem}", error.hint))))
             if path.suffix.lower() not in _NO_LOGS:

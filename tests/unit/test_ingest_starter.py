@@ -188,6 +188,22 @@ def test_the_kind_of_a_test_that_does_not_cycle_is_drafted(tmp_path, knots, kind
     assert ("# guess: the kinds in tests.csv" in files["campaign.toml"]) is bool(kind)
 
 
+def test_a_sheet_of_means_beside_the_logs_is_no_log(tmp_path):
+    """As in an export of testXpert with its statistics; synthetic."""
+    log = [["Time [s]", "Travel [mm]", "Force [N]"], *([i, i, 2.0 * i] for i in range(20))]
+    means = [["", "Fmax [N]", "dL [mm]"], ["x", 38.0, 19.0], ["s", 1.0, 0.5], ["n [%]", 2.6, 2.6]]
+    write_xlsx(tmp_path / "pulls.xlsx", {"Statistics": means, "T 1": log})
+    files = starter_campaign(tmp_path)
+    assert [row["layout"] for row in rows(files)] == ["xlsx-T-1"]
+    assert "pulls.xlsx, sheet 'Statistics': 3 rows" in files["campaign.toml"]
+
+
+def test_a_workbook_without_a_table_is_named(tmp_path):
+    write_xlsx(tmp_path / "form.xlsx", {"Form": [["Operator", "KH"], ["Rope", "R-7"]]})
+    with pytest.raises(LogError, match=r"form\.xlsx: no sheet holds a table of numbers"):
+        starter_campaign(tmp_path)
+
+
 def test_each_sheet_of_a_workbook_that_holds_a_table_is_a_log(tmp_path):
     table = [line.split(",") for line in LOG.splitlines()]
     sheet = [table[0], *([float(cell) for cell in row] for row in table[1:])]
