@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from reduction.record.errors import DataError
 from reduction.record.settings import HoldSettings
 from reduction.stages.holds.hold_selection import Hold, _Ramp
 from reduction.stages.holds.prony_series import prony_tension
@@ -825,9 +824,3 @@ def test_a_log_that_peaks_above_the_found_start_is_refused():
     for peaks in ({"logged_peak": 450.0}, {"earlier_peak": 450.0}):
         (reason,) = reasons(replace(hold(), **peaks))
         assert reason.startswith("the log peaks at 450 N")
-
-
-def test_a_hold_without_samples_is_refused():
-    empty = Hold(*[np.empty(0)] * 4, 0.0, None, 0.01)
-    with pytest.raises(DataError, match="no noise can be read"):
-        _hold_ends(empty)

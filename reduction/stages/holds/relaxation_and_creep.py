@@ -53,8 +53,8 @@ from reduction.stages.holds.ramp_end import (
 )
 from reduction.stages.holds.relaxation_numbers import (
     Rate,
+    at_last,
     creep_rate,
-    end_mean,
     logarithmic_blocks,
     on_curve,
     rate_per_decade,
@@ -68,8 +68,6 @@ from reduction.stages.standstills import Standstills
 _EMPTY = np.empty(0)
 
 FEWEST_SAMPLES = 20
-
-FINAL_SHARE = 0.05
 
 STEP_BLOCKS = 4096
 
@@ -128,8 +126,7 @@ def _hold_ends(hold: Hold) -> _Ends:
     >>> round(_hold_ends(hold).drop, 4)
     0.1875
     """
-    n_final = max(3, int(FINAL_SHARE * hold.time.size))
-    final, u_final = _at_last(hold, n_final)
+    final, u_final, n_final = at_last(shifted(hold.time, hold.ramp_end_time), hold.tension)
     first = level_at_end(
         shifted(hold.time, hold.ramp_end_time),
         hold.tension,
@@ -208,17 +205,6 @@ def _lost_in_a_decade(hold: Hold) -> float:
     part = slice(begin, stop)
     _, rate, _ = on_curve(since[part], hold.tension[part], float(since[begin]), noise=0.0)
     return float(abs(rate) * since[begin] * np.log(10))
-
-
-def _at_last(hold: Hold, n_samples: int) -> tuple[float, float]:
-    """Tension at the last sample, from a line over the logarithm of time through the last ones."""
-    series = hold.tension[-n_samples:]
-    mean, spread = end_mean(hold.tension, n_samples=n_samples)
-    since = hold.time[-n_samples:] - hold.ramp_end_time
-    if since.size < 3 or not since[0] > 0:
-        return mean, spread
-    value, _, own = on_curve(since, series, float(since[-1]), noise=reading_noise(hold.tension))
-    return value, float(np.hypot(spread, own))
 
 
 def _late_load(hold: Hold, initial: float) -> _LateLoad | None:

@@ -149,6 +149,25 @@ def end_mean(values: ArrayLike, *, n_samples: int) -> tuple[float, float]:
     return mean_of(series[-count:]), float(np.sqrt(variance))
 
 
+def at_last(since: Floats, values: Floats) -> tuple[float, float, int]:
+    """Value at the last reading, its standard uncertainty, and how many readings it is from.
+
+    From a line over the logarithm of time through the last 5 %: their mean is that in the middle of
+    them.
+    """
+    n_samples = max(3, int(_FINAL_SHARE * values.size))
+    mean, spread = end_mean(values, n_samples=n_samples)
+    last = since[-n_samples:]
+    if last.size < 3 or not last[0] > 0:
+        return mean, spread, n_samples
+    noise = reading_noise(values)
+    value, _, own = on_curve(last, values[-n_samples:], float(last[-1]), noise=noise)
+    return value, float(np.hypot(spread, own)), n_samples
+
+
+_FINAL_SHARE = 0.05
+
+
 def rate_per_decade(blocks: _LogBlocks, *, ramp_duration: float) -> Rate:
     r"""Change of a series per decade of time, by regression on block means.
 

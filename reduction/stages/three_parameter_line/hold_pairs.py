@@ -29,12 +29,18 @@ from reduction.record.arrays import as_positive, as_same_shape
 from reduction.record.errors import DataError, FitError, SettingsError
 from reduction.record.measurement import Bools, Floats, read_only_arrays
 from reduction.record.notes import Note, note
-from reduction.record.samples import empty_like, finite_extremes, sample_blocks, select_samples
+from reduction.record.samples import (
+    empty_like,
+    finite_extremes,
+    sample_blocks,
+    select_samples,
+    shifted,
+)
 from reduction.stages.holds.hold_product import HoldResult
 from reduction.stages.holds.hold_selection import Hold, select_hold
 from reduction.stages.holds.relaxation_numbers import (
     RAMP_TIMES_LEFT_OUT,
-    end_mean,
+    at_last,
     logarithmic_blocks,
 )
 from reduction.stages.moduli.least_squares import lag_one_inflation
@@ -47,6 +53,8 @@ _SHORTEST_SPAN = 0.5
 
 # a stiffness at a single time uses the readings within this factor of it
 _BESIDE_REFERENCE = 10**0.1
+
+_NEAR_REFERENCE = 0.25  # decades to either side
 
 
 @dataclass(frozen=True)
@@ -178,26 +186,22 @@ def _static_stiffness(
             needed=f"{_FEWEST_POINTS} points over {_SHORTEST_SPAN:g} decades, or among them the "
             f"reference time of {reference_time:g} s",
         )
-    share = blocks.weight / blocks.weight.sum()
-    centre, level = float((share * x).sum()), float((share * y).sum())
-    power = float((share * (x - centre) ** 2).sum())
-    slope = float((share * (x - centre) * (y - level)).sum()) / power
-    residual = np.sqrt(share) * (y - level - slope * (x - centre))
-    variance = float((residual**2).sum()) / (x.size - 2) * lag_one_inflation(residual)
-    u_slope = float(np.sqrt(variance / power))
-    u_level = float(np.sqrt(variance * (1 + centre**2 / power)))
-    at_reference = level - slope * centre
+    level, slope, u_level, u_slope = _line_at_zero(x, y, blocks.weight)
+    near = np.abs(x) < _NEAR_REFERENCE
+    if reaches and not is_short and np.count_nonzero(near) >= _FEWEST_POINTS:
+        # exponential creep is no line over the logarithm of time, but one beside the time asked for
+        level, _, u_level, _ = _line_at_zero(x[near], y[near], blocks.weight[near], n_terms=3)
     if is_short:
         slope = u_slope = float("nan")
     return _StaticStiffness(
         elapsed=blocks.elapsed,
         stiffness=y,
         reference_time=reference_time,
-        stiffness_at_reference=at_reference,
+        stiffness_at_reference=level,
         stiffness_at_reference_standard_uncertainty=u_level,
         slope_per_decade=slope,
         slope_per_decade_standard_uncertainty=u_slope,
-        stiffness_over_strength=at_reference / rated_break_strength,
+        stiffness_over_strength=level / rated_break_strength,
         notes=(
             *((note("stiffness-amid-ramp-times", reference=reference_time, ramp=ramp_duration),)
               if is_of_ramp else ()),
@@ -219,6 +223,20 @@ def _static_stiffness(
             ),
         ),
     )  # fmt: skip
+
+
+def _line_at_zero(
+    x: Floats, y: Floats, weight: Floats, n_terms: int = 2
+) -> tuple[float, float, float, float]:
+    """Value and slope at x = 0 of a line (of three terms: a parabola), and their uncertainties."""
+    root = np.sqrt(weight / weight.sum())
+    rows = np.vander(x, n_terms, increasing=True) * root[:, None]
+    inverse = np.linalg.inv(rows.T @ rows)
+    terms = inverse @ (rows.T @ (root * y))
+    residual = root * y - rows @ terms
+    variance = float(residual @ residual) / (x.size - n_terms) * lag_one_inflation(residual)
+    spread = np.sqrt(variance * np.diag(inverse))
+    return float(terms[0]), float(terms[1]), float(spread[0]), float(spread[1])
 
 
 def creep_of_hold(hold: HoldResult, *, rated_break_strength: float = float("nan")) -> CreepOfHold:
@@ -281,8 +299,6 @@ def creep_of_hold(hold: HoldResult, *, rated_break_strength: float = float("nan"
 # a hold is a step up where its tension exceeds that of the last one by this fraction of it
 _LEAST_RISE = 0.05
 
-_FINAL_SHARE = 0.05
-
 
 @dataclass(frozen=True)
 class HeldPair:
@@ -318,9 +334,12 @@ class HeldPair:
     low_strain: float = float("nan")
 
 
-def _end_of(values: Floats) -> tuple[float, float]:
-    """Mean over the end of a hold, with its standard uncertainty."""
-    return end_mean(values, n_samples=max(3, int(_FINAL_SHARE * values.size)))
+def _end_of(hold: Hold, values: Floats) -> tuple[float, float]:
+    """Value at the end of a hold, with its standard uncertainty."""
+    since, known = select_samples(
+        lambda part: np.isfinite(values[part]), shifted(hold.time, hold.ramp_end_time), values
+    )
+    return at_last(since, known)[:2]
 
 
 def _stiffness(
@@ -335,7 +354,7 @@ def _stiffness(
     (known,) = select_samples(lambda part: np.isfinite(low.strain[part]), low.strain)
     if known.size < 3:
         raise DataError("the lower hold has no strain", found=f"{known.size} readings")
-    (tension, u_tension), (strain, u_strain) = _end_of(low.tension), _end_of(known)
+    (tension, u_tension), (strain, u_strain) = _end_of(low, low.tension), _end_of(low, low.strain)
     since = high.since_centre
     later = int(np.searchsorted(since, 0.0, side="right"))
     found = _static_stiffness(
@@ -348,7 +367,7 @@ def _stiffness(
         ramp_duration=high.ramp_duration,
         rated_break_strength=strength,
     )
-    gain = (_end_of(high.tension)[0] - tension) / found.stiffness[-1]
+    gain = (_end_of(high, high.tension)[0] - tension) / found.stiffness[-1]
     level = found.stiffness_at_reference
     spread = np.hypot(
         found.stiffness_at_reference_standard_uncertainty,
@@ -399,10 +418,10 @@ def held_pairs(
     Notes
     -----
     A hold counts as higher if its mean tension exceeds that of the hold before by 5 % of
-    it; a rest between the two separates them.  Tension and strain of the lower hold are means
-    over its last 5 %, and their type A uncertainty is included in that of the stiffness; time
-    counts from the centre of the ramp.  Levels and durations are the laboratory's: only the
-    abstract of [1]_ was read, and no standard.
+    it; a rest between the two separates them.  Tension and strain of the lower hold are those at
+    its end, by a line through its last 5 %, and their type A uncertainty is included in that of the
+    stiffness; time counts from the centre of the ramp.  Levels and durations are the laboratory's:
+    only the abstract of [1]_ was read, and no standard.
 
     Examples
     --------
@@ -461,7 +480,7 @@ def held_pairs(
                     reason=reason,
                     low_tension_standard_uncertainty=ends[0][1],
                     high_tension_standard_uncertainty=ends[1][1],
-                    low_strain=_end_of(known)[0] if known.size > 2 else float("nan"),
+                    low_strain=_end_of(low, low.strain)[0] if known.size > 2 else float("nan"),
                 )
             )
     return tuple(pairs)
@@ -469,4 +488,4 @@ def held_pairs(
 
 def _level(hold: Hold, mean: float) -> tuple[float, float]:
     """Tension at the end of a hold; its mean if readings are too few for a scatter."""
-    return _end_of(hold.tension) if hold.tension.size > 2 else (float(mean), float("nan"))
+    return _end_of(hold, hold.tension) if hold.tension.size > 2 else (float(mean), float("nan"))
