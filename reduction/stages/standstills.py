@@ -303,11 +303,6 @@ def _still_blocks(
     goes further is a slow movement, with or without holds in it, and is searched
     again with windows of twice the width, and so on.
 
-    The turn of a slow cycle also stays within the tolerance for a while, but takes as
-    long again to get away from there.  A standstill is kept where the position is four
-    tolerances away within as many blocks as it lasted, before or after it, or where
-    the record never goes that far.
-
     Examples
     --------
     Rising, standing for four blocks, rising:
@@ -337,8 +332,66 @@ def _still_blocks(
         ]
     both = np.concatenate([np.empty((0, 2), dtype=np.intp), *found])
     first, last = both[np.argsort(both[:, 0])].T.copy()
-    stays = _outlasts_its_approach(least, greatest, first, last, tolerance)
-    return first[stays], last[stays]
+    return first, last
+
+
+def _levels(values: Floats, first: Integers, last: Integers, tolerance: float) -> Floats:
+    """Level of half of the readings of each interval, or NaN: the others are its edges.
+
+    Examples
+    --------
+    A rest before a slow ramp, and the turn of a slow cycle of ramps:
+
+    >>> noise = np.random.default_rng(0).normal(0, 1.0, 100)
+    >>> clock, whole = np.arange(100.0), (np.array([0]), np.array([99]))
+    >>> ramp = noise + 0.2 * np.clip(clock - 60, 0, None)
+    >>> print(_levels(ramp, *whole, tolerance=12.0).round(1))
+    [-0.2]
+    >>> print(_levels(noise + 0.2 * np.abs(clock - 50), *whole, tolerance=12.0))
+    [nan]
+    """
+    level = np.full(first.size, np.nan)
+    for index, (one, end) in enumerate(zip(first.tolist(), last.tolist(), strict=True)):
+        stride = max((end + 1 - one) // _LEVEL_SAMPLES, 1)
+        readings = take_samples(values, np.arange(one, end + 1, stride))
+        readings = np.sort(readings[np.isfinite(readings)])
+        half = readings.size // 2
+        width = readings[half:] - readings[: readings.size - half]
+        nearest = int(np.argmin(width))
+        if width[nearest] <= _LEVEL_SHARE * tolerance:
+            level[index] = readings[nearest : nearest + half + 1].mean()
+    return level
+
+
+def _without_ramps(
+    values: Floats, first: Integers, last: Integers, level: Floats, tolerance: float
+) -> tuple[Integers, Integers]:
+    """Intervals of known level without the beginning of the ramp at either end.
+
+    A slow ramp takes long to leave the noise; the last reading on the near side of the level is
+    where it begins.
+
+    Examples
+    --------
+    >>> values = np.array([0.1, -0.1, 0.2, -0.2, 0.5, 1.0, 1.5])
+    >>> whole = np.array([0]), np.array([6])
+    >>> ends = _without_ramps(values, *whole, level=np.array([0.0]), tolerance=3.0)
+    >>> print([int(one[0]) for one in ends])
+    [0, 3]
+    """
+    for i in np.flatnonzero(np.isfinite(level)):
+        away = values[first[i] : last[i] + 1] - level[i]
+        for edge, step in ((first, 1), (last, -1)):
+            ramp = np.nanmean(away[::step][: max(away.size // 8, 1)])
+            if abs(ramp) > tolerance / 8:
+                edge[i] += step * int(np.argmax(away[::step] * ramp <= 0))
+    return first, last
+
+
+_LEVEL_SAMPLES = 4096
+
+# of the tolerance, for the half of the readings nearest to each other: noise has 0.11, a ramp 0.5
+_LEVEL_SHARE = 0.22
 
 
 FEWEST_SAMPLES = 4  # two equal samples may be the two sides of a peak
@@ -430,6 +483,11 @@ def _still_intervals(
     Edges are found to the sample: there the channel comes and goes nearer to the mean than
     half the tolerance.  Missing samples do not end an interval and are not edges of one.
 
+    The turn of a slow cycle also stays within the tolerance for a while, but takes as
+    long again to get away from there.  An interval is kept where the channel is four
+    tolerances away within as long as it lasts, before or after it, where the record never goes
+    that far, or where half of its readings are at one level (a rest before a slow pull).
+
     Examples
     --------
     >>> time = np.arange(0, 130.0)
@@ -445,8 +503,15 @@ def _still_intervals(
     least, greatest = _block_extremes(values, length)
     first_block, last_block = _still_blocks(least, greatest, window=window, tolerance=tolerance)
 
+    stays = _outlasts_its_approach(least, greatest, first_block, last_block, tolerance)
     first = first_block * length
     last = np.minimum((last_block + 1) * length, values.size) - 1
+    level = np.full(first.size, np.nan)
+    level[~stays] = _levels(values, first[~stays], last[~stays], tolerance)
+    stays |= np.isfinite(level)
+    first_block, last_block, first, last, level = (
+        one[stays] for one in (first_block, last_block, first, last, level)
+    )
     centre = _interval_means(values, first, last)
     for block, step in ((first_block, 1), (last_block, -1)):  # a block that moves is not an edge
         outside = np.ones(centre.size, dtype=bool)
@@ -465,6 +530,7 @@ def _still_intervals(
     for edge, step in ((first, 1), (last, -1)):  # an edge is a sample that is not missing
         for i in np.flatnonzero(np.isnan(take_samples(values, edge))):
             edge[i] += step * np.argmax(np.isfinite(values[first[i] : last[i] + 1][::step]))
+    first, last = _without_ramps(values, first, last, level, tolerance)
 
     duration = take_samples(time, last) - take_samples(time, first)
     long_enough = (duration >= minimum_duration * (1 - 1e-6)) & (last - first + 1 >= FEWEST_SAMPLES)

@@ -360,6 +360,17 @@ def test_a_slow_ramp_is_no_standstill_and_a_hold_in_it_is_one():
     assert (first[0], last[0]) == (pytest.approx(100, abs=5), pytest.approx(139, abs=5))
 
 
+@pytest.mark.parametrize("rest", [10.0, 15.0, 20.0])
+def test_a_rest_before_a_pull_that_is_slow_for_its_noise_is_found(rest):
+    # one metre in ten minutes: 1.7 mm a second, with a noise of 1.2 mm
+    time, position, tension = pull([(0, 3), (rest, 3), (rest + 600, 4)], rate=2.0, noise=0.0012)
+    found = find(time, position, tension)
+    assert found.is_rest.tolist() == [True]
+    assert found.start_time[0] == 0
+    assert found.end_time[0] == pytest.approx(rest, abs=2)
+    assert found.mean_position[0] == pytest.approx(3, abs=0.0012)
+
+
 def test_the_turn_of_a_slow_cycle_is_no_standstill():
     level = np.abs(np.arange(800) % 200 - 100.0) / 25
     first, _ = _still_blocks(level, level + 0.1, window=4, tolerance=0.4)
