@@ -169,10 +169,9 @@ _OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             "the log was written newest first, so time runs backward: its rows are read in"
             " reverse order"
             if n_moved == n_rows - n_twice - 1
-            else "the rows of the log are not in time order: "
-            + ", ".join(
-                [f"{n_twice} duplicate row{_plural(n_twice)} left out"] * bool(n_twice)
-                + [f"rows sorted (time goes back at {n_moved} of them)"] * bool(n_moved)
+            else "; ".join(
+                [f"repeated rows (same time and readings) are left out: {n_twice}"] * bool(n_twice)
+                + [f"rows are sorted by time, which goes back at {n_moved} of them"] * bool(n_moved)
             )
             + ". Check whether the logger wrote a buffer twice or late"
         ),

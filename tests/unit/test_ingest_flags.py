@@ -52,9 +52,9 @@ def test_a_buffer_that_a_logger_writes_twice_or_late_is_put_in_order():
     late = np.r_[0:1000, 1064:1128, 1000:1064, 1128:2000]
     beside = np.sort(np.r_[0:2000, 5:2000:20])
     for rows, words in (
-        (twice, "128 duplicate rows left out"),
-        (beside, "100 duplicate rows left out"),
-        (late, "rows sorted (time goes back at 1 of them)"),
+        (twice, "repeated rows (same time and readings) are left out: 128"),
+        (beside, "repeated rows (same time and readings) are left out: 100"),
+        (late, "rows are sorted by time, which goes back at 1 of them"),
     ):
         found = flagged(record(time=TIME[rows], position=place[rows], load=load[rows]))
         np.testing.assert_array_equal(found.time, TIME)
