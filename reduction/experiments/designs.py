@@ -504,7 +504,7 @@ def _centre_and_half(low: ArrayLike, high: ArrayLike) -> tuple[Floats, Floats]:
         raise SettingsError(
             "the low and high levels do not pair up",
             found=f"shapes {bottom.shape} and {top.shape}",
-            needed="one low and one high level a factor",
+            needed="one low and one high level per factor",
         )
     wrong = np.flatnonzero(~(top > bottom))
     if wrong.size:
@@ -646,7 +646,7 @@ def engineering_levels(
         raise DataError(
             "the coded levels are not a table of runs",
             found=f"shape {runs.shape}",
-            needed="one row a run, one column a factor",
+            needed="one row per run, one column per factor",
         )
     _check_factors(factors, runs.shape[1])
     names = [factor.name for factor in factors]

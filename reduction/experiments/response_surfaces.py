@@ -87,7 +87,7 @@ def _coded_levels(
         raise SettingsError(
             "the levels do not pair up with the factors",
             found=f"levels {found.shape}, {len(factor_names)} names, low {np.shape(low)}",
-            needed="one column, one name, one low and one high level a factor",
+            needed="one column, one name, one low and one high level per factor",
         )
     if np.isinf(found).any():
         raise DataError(
@@ -361,7 +361,7 @@ def fit_surfaces(
             "there are too many runs for a surface",
             found=f"{n_runs:,}",
             needed=f"{MOST_RUNS:,} or fewer: all runs are compared with all others",
-            hint="Give one row a run, as the mean of its cycles, and not one row a sample.",
+            hint="Give one row per run, the mean of its cycles, not one row per sample.",
         )
     runs = tuple(run_names or (str(number + 1) for number in range(n_runs)))
     _require_names(runs, n_runs, "run")
@@ -524,7 +524,7 @@ def _scales(
         raise SettingsError(
             "the transforms do not pair up with the responses",
             found=", ".join(strange) or f"{len(scale)} transforms, {count} responses",
-            needed="none, log, box-cox or log-times-frequency, one for all or one a response",
+            needed="none, log, box-cox or log-times-frequency, one for all or one per response",
         )
     power = np.array([0.0 if kind.startswith("log") else 1.0 for kind in scale])
     interval = np.full((count, 2), np.nan)

@@ -51,7 +51,7 @@ def _two_level_columns(columns: ArrayLike) -> Floats:
         raise DataError(
             "the design is not a table of two levels",
             found=f"shape {levels.shape}, levels {sorted(set(levels.ravel().tolist()))[:5]}",
-            needed="-1 and +1, one row a run",
+            needed="-1 and +1, one row per run",
         )
     return levels
 

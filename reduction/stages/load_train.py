@@ -295,7 +295,7 @@ def _half_width(
         raise DataError(
             f"test '{record.test_id}': its log has too few samples for the acceleration of the "
             "mass between specimen and load cell",
-            found=f"{period / step:.1f} samples a cycle",
+            found=f"{period / step:.1f} samples per cycle",
             needed=f"{_FEWEST_A_CYCLE} or more",
             hint="Without them the tension cannot be corrected for inertia.",
         )

@@ -563,7 +563,7 @@ def test_counted_cycles_that_are_missing_or_without_stroke_are_noted(twenty):
 def test_a_table_of_one_row_a_cycle_is_refused_as_such():
     time = 4.0 * np.arange(60)
     greatest = 1.13 + 1e-5 * np.sin(np.arange(60))
-    with pytest.raises(DataError, match=r"one row a cycle; found 60 rows.*reduction surface"):
+    with pytest.raises(DataError, match=r"one row per cycle; found 60 rows.*reduction surface"):
         find(time, greatest, counter=np.arange(1, 61))
 
 

@@ -620,10 +620,10 @@ def find_cycles(
         counter = None
     if counter is not None and changes_of_count(counter).size > _AT_TURNS * counter.size:
         raise DataError(
-            "the log has one row a cycle",
+            "the log has one row per cycle",
             found=f"{counter.size} rows, and {changes_of_count(counter).size} changes of the"
             " cycle_counter",
-            needed=f"{FEWEST_SAMPLES} readings a cycle or more",
+            needed=f"{FEWEST_SAMPLES} readings per cycle or more",
             hint=f"It is a table of the values of each cycle. {_BETWEEN}",
         )
     if counter is not None:
