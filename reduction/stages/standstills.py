@@ -823,8 +823,8 @@ def _are_turns(
     With noise in the channel, the turn of a slow sine stays within the tolerance as long as a
     standstill might.  At a turn, and a quarter of the interval to either side, the channel is
     a parabola; at a standstill it is a level left by straight or rounded ramps.  Where the
-    sums of squares differ by less than a factor of two, the median of the intervals at the same
-    level decides.
+    mean squares differ by less than a factor of eight, those of all intervals decide that are as
+    long, within a factor of two, at the same level.
 
     Examples
     --------
@@ -837,7 +837,7 @@ def _are_turns(
     >>> print(_are_turns(time, stand, first[:1] - 2, last[:1] + 2, tolerance=0.1))
     [False]
     """
-    ratio = np.full(first.size, np.nan)
+    misfits = np.full((2, first.size), np.nan)
     for index, (one, end) in enumerate(zip(first.tolist(), last.tolist(), strict=True)):
         beside = max(ceil(_BESIDE * (end - one)), 1)
         if one < beside or end + beside >= values.size:
@@ -849,20 +849,28 @@ def _are_turns(
         if known.sum() < _FEWEST_OF_TURN:
             continue
         middle, half = (time[one] + time[end]) / 2, (time[end] - time[one]) / 2
-        parabola, stand = _misfits(seconds[known] - middle, series[known], half)
-        ratio[index] = np.log2(max(parabola, _TINY) / max(stand, _TINY))
+        # where the ramps begin is a fourth constant of a standstill, their shape half of one
+        free = known.sum() - np.array([3, 4.5])
+        of_both = np.array(_misfits(seconds[known] - middle, series[known], half))
+        misfits[:, index] = np.maximum(of_both, _TINY) / free
+    ratio = np.log2(misfits[0] / misfits[1])
     is_turn: Bools = ratio < 0
-    unclear = np.flatnonzero(np.abs(ratio) < 1)
+    unclear = np.flatnonzero(np.abs(ratio) < _UNCLEAR)
     level = _interval_means(values, first, last)
+    length = np.log2(np.maximum(time[last] - time[first], _TINY))
     for index in unclear.tolist():  # as the others at its level
-        alike = ratio[np.abs(level - level[index]) <= tolerance]
-        is_turn[index] = np.nanmedian(alike) < 0
+        is_near = np.abs(level - level[index]) <= tolerance
+        alike = misfits[:, is_near & (np.abs(length - length[index]) <= 1)]
+        parabolas, stands = np.nansum(alike, axis=1)
+        is_turn[index] = parabolas < stands
     return is_turn
 
 
 _TURN_SAMPLES = 400
 
 _FEWEST_OF_TURN = 6  # a parabola has three constants
+
+_UNCLEAR = 3.0  # powers of two
 
 
 def _stands(

@@ -509,3 +509,25 @@ def test_holds_of_a_valve_that_dithers_faster_than_the_log_are_all_found():
     assert found.mean_tension[0, held] == pytest.approx(levels[:-1], abs=1)
     assert found.start_time[held] == pytest.approx(30 + 620 * np.arange(6), abs=3)
     assert found.tension_tolerance < 20
+
+
+@pytest.mark.parametrize(("readings", "noise"), [(30, 0.005), (35, 0.003), (45, 0.002)])
+def test_turns_of_coarse_noisy_sines_are_no_holds_and_dwells_of_four_readings_are(readings, noise):
+    """Synthetic: eight cycles behind a hold, 800 to 3,200 N, with noise as a share of the range."""
+    clock = np.arange(8 * readings) / readings % 1
+    dwell = 4 / readings
+    rounded = (1 - np.cos(2 * np.pi * clock)) / 2
+    corners = [0, dwell / 2, 0.5 - dwell / 2, 0.5 + dwell / 2, 1 - dwell / 2, 1]
+    dwelling = np.interp(clock, corners, [0, 0, 1, 1, 0, 0])
+    rng = np.random.default_rng(3)
+    kept = {"rounded": 0, "dwelling": 0}
+    for _ in range(8):
+        for name, wave in (("rounded", rounded), ("dwelling", dwelling)):
+            shape = np.concatenate([np.linspace(-1 / 3, 0, 40), np.zeros(60), wave, np.zeros(100)])
+            load = 800 + 2400 * (shape + noise * rng.standard_normal(shape.size))
+            time = np.arange(shape.size, dtype=float)
+            found = find_tension_stands(time, 0.1 + 0.1 * shape, [load], settings=PhaseSettings())
+            ends = time[101], time[-102]
+            kept[name] += int(((found.start_time > ends[0]) & (found.end_time < ends[1])).sum())
+    assert kept["rounded"] <= 2
+    assert kept["dwelling"] >= 118  # of 15 in each of eight logs
