@@ -10,7 +10,7 @@ from typing import TypeVar
 import numpy as np
 import xarray as xr
 
-from reduction.archive.open import Opener, in_memory, reading
+from reduction.archive.open import Opener, reading
 from reduction.experiments.fit_results import FIT_REASONS, ResponseSurfaces
 from reduction.experiments.outcome_groups import odd_outcomes
 from reduction.quantities.digits import fixed_number, places_of
@@ -104,8 +104,6 @@ from reduction.report.product_views import (
     OutcomeView,
     RopeView,
     in_words,
-    view_comparisons,
-    view_hoses,
     view_outcomes,
     view_ropes,
 )
@@ -617,18 +615,16 @@ def read_campaign(
         return [(view, _make_outcome_section(view))]
 
     def experiments(data: xr.Dataset) -> list[tuple[ExperimentView, TestSection]]:
-        loaded = in_memory(data)
-        views = [
-            ExperimentView(f"experiment-{index}", loaded, index, units)
-            for index in range(loaded.sizes["experiment"])
-        ]
+        views = ExperimentView.rows_of(data, units)
         return [(view, _make_experiment_section(view, tests)) for view in views]
 
     def hoses(data: xr.Dataset) -> list[tuple[HoseView, TestSection]]:
-        return [(view, _make_hose_section(view)) for view in view_hoses(data, units)]
+        return [(view, _make_hose_section(view)) for view in HoseView.rows_of(data, units)]
 
     def compared(data: xr.Dataset) -> list[tuple[ComparisonView, TestSection]]:
-        return [(view, _make_comparison_section(view)) for view in view_comparisons(data, units)]
+        return [
+            (view, _make_comparison_section(view)) for view in ComparisonView.rows_of(data, units)
+        ]
 
     def ropes(data: xr.Dataset) -> list[tuple[RopeView, TestSection]]:
         return [(view, _make_rope_section(view)) for view in view_ropes(data, tests, units)]

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from reduction.archive.campaign_products import outcomes_of_dataset
 from reduction.archive.open import in_memory
 from reduction.archive.surfaces_dataset import is_share_of_mean, surface_names, surfaces_of
-from reduction.archive.variables import at_places, read_notes, stored
+from reduction.archive.variables import at_places, stored
 from reduction.experiments.fit_results import ResponseSurfaces
 from reduction.experiments.outcome_groups import Group
 from reduction.experiments.outcomes import Outcome
@@ -26,7 +26,6 @@ from reduction.quantities.names import QUANTITIES, RESPONSES, SCALES
 from reduction.quantities.row import COMPONENT
 from reduction.quantities.units import UnitSystem, combined_unit, display_unit
 from reduction.record.measurement import Floats, Integers
-from reduction.record.notes import Note
 from reduction.report.test_view import ArchiveView, Expanded, RowView, TestView, expand, expanded_of
 from reduction.report.text_style import DEGREES, Shown, in_order, shown
 
@@ -70,16 +69,13 @@ class OneEvent:
 class HoseView(RowView):
     """One hose on the page: a row of the archive of predictions."""
 
+    KIND = "hose"
+
     ENDS_AT: ClassVar[Mapping[str, str]] = {
         "hose_point": "strain",
         "cord_point": "cord_curve_strain",
         "hose_layer": "hose_layer_name",
     }
-
-    @property
-    def name(self) -> str:
-        """Name of the hose."""
-        return self.text("hose")
 
     @property
     def wrap_angle(self) -> float:
@@ -132,22 +128,11 @@ class HoseView(RowView):
             found.pop("deepest_slack")
         return found
 
-    @cached_property
-    def notes(self) -> tuple[Note, ...]:
-        """Notes on the hose."""
-        return read_notes(self.data, of=("note_hose", self.name))
-
     @property
     def per_length(self) -> Shown:
         """Display form of a number per length."""
         small = shown("small length", self.units)
         return Shown(f"1/{small.unit}", 1 / small.factor)
-
-
-def view_hoses(archive: xr.Dataset, units: UnitSystem) -> list[HoseView]:
-    """Return each hose of an archive of predictions, which may then be closed."""
-    data = in_memory(archive)
-    return [HoseView(f"hose-{k}", data, k, units) for k in range(data.sizes["hose"])]
 
 
 ShortVerdict = Literal["agrees", "says little", "differs", "not judged"]
@@ -204,17 +189,14 @@ class FittedNumber:
 class ComparisonView(RowView):
     """One comparison on the page: a row of the archive of comparisons."""
 
+    KIND = "comparison"
+
     ENDS_AT: ClassVar[Mapping[str, str]] = {
         "comparison_point": "strain",
         "comparison_cycle": "comparison_cycle_number",
         "parameter": "parameter_name",
         "parameter_other": "parameter_name",
     }
-
-    @property
-    def name(self) -> str:
-        """Name of the comparison."""
-        return self.text("comparison")
 
     @property
     def test(self) -> str:
@@ -349,19 +331,6 @@ class ComparisonView(RowView):
             for place in range(self.sizes["parameter"])
         )
 
-    @cached_property
-    def notes(self) -> tuple[Note, ...]:
-        """Notes on the comparison."""
-        return read_notes(self.data, of=("note_comparison", self.name))
-
-
-def view_comparisons(archive: xr.Dataset, units: UnitSystem) -> list[ComparisonView]:
-    """Return each comparison of an archive of them, which may then be closed."""
-    data = in_memory(archive)
-    return [
-        ComparisonView(f"comparison-{k}", data, k, units) for k in range(data.sizes["comparison"])
-    ]
-
 
 FORM_WORDS = {
     "del-vecchio": "Del Vecchio",
@@ -381,16 +350,13 @@ _OF_MEAN = "% of mean"
 class ExperimentView(RowView):
     """One experiment on the page: a row of the archive of experiments."""
 
+    KIND = "experiment"
+
     ENDS_AT: ClassVar[Mapping[str, str]] = {
         "run": "run_name",
         "factor": "factor_name",
         "plan_column": "plan_column_name",
     }
-
-    @property
-    def name(self) -> str:
-        """Name of the experiment."""
-        return self.text("experiment")
 
     @property
     def is_screening(self) -> bool:
@@ -480,11 +446,6 @@ class ExperimentView(RowView):
         if name not in self.data:
             return np.full((0, 0), "")
         return np.asarray(self.data.variables[name].values[self.index], dtype=np.str_)
-
-    @cached_property
-    def notes(self) -> tuple[Note, ...]:
-        """Notes on the experiment."""
-        return read_notes(self.data, of=("note_experiment", self.name))
 
     def own_rows(self, name: str) -> list[dict[str, str]]:
         """Rows of the cautions that concern this experiment."""

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import ClassVar
+from typing import ClassVar, Self
 
 import numpy as np
 import pandas as pd
@@ -598,6 +598,9 @@ class RowView(ArchiveView):
         Display units.
     """
 
+    KIND: ClassVar[str]
+    """Dimension of the rows, and the variable with their names."""
+
     ENDS_AT: ClassVar[Mapping[str, str]] = {}
     """For each dimension shared by the rows, the variable whose last known value ends a row."""
 
@@ -605,6 +608,22 @@ class RowView(ArchiveView):
     data: xr.Dataset
     index: int
     units: UnitSystem = "si"
+
+    @classmethod
+    def rows_of(cls, archive: xr.Dataset, units: UnitSystem) -> list[Self]:
+        """Every row of an archive, which may then be closed."""
+        data = in_memory(archive)
+        return [cls(f"{cls.KIND}-{k}", data, k, units) for k in range(data.sizes[cls.KIND])]
+
+    @property
+    def name(self) -> str:
+        """Name of the row."""
+        return self.text(self.KIND)
+
+    @cached_property
+    def notes(self) -> tuple[Note, ...]:
+        """Notes on the row."""
+        return read_notes(self.data, of=(f"note_{self.KIND}", self.name))
 
     @cached_property
     def sizes(self) -> dict[str, int]:

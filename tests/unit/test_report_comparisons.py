@@ -44,7 +44,7 @@ from reduction.report.prediction_tables import (
     energy_table,
     verdict_table,
 )
-from reduction.report.product_views import view_comparisons
+from reduction.report.product_views import ComparisonView
 from reduction.report.text_style import NOT_GIVEN
 
 NASTY = "</script><script>alert(1)</script> & <b>"
@@ -52,7 +52,7 @@ POUND = 4.4482216152605
 
 
 def views(*named, units="si", synthetic=""):
-    return view_comparisons(dataset(*named, synthetic=synthetic), units)
+    return ComparisonView.rows_of(dataset(*named, synthetic=synthetic), units)
 
 
 def view(named, **options):

@@ -45,7 +45,7 @@ from reduction.report.prediction_tables import (
     hose_event_table,
     layer_table,
 )
-from reduction.report.product_views import view_hoses
+from reduction.report.product_views import HoseView
 from reduction.report.text_style import NOT_GIVEN
 
 NASTY = "</script><script>alert(1)</script> & <b>\u2028"
@@ -53,7 +53,7 @@ SHORT_CORD = CordCurve(np.array([0.0, 0.2]), np.array([0.0, 130.0]))
 
 
 def views(*hoses, units="si", **options):
-    return view_hoses(dataset(*hoses, **options), units)
+    return HoseView.rows_of(dataset(*hoses, **options), units)
 
 
 def view(*arguments, units="si", synthetic="", **options):
