@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import comb, sqrt
+from math import comb
 from typing import Any
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
-from reduction.record.arrays import run_blocks
+from reduction.record.arrays import noise_of_differences, run_blocks
 from reduction.record.errors import DataError
 from reduction.record.measurement import Bools, Floats, Integers, Quality, Record
 from reduction.record.notes import Note, note
@@ -135,8 +135,6 @@ _WINDOWS, _WINDOW = 64, 1024
 
 _SPIKE_TO_NEIGHBOURS = 3.0
 
-_MAD_TO_SIGMA = 1.4826
-
 _STEP = np.sqrt(12.0)  # one step of a quantised value over its standard deviation
 
 
@@ -242,11 +240,8 @@ def _noise_of(values: Floats, order: int = 2) -> tuple[float, float]:
         windows[np.isfinite(windows)]
     )  # successive readings of a ramp are many codes apart
     step = float(np.diff(levels).min()) if levels.size > 1 else 0.0
-    bends = np.abs(np.diff(windows, n=order, axis=1))
-    bends = bends[np.isfinite(bends)]
-    spread = float(np.median(bends)) if bends.size else 0.0
-    # variance of a difference over that of a reading
-    return max(_MAD_TO_SIGMA * spread / sqrt(comb(2 * order, order)), step / _STEP), step
+    bends = np.diff(windows, n=order, axis=1)
+    return max(noise_of_differences(bends, comb(2 * order, order)), step / _STEP), step
 
 
 def _usual_code(values: Floats) -> float:

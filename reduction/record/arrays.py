@@ -70,6 +70,19 @@ def as_same_shape(**named: ArrayLike) -> tuple[Floats, ...]:
     return tuple(arrays.values())
 
 
+MAD_TO_DEVIATION = 1.4826
+"""Standard deviation of a normal error over the median of its magnitude. [1]"""
+
+
+def noise_of_differences(differences: Floats, weights: float) -> float:
+    """Standard deviation of white noise behind finite differences; 0 where none is finite.
+
+    ``weights`` is the sum of the squares of their weights.
+    """
+    size = np.abs(differences[np.isfinite(differences)])
+    return float(MAD_TO_DEVIATION * np.median(size) / np.sqrt(weights)) if size.size else 0.0
+
+
 def runs_of_true(flags: Bools) -> Integers:
     """First and past-the-last place of each unbroken run of true values, shape (n_runs, 2).
 

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reduction.record.arrays import runs_of_true
+from reduction.record.arrays import MAD_TO_DEVIATION, runs_of_true
 from reduction.record.measurement import Floats
 from reduction.record.samples import take_samples
 from reduction.record.settings import Waveform
@@ -121,7 +121,9 @@ def find_levels(
     read = _of_cycles(times, values, cycles)
     if not np.isfinite(read).all():
         return ()
-    noise = _NOISE * np.median(np.abs(np.diff(read, axis=1)), axis=1) * 1.4826 / np.sqrt(2)
+    noise = (
+        _NOISE * np.median(np.abs(np.diff(read, axis=1)), axis=1) * MAD_TO_DEVIATION / np.sqrt(2)
+    )
     change = _in_steps(read[:, :-1], read[:, 1:], noise)
     runs: list[tuple[int, int]] = []
     alike = runs_of_true(change < 0.5)  # steps between cycles: of one fewer than there are cycles

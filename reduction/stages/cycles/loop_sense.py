@@ -23,6 +23,7 @@ from typing import Literal
 
 import numpy as np
 
+from reduction.record.arrays import MAD_TO_DEVIATION
 from reduction.record.measurement import Bools, Floats, Integers
 from reduction.record.notes import Note, note
 from reduction.record.samples import take_samples
@@ -215,7 +216,7 @@ def unlike_neighbours(
         noise.append(reading_noise(driven[part]) / half)
     if not left:
         return 0.0
-    scatter = 1.4826 * finite_median(np.abs(np.array(gone) - np.median(gone)))
+    scatter = MAD_TO_DEVIATION * finite_median(np.abs(np.array(gone) - np.median(gone)))
     share = max(float(np.median(left)), scatter)
     n_readings = float(np.median(cycles.last - cycles.first))
     # a turn is uncertain by up to half a reading

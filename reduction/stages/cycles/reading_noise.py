@@ -13,9 +13,12 @@ References
 
 from __future__ import annotations
 
+from math import comb
+
 import numpy as np
 import scipy
 
+from reduction.record.arrays import noise_of_differences
 from reduction.record.measurement import Floats
 from reduction.record.samples import step_of_codes, take_samples
 from reduction.stages.cycles.cycle_product import Cycles
@@ -59,24 +62,16 @@ def reading_noise(values: Floats) -> float:
     0.25
     """
     level = values[:_NOISE_SAMPLES]
-    found = _noise_by_differences(np.diff(level, n=3), 3)
+    found = noise_of_differences(np.diff(level, n=3), comb(6, 3))
     for order in (5, 7):
         higher = np.diff(level, n=order)
         if np.count_nonzero(np.isfinite(higher)) < _FEWEST_DIFFERENCES:
             break
-        by_higher = _noise_by_differences(higher, order)
+        by_higher = noise_of_differences(higher, comb(2 * order, order))
         if not by_higher < found / 2:
             break
         found = by_higher
     return found
-
-
-def _noise_by_differences(differences: Floats, order: int) -> float:
-    """Standard deviation of white noise that has such differences of this order."""
-    size = np.abs(differences[np.isfinite(differences)])
-    if size.size == 0:
-        return 0.0
-    return float(1.4826 * np.median(size) / np.sqrt(scipy.special.comb(2 * order, order)))
 
 
 _FEWEST_DIFFERENCES = 48  # of a higher order: with fewer, those of noise may differ by half
@@ -102,10 +97,9 @@ def noise_beside_sine(values: Floats, readings: float) -> float:
     for harmonic in (1, 2, 3):
         weights = np.convolve(weights, [1.0, -2 * np.cos(2 * np.pi * harmonic / readings), 1.0])
     left = np.convolve(values[:_NOISE_SAMPLES], weights, mode="valid")
-    left = left[np.isfinite(left)]
-    if left.size == 0:
+    if not np.isfinite(left).any():
         return usual
-    return min(usual, float(1.4826 * np.median(np.abs(left)) / np.sqrt(np.sum(weights**2))))
+    return min(usual, noise_of_differences(left, float(np.sum(weights**2))))
 
 
 FEW_READINGS = 24

@@ -33,7 +33,7 @@ import scipy
 from numpy.typing import ArrayLike
 from scipy.special import chdtri, ndtri
 
-from reduction.record.arrays import as_finite
+from reduction.record.arrays import MAD_TO_DEVIATION, as_finite
 from reduction.record.errors import DataError
 from reduction.record.measurement import Bools, Floats, Integers
 from reduction.record.notes import Note, note
@@ -76,8 +76,6 @@ LONGEST_WINDOW = 128
 FIRST_SAMPLE = (
     10  # the softening of the first ten cycles has no common form: no step is dated there
 )
-
-MAD_TO_SIGMA = 1.4826
 
 
 @dataclass(frozen=True)
@@ -214,7 +212,7 @@ def _without_outliers(values: Floats) -> Floats:
     median = np.median(np.lib.stride_tricks.sliding_window_view(padded, 5), axis=-1)
     distance = np.abs(values - median)
     # By the median alone a rounded series would appear free of noise.
-    spread = max(MAD_TO_SIGMA * float(np.median(distance)), _neighbour_noise(values))
+    spread = max(MAD_TO_DEVIATION * float(np.median(distance)), _neighbour_noise(values))
     return np.where(distance > 6 * spread, median, values)
 
 
@@ -248,7 +246,7 @@ def _colour(size: Floats, onset: Integers, white: float, reach: int) -> float | 
     rest = size[np.abs(onset - top) > reach]
     if rest.size < reach:
         return None
-    return MAD_TO_SIGMA * float(np.median(np.abs(rest))) / white
+    return MAD_TO_DEVIATION * float(np.median(np.abs(rest))) / white
 
 
 def _noise_memory(residual: Floats) -> float:

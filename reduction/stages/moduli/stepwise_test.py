@@ -15,7 +15,7 @@ from math import pi, sqrt
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reduction.record.arrays import as_finite, as_positive, as_same_shape
+from reduction.record.arrays import MAD_TO_DEVIATION, as_finite, as_positive, as_same_shape
 from reduction.record.errors import DataError
 from reduction.record.measurement import Bools, Floats, Integers, StepReadings, read_only_arrays
 from reduction.record.notes import Note, note
@@ -38,8 +38,6 @@ _AT_ENDS = 2.0
 _ODD_SLOPES = 2.0
 
 _FEWEST = 5  # readings: four slopes
-
-_MAD_TO_DEVIATION = 1.4826
 
 _MEDIAN_TO_MEAN = sqrt(pi / 2)
 
@@ -80,7 +78,7 @@ def _recover_gauge_length(
     gauge = as_positive("length", rows[0][known]) / stretch
     median = float(np.median(gauge))
     away = np.abs(gauge - median)
-    sound = gauge[away <= _INCONSISTENT * _MAD_TO_DEVIATION * np.median(away)]
+    sound = gauge[away <= _INCONSISTENT * MAD_TO_DEVIATION * np.median(away)]
     scatter = float(sound.std(ddof=1)) if sound.size > 1 else 0.0
     deviation = max(scatter, length_uncertainty / float(np.median(stretch)))
     return median, _MEDIAN_TO_MEAN * deviation / sqrt(gauge.size)
@@ -107,7 +105,7 @@ def _find_inconsistent_readings(
     lengths, printed = as_same_shape(length=length, printed_strain=printed_strain)
     difference = np.abs(lengths / gauge_length - 1 - printed)
     known = difference[np.isfinite(difference)]
-    usual = _MAD_TO_DEVIATION * float(np.median(known)) if known.size else 0.0
+    usual = MAD_TO_DEVIATION * float(np.median(known)) if known.size else 0.0
     usual = max(usual, length_uncertainty / gauge_length)
     return np.nan_to_num(difference) > max(_INCONSISTENT * usual, STRAIN_DIGIT)
 

@@ -29,6 +29,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
+from reduction.record.arrays import MAD_TO_DEVIATION
 from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import Floats, Integers
 from reduction.record.samples import step_that_fills, take_samples
@@ -48,8 +49,6 @@ _FEWEST_SPACINGS = 3  # of samples, in the narrowest window tried
 _CONTRADICTED = 2.0  # standard deviations of a narrower window's slope
 
 _FEWEST_DIFFERENCES = 5
-
-_TO_DEVIATION = 1.4826  # standard deviation of a normal error over its median magnitude
 
 # Halfway over a jump two windows agree on the mean of both sides; beside it their difference is a
 # fifth to a third of the jump, and the greatest error of each is half of it.
@@ -444,7 +443,7 @@ def _roughness(slope: Floats, half_window: int) -> Floats:
         known.sort(axis=-1)
         middle = np.maximum(np.isfinite(known).sum(axis=-1, keepdims=True) - 1, 0) // 2
         size = np.take_along_axis(known, middle, axis=-1)[..., 0]
-        found = np.minimum(found, _TO_DEVIATION * size / sqrt(signs @ common @ signs))
+        found = np.minimum(found, MAD_TO_DEVIATION * size / sqrt(signs @ common @ signs))
     return found[..., None]
 
 

@@ -16,6 +16,7 @@ from math import sqrt
 import numpy as np
 from numpy.typing import ArrayLike
 
+from reduction.record.arrays import MAD_TO_DEVIATION
 from reduction.record.errors import DataError
 from reduction.record.measurement import (
     Bools,
@@ -682,7 +683,7 @@ def _on_scatter(model: StrainModel, is_stretched: Bools, expected: float) -> tup
             note("marks-differ", model.specimen, method=model.method, rms=rms, expected=expected)
         )
     # the median, so that one misread mark does not hide itself
-    usual = max(expected, 1.4826 * float(np.median(np.abs(residual))))
+    usual = max(expected, MAD_TO_DEVIATION * float(np.median(np.abs(residual))))
     if residual.size > 3 and usual > 0:
         rows = np.flatnonzero(is_stretched)[np.abs(residual) > _OUTLIER_NOTICE * usual]
         notes += [
