@@ -43,6 +43,7 @@ from reduction.lines.export_sources import (
     line_from_lookup,
 )
 from reduction.lines.export_tables import ValueTable
+from reduction.lines.line_search import names_with_words
 from reduction.lines.published_source import published_sources
 from reduction.lines.surface_table import printed_table, surface_table
 from reduction.quantities.digits import plain_number
@@ -546,8 +547,7 @@ def _line_of(
             needed="the archive of a test that `reduction run` could reduce",
         )  # fmt: skip
     if not path.is_file():
-        words = source.lower().replace("-", " ").split()
-        near = [name for name in published if all(word in name for word in words)]
+        near = names_with_words(source, published)
         raise SettingsError(
             "unknown source to export",
             found=source,

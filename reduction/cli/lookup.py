@@ -36,6 +36,7 @@ from reduction.lines.line_search import (
     conditions_of,
     find_lines,
     in_conditions,
+    names_with_words,
 )
 from reduction.lines.lookup_product import (
     LEVEL_DIMENSIONS,
@@ -96,8 +97,7 @@ def lines_of_source(source: str) -> list[LineSource]:
         return lines
     if _is_path(source):
         raise _no_products(path)
-    words = source.lower().replace("-", " ").split()
-    near = [name for name in published if all(word in name for word in words)]
+    near = names_with_words(source, published)
     raise SettingsError(
         f"no line is called '{source}'",
         needed="an archive, a folder of a processed campaign, or "

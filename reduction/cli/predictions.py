@@ -136,16 +136,23 @@ def predict_hose(path: Path, *, out: Path | None, output: CommandOutput) -> None
             source=hash_source(path, path.name),
             command=f"reduction predict hose {path.name}",
         )
-        tables = write_tables([], out / "tables", predictions=out / "predictions.nc")
-        page = write_report(out, out, units=output.system)
-        output.say(f"archive: {out / 'predictions.nc'}")
-        output.say(f"tables: {len(tables)} in {out / 'tables'}")
-        output.say(f"figures: {page}")
+        archive = out / "predictions.nc"
+        tables = write_tables([], out / "tables", predictions=archive)
+        _say_written(archive, tables, output)
     output.answer(
         _hose_document(hose)
         | {"designs": [_designed(one) for one in designs]}
         | {"out": None if out is None else str(out)}
     )
+
+
+def _say_written(archive: Path, tables: Sequence[Path], output: CommandOutput) -> None:
+    """Write the page of an archive beside it, and say what is there."""
+    out = archive.parent
+    page = write_report(out, out, units=output.system)
+    output.say(f"archive: {archive}")
+    output.say(f"tables: {len(tables)} in {out / 'tables'}")
+    output.say(f"figures: {page}")
 
 
 def _events(hose: PredictedHose) -> dict[str, HoseEvent]:
@@ -611,10 +618,7 @@ def compare_test(measured: Path, spec: Path, *, out: Path | None, output: Comman
             command=f"reduction compare {measured.name} {spec.name}",
         )
         tables = write_tables([], out / "tables", comparisons=path)
-        page = write_report(out, out, units=output.system)
-        output.say(f"archive: {path}")
-        output.say(f"tables: {len(tables)} in {out / 'tables'}")
-        output.say(f"figures: {page}")
+        _say_written(path, tables, output)
     output.answer(_comparison_document(named) | {"out": None if out is None else str(out)})
 
 

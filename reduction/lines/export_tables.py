@@ -10,11 +10,11 @@ import io
 import json
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from html import escape
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 import xarray as xr
@@ -35,6 +35,8 @@ from reduction.record.contributions import Component
 from reduction.record.errors import ArchiveError, SettingsError
 from reduction.record.measurement import Bools, Floats
 from reduction.record.plain_text import safe_cell
+
+_Cell = TypeVar("_Cell")
 
 CONTRIBUTION = "tension_uncertainty_contribution"
 
@@ -114,17 +116,19 @@ def spread_columns(
     )  # fmt: skip
 
 
-def _shown(table: ValueTable, units: UnitSystem) -> tuple[list[str], list[list[str]]]:
-    """Headers with units, and rows as text."""
+def _shown(
+    table: ValueTable, units: UnitSystem, cell: Callable[[Any, float], _Cell]
+) -> tuple[list[str], list[list[_Cell]]]:
+    """Headers with units, and rows of cells made of values and the factor of their unit."""
     heads, columns = [], []
     for column in table.columns:
         unit, factor = display_unit(column.unit, units) if column.unit else ("", 1.0)
         heads.append(f"{column.name} [{unit}]" if unit else column.name)
-        columns.append([_cell(value, factor) for value in column.values.tolist()])
+        columns.append([cell(value, factor) for value in column.values.tolist()])
     return heads, [list(row) for row in zip(*columns, strict=True)]
 
 
-def _cell(value: float | bool | str, factor: float) -> str:
+def _text(value: float | bool | str, factor: float) -> str:
     if isinstance(value, str):
         return value
     if isinstance(value, bool):
@@ -157,7 +161,7 @@ def table_text_of(table: ValueTable, form: str, *, units: UnitSystem = "si") -> 
 
 
 def _csv(table: ValueTable, units: UnitSystem) -> str:
-    heads, rows = _shown(table, units)
+    heads, rows = _shown(table, units, _text)
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\r\n")
     writer.writerow(map(safe_cell, [*heads, "what", "source"]))
@@ -201,7 +205,7 @@ def _contributions(table: ValueTable, units: UnitSystem) -> dict[str, object]:
 
 
 def _latex(table: ValueTable, units: UnitSystem) -> str:
-    heads, rows = _shown(table, units)
+    heads, rows = _shown(table, units, _text)
     body = [" & ".join(_escaped(cell) for cell in row) + r" \\" for row in rows]
     return "\n".join(
         [
@@ -226,7 +230,7 @@ def _escaped(text: str) -> str:
 
 
 def _markdown(table: ValueTable, units: UnitSystem) -> str:
-    heads, rows = _shown(table, units)
+    heads, rows = _shown(table, units, _text)
     cells = [heads, ["---:"] * len(heads), *rows]
     return "\n".join(
         [
@@ -254,16 +258,12 @@ def _as_markdown(text: str) -> str:
 
 def sheets_of_table(table: ValueTable, *, units: UnitSystem = "si") -> list[Sheet]:
     """A table as the sheets of a workbook: its values, and a description."""
-    heads, columns = [], []
-    for column in table.columns:
-        unit, factor = display_unit(column.unit, units) if column.unit else ("", 1.0)
-        heads.append(f"{column.name} [{unit}]" if unit else column.name)
-        columns.append([_plain(value, factor) for value in column.values.tolist()])
+    heads, rows = _shown(table, units, _plain)
     about: list[tuple[Cell, ...]] = [("title", table.title)]
     about += [("", text) for text in _said(table)]
     about += [(head, column.meaning) for head, column in zip(heads, table.columns, strict=True)]
     return [
-        Sheet("values", heads, [list(row) for row in zip(*columns, strict=True)]),
+        Sheet("values", heads, rows),
         Sheet("about", ("what", "meaning"), about),
     ]
 

@@ -100,6 +100,18 @@ def find_lines(
     return found
 
 
+def names_with_words(text: str, names: Iterable[str]) -> list[str]:
+    """Names that contain every word of a text.
+
+    Examples
+    --------
+    >>> names_with_words("Nylon new", ["nylon-double-braid-0.5in-new", "polyester-new"])
+    ['nylon-double-braid-0.5in-new']
+    """
+    words = text.lower().replace("-", " ").split()
+    return [name for name in names if all(word in name for word in words)]
+
+
 def _has_words(text: str, wanted: str) -> bool:
     there = _WORD.findall(text.lower())
     return all(

@@ -108,7 +108,7 @@ from reduction.report.product_views import (
     view_ropes,
 )
 from reduction.report.test_section import Part, TestSection, make_part, provenance_of
-from reduction.report.test_view import TestView
+from reduction.report.test_view import RowView, TestView
 from reduction.report.text_style import DEGREES, PageTable, number_text, shown
 
 
@@ -133,17 +133,27 @@ def _make_experiment_section(view: ExperimentView, tests: Mapping[str, TestView]
     kind = view.text("experiment_kind").replace("box-behnken", "Box-Behnken")
     kind = kind.replace("plackett-burman", "Plackett-Burman")
     of = ", ".join(in_words(name) for name in view.factors)
+    return _section_of(
+        view,
+        title=f"Experiment {view.name}",
+        subtitle=f"{kind} design over {of}; {len(view.runs)} runs",
+        parts=parts,
+    )
+
+
+def _section_of(view: RowView, *, title: str, subtitle: str, parts: Sequence[Part]) -> TestSection:
+    """Section of one row of a product of the campaign; parts without content are left out."""
     notes = list(map(str, view.notes))
     provenance, documents = provenance_of(view.data.attrs)
     return TestSection(
         key=view.key,
-        title=f"Experiment {view.name}",
-        subtitle=f"{kind} design over {of}; {len(view.runs)} runs",
+        title=title,
+        subtitle=subtitle,
         parts=tuple(part for part in parts if part.figures or part.tables or part.sentences),
         notes=(("Notes on these numbers", notes),) if notes else (),
         provenance=provenance,
         documents=documents,
-        noun="experiment",
+        noun=view.KIND,
     )
 
 
@@ -246,21 +256,15 @@ def _make_hose_section(view: HoseView) -> TestSection:
         make_part("Layers that carry no load", (), [layer_table(view)]),
         make_part("Construction", (), [hose_design_table(view), cord_table(view)]),
     ]  # fmt: skip
-    notes = list(map(str, view.notes))
-    provenance, documents = provenance_of(view.data.attrs)
-    return TestSection(
-        key=view.key,
+    return _section_of(
+        view,
         title=f"Predicted hose {view.name}",
         subtitle=(
             f"wrap angle {DEGREES.factor * view.wrap_angle:.4g} deg from the axis;"
             f" {view.scalar('number_of_cords'):.0f} cords in two layers; {view.text('rubber_law')}"
             " rubber"
         ),
-        parts=tuple(part for part in parts if part.figures or part.tables or part.sentences),
-        notes=(("Notes on these numbers", notes),) if notes else (),
-        provenance=provenance,
-        documents=documents,
-        noun="hose",
+        parts=parts,
     )
 
 
@@ -335,19 +339,13 @@ def _make_comparison_section(view: ComparisonView) -> TestSection:
             warnings=[] if view.is_identified else _identified(view),
         ),
     ]  # fmt: skip
-    notes = list(map(str, view.notes))
-    provenance, documents = provenance_of(view.data.attrs)
-    return TestSection(
-        key=view.key,
+    return _section_of(
+        view,
         title=f"Comparison {view.name}",
         subtitle=(
             f"test {view.test} ({view.loading}), specimen {view.specimen}, against hose {view.hose}"
         ),
-        parts=tuple(part for part in parts if part.figures or part.tables),
-        notes=(("Notes on these numbers", notes),) if notes else (),
-        provenance=provenance,
-        documents=documents,
-        noun="comparison",
+        parts=[part for part in parts if part.figures or part.tables],
     )
 
 

@@ -87,13 +87,6 @@ class HoseView(RowView):
         """True where the cords have to reach their rest length before they carry."""
         return self.wrap_angle > NEUTRAL_ANGLE
 
-    def texts(self, name: str) -> tuple[str, ...]:
-        """Values of a text variable of this hose, without the padding for longer hoses."""
-        if name not in self.data:
-            return ()
-        size = self.sizes.get(str(self.data.variables[name].dims[-1]))
-        return tuple(str(text) for text in self.data.variables[name].values[self.index][:size])
-
     @cached_property
     def sources(self) -> tuple[str, ...]:
         """Parameters of this hose with a stated uncertainty."""
@@ -437,9 +430,7 @@ class ExperimentView(RowView):
         """Values of a text variable, one per entry of its dimension; as many "" where missing."""
         if name not in self.data:
             return ("",) * self.sizes.get("run" if name.startswith("run_") else "", 0)
-        variable = self.data.variables[name]
-        cut = tuple(slice(self.sizes.get(str(dim))) for dim in variable.dims[1:])
-        return tuple(str(text) for text in np.ravel(variable.values[self.index][cut]))
+        return super().texts(name)
 
     def array_of_texts(self, name: str) -> NDArray[np.str_]:
         """Values of a text variable in their shape; empty where missing."""

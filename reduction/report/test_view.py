@@ -11,12 +11,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import ClassVar, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 import pandas as pd
 import xarray as xr
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from reduction.archive.open import in_memory
 from reduction.archive.shared_errors import FREEDOM, stated_errors_of
@@ -640,9 +640,17 @@ class RowView(ArchiveView):
         """Values of a variable of this row; empty where missing."""
         if name not in self.data:
             return np.full(0, np.nan)
+        return np.asarray(self._own(name), dtype=np.float64)
+
+    def texts(self, name: str) -> tuple[str, ...]:
+        """Values of a text variable of this row; none where missing."""
+        return tuple(map(str, np.ravel(self._own(name)))) if name in self.data else ()
+
+    def _own(self, name: str) -> NDArray[Any]:
+        """Values of a variable of this row, without the padding for longer rows."""
         variable = self.data.variables[name]
         cut = tuple(slice(self.sizes.get(str(dim))) for dim in variable.dims[1:])
-        return np.asarray(variable.values[self.index], dtype=np.float64)[cut]
+        return np.asarray(variable.values[self.index][cut] if cut else variable.values[self.index])
 
     def array_like(self, name: str, other: Floats) -> Floats:
         """Values of a variable, or NaN in the shape of another."""

@@ -89,10 +89,15 @@ def _fall_beyond_noise(tension: Floats) -> float:
     >>> _fall_beyond_noise(np.linspace(0.0, 70.0, 50_000) + noise)
     0.0
     """
-    together = max(tension.size // _MEANS_OF_PULL, 1)
-    whole = tension.size // together * together
-    means = tension[:whole].reshape(-1, together).mean(axis=1)
+    means = _means_of_pull(tension)
     return max(_greatest_fall(means) - _NOISE_FACTOR * reading_noise(means), 0.0)
+
+
+def _means_of_pull(series: Floats) -> Floats:
+    """Means of consecutive readings."""
+    together = max(series.size // _MEANS_OF_PULL, 1)
+    whole = series.size // together * together
+    return np.asarray(series[:whole].reshape(-1, together).mean(axis=1))
 
 
 _STANDS = 0.1  # of the rise of tension in a ramp
@@ -114,9 +119,7 @@ def _gain_in_holds(tension: Floats, strain: Floats) -> float:
     >>> print(round(_gain_in_holds(load, 0.01 * load + 1e-4 * hold), 4))
     0.001
     """
-    together = max(tension.size // _MEANS_OF_PULL, 1)
-    whole = tension.size // together * together
-    load, stretch = (one[:whole].reshape(-1, together).mean(axis=1) for one in (tension, strain))
+    load, stretch = (_means_of_pull(one) for one in (tension, strain))
     # so many that a ramp is far above the noise
     step = (load[-1] - load[0]) / load.size
     n = max(_MEANS_OF_STAND, int(2 * _NOISE_FACTOR * reading_noise(load) / step))
