@@ -1,19 +1,15 @@
 import h5py
 import numpy as np
 import pytest
+from binary_layouts import layout_of
 
 from reduction.readers.columns import matrix_table
 from reduction.readers.hdf5 import data_set, open_hdf5, read_hdf5
 from reduction.readers.layout import Layout, Watch
+from reduction.readers.hdf5 import read_hdf5
 from reduction.record.errors import LogError
 
-
-def layout(**settings):
-    channels = settings.pop(
-        "channels",
-        {"time": {"column": "t", "unit": "s"}, "tension": {"1": {"column": "F", "unit": "kN"}}},
-    )
-    return Layout.model_validate({"format": "hdf5", "channels": channels, **settings})
+layout = layout_of("hdf5")
 
 
 @pytest.fixture

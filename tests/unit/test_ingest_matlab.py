@@ -4,6 +4,7 @@ import h5py
 import numpy as np
 import pytest
 import scipy.io
+from binary_layouts import layout_of
 from hostile_matlab import opaque_object
 
 from reduction.readers.layout import Layout
@@ -14,12 +15,7 @@ TIME, LOAD = [0.0, 0.5, 1.0], [1.0, 2.0, 3.0]
 HEADER = b"MATLAB 7.3 MAT-file, Platform: GLNXA64"
 
 
-def layout(**settings):
-    channels = settings.pop(
-        "channels",
-        {"time": {"column": "t", "unit": "s"}, "tension": {"1": {"column": "F", "unit": "kN"}}},
-    )
-    return Layout.model_validate({"format": "matlab", "channels": channels, **settings})
+layout = layout_of("matlab")
 
 
 class V73:

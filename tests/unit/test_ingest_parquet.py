@@ -2,18 +2,12 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
+from binary_layouts import layout_of
 
-from reduction.readers.layout import Layout
 from reduction.readers.parquet import read_parquet
 from reduction.record.errors import LogError
 
-
-def layout(**settings):
-    channels = settings.pop(
-        "channels",
-        {"time": {"column": "t", "unit": "s"}, "tension": {"1": {"column": "F", "unit": "kN"}}},
-    )
-    return Layout.model_validate({"format": "parquet", "channels": channels, **settings})
+layout = layout_of("parquet")
 
 
 def read(tmp_path, columns, units=None, metadata=None, **settings):

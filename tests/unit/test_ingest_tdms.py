@@ -2,9 +2,9 @@ from datetime import datetime
 
 import numpy as np
 import pytest
+from binary_layouts import layout_of
 from nptdms import ChannelObject, GroupObject, RootObject, TdmsWriter
 
-from reduction.readers.layout import Layout
 from reduction.readers.tdms import read_tdms
 from reduction.record.errors import LogError
 
@@ -12,12 +12,7 @@ N = 5
 START = datetime(2020, 1, 1)  # noqa: DTZ001 - the writer takes naive times
 
 
-def layout(**settings):
-    channels = settings.pop(
-        "channels",
-        {"time": {"column": "t", "unit": "s"}, "tension": {"1": {"column": "load", "unit": "kN"}}},
-    )
-    return Layout.model_validate({"format": "tdms", "channels": channels, **settings})
+layout = layout_of("tdms", load="load")
 
 
 def channel(name, values, group="log", **properties):

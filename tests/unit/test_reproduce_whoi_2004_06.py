@@ -3,10 +3,9 @@
 from collections import Counter
 
 import pytest
-from misprinted import verdicts_of_misprints
 
-from reduction.published.printed_cells import cells_of, errata_of, table_of
-from reduction.published.whoi_2004_06 import _answers, _equation_answers, items
+from reduction.published.printed_cells import table_of
+from reduction.published.whoi_2004_06 import _equation_answers, items
 
 ITEMS = items()
 BY_KEY = {item.cell.key: item for item in ITEMS}
@@ -20,10 +19,6 @@ def counted(**where):
     )
 
 
-def test_every_cell_has_its_item_in_its_place():
-    assert [item.cell for item in ITEMS] == list(cells_of("WHOI-2004-06"))
-
-
 def test_nothing_is_unexplained_or_open():
     assert counted() == {"derived": 33, "erratum": 15, "measured": 21}
 
@@ -35,18 +30,6 @@ def test_misprints_of_the_equations():
         "eq 10", "eq 15", "eq 20", "eq 25", "eq 26", "eq 26",
     ]  # fmt: skip
     assert counted(table="eq") == {"erratum": 6, "derived": 20}
-
-
-def test_each_erratum_is_shown_by_a_cell():
-    assert {item.cell.erratum for item in ITEMS} - {""} == {
-        one.id for one in errata_of("WHOI-2004-06")
-    }
-
-
-def test_a_changed_digit_is_found():
-    verdicts = verdicts_of_misprints("WHOI-2004-06", _answers())
-    assert {key for key, verdict in verdicts.items() if verdict != "unexplained"} == set()
-    assert len(verdicts) == 33
 
 
 @pytest.mark.parametrize(

@@ -6,12 +6,10 @@ from math import pi
 
 import numpy as np
 import pytest
-from misprinted import verdicts_of_misprints
 
 from reduction.prediction.wave_load import wave_load
-from reduction.published.printed_cells import cells_of, errata_of, number_of, table_of
+from reduction.published.printed_cells import cells_of, number_of, table_of
 from reduction.published.zhang_2015 import (
-    _answers,
     _equation_answers,
     _table_answers,
     items,
@@ -36,10 +34,6 @@ COUNTS = {
 }
 
 
-def test_every_cell_has_its_item_in_its_place():
-    assert [item.cell for item in ITEMS] == list(cells_of("Zhang-2015"))
-
-
 @pytest.mark.parametrize("table", COUNTS)
 def test_counts_of_a_table(table):
     assert Counter(one.verdict for one in ITEMS if one.cell.table == table) == COUNTS[table]
@@ -49,18 +43,6 @@ def test_nothing_is_unexplained():
     assert Counter(one.verdict for one in ITEMS) == {
         "derived": 189, "erratum": 52, "open": 2, "measured": 18,
     }  # fmt: skip
-
-
-def test_each_erratum_is_shown_by_a_cell():
-    assert {item.cell.erratum for item in ITEMS} - {""} == {
-        one.id for one in errata_of("Zhang-2015")
-    }
-
-
-def test_a_changed_digit_is_found():
-    verdicts = verdicts_of_misprints("Zhang-2015", _answers())
-    assert {key for key, verdict in verdicts.items() if verdict != "unexplained"} == set()
-    assert len(verdicts) == 189
 
 
 @pytest.mark.parametrize(
