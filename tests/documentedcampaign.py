@@ -3,6 +3,9 @@
 import re
 from pathlib import Path
 
+import pytest
+from nopage import leave_out_page
+
 from reduction.batch.run_campaign import run_campaign
 from reduction.campaign.load import load_campaign
 
@@ -28,3 +31,12 @@ def run(path, folder, **options):
         load_campaign(path), processed=folder / "processed", reports=folder / "reports",
         clock=lambda: 0.0, command="reduction run campaign.toml", **options,
     )  # fmt: skip
+
+
+def made_without_page(folder, name):
+    """A folder with the raw data and the products of the example."""
+    (folder / "raw" / name).mkdir(parents=True)
+    with pytest.MonkeyPatch.context() as patch:
+        leave_out_page(patch)
+        assert run(copied(folder / "raw" / name), folder).exit_status == 0
+    return folder

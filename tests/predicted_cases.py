@@ -1,5 +1,9 @@
 """SPEC.toml of a wave load and of an armour: the hose of Zhang (2015), the steel of Wang (2022)."""
 
+from reduction.campaign.prediction_specs import load_armour_case, load_wave_case
+from reduction.prediction.armour import predict_armour_case
+from reduction.prediction.wave_load import predict_wave_load
+
 WAVE = """
 [wave_load]
 outer_diameter = "114 mm"
@@ -59,3 +63,16 @@ def changed(text, old, new):
     """The text with one place in it replaced."""
     assert old in text
     return text.replace(old, new, 1)
+
+
+def predicted_wave(path, text=WAVE, **changes):
+    path.write_text(text, encoding="utf-8")
+    return predict_wave_load(**load_wave_case(path) | changes)
+
+
+def predicted_armour(path, text=ARMOUR):
+    path.write_text(text, encoding="utf-8")
+    case = load_armour_case(path)
+    return predict_armour_case(
+        case.layers, case.strain, names=case.layer_names, tolerance=case.tolerance
+    )

@@ -32,3 +32,10 @@ def held_against_cf(*paths):
     server.stdin.flush()
     status, told = json.loads(server.stdout.readline())
     return subprocess.CompletedProcess(paths, status, told)
+
+
+def hold_against_cf(path):
+    """An archive keeps every rule of the schema and of CF."""
+    done = held_against_cf(path)
+    assert done.returncode == 0, done.stdout
+    assert "All tests passed!" in done.stdout

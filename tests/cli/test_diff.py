@@ -7,7 +7,7 @@ import shutil
 import netCDF4
 import numpy as np
 import pytest
-from documentedcampaign import copied, run
+from documentedcampaign import made_without_page
 from nopage import leave_out_page
 
 NAME = "two-tethers"
@@ -15,12 +15,7 @@ NAME = "two-tethers"
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("compared")
-    (folder / "raw" / NAME).mkdir(parents=True)
-    with pytest.MonkeyPatch.context() as patch:
-        leave_out_page(patch)
-        assert run(copied(folder / "raw" / NAME), folder).exit_status == 0
-    return folder
+    return made_without_page(tmp_path_factory.mktemp("compared"), NAME)
 
 
 @pytest.fixture

@@ -13,10 +13,6 @@ pytestmark = pytest.mark.slow
 RAW = Path(__file__).parents[2] / "raw"
 
 
-def table(folder, name):
-    return csv_rows(folder / f"{name}.csv")
-
-
 def run(command, folder):
     done = command(
         "run", folder / "campaign.toml", "--processed", folder / "processed",
@@ -53,7 +49,7 @@ def test_static_and_dynamic_tests_of_one_campaign_are_set_side_by_side(command, 
     tomllib.loads(text)
     (tmp_path / "campaign.toml").write_text(text, encoding="utf-8")
     tables = run(command, tmp_path)
-    rows = table(tables, "static_dynamic")
+    rows = csv_rows(tables / "static_dynamic.csv")
     assert {(row["static_test"], row["test"], row["synthetic"]) for row in rows} == {
         ("static", "T-2", "yes")
     }
@@ -63,11 +59,11 @@ def test_static_and_dynamic_tests_of_one_campaign_are_set_side_by_side(command, 
     ]  # fmt: skip
     slopes = {
         (row["interval_branch"], row["interval_strain [1]"]): float(row["interval_modulus [Pa]"])
-        for row in table(tables, "stepwise_moduli")
+        for row in csv_rows(tables / "stepwise_moduli.csv")
         if row["interval_modulus [Pa]"]
     }
     curves = {}
-    for row in table(tables, "tangent_modulus"):
+    for row in csv_rows(tables / "tangent_modulus.csv"):
         if row["tangent_modulus [Pa]"]:
             curves.setdefault((row["specimen"], row["branch"]), []).append(
                 (float(row["strain_bin [1]"]), float(row["tangent_modulus [Pa]"]))
@@ -84,7 +80,7 @@ def test_static_and_dynamic_tests_of_one_campaign_are_set_side_by_side(command, 
             whole = float(row[f"{name}_standard_uncertainty [Pa]"])
             assert whole / float(row[f"{name} [Pa]"]) > 0.1
         assert 0 < float(row["static_dynamic_ratio_standard_uncertainty [1]"]) < 0.1 * ratio
-    explained = {row["column"] for row in table(tables, "columns")}
+    explained = {row["column"] for row in csv_rows(tables / "columns.csv")}
     assert set(rows[0]) <= explained
 
 
@@ -130,13 +126,15 @@ order = 1
     )
     tables = run(command, tmp_path)
     ratios = {}
-    for row in table(tables, "comparison"):
+    for row in csv_rows(tables / "comparison.csv"):
         pair = (row["ratio_numerator"], row["ratio_denominator"])
         ratios.setdefault(pair, []).append(float(row["modulus_ratio [1]"]))
     assert set(ratios) == {("b", "a"), ("c", "a")}
     assert np.median(ratios["b", "a"]) == pytest.approx(1.2, rel=0.01)
     assert np.median(ratios["c", "a"]) == pytest.approx(0.8, rel=0.01)
-    notes = [row["note"] for row in table(tables, "notes") if row["note_stage"] == "comparison"]
+    notes = [
+        row["note"] for row in csv_rows(tables / "notes.csv") if row["note_stage"] == "comparison"
+    ]
     assert not any("ratio b/a: unequal" in note for note in notes)
     assert (
         "ratio c/a: the conditions before the campaign differ: 'two years at sea' against 'new'"
@@ -163,9 +161,9 @@ def test_a_logged_fill_pressure_is_compared_beside_the_tension(command, tmp_path
     np.savetxt(tmp_path / "S-64.csv", np.column_stack([log, psi]), delimiter=",", comments="",
                header="time_s,flange_to_flange_in,load_lbf,psi", fmt="%.3f")  # fmt: skip
     tables = run(command, tmp_path)
-    (verdict,) = table(tables, "comparisons")
+    (verdict,) = csv_rows(tables / "comparisons.csv")
     assert verdict["fill_pressure_verdict"].startswith("agrees within U")
-    points = table(tables, "comparison_pressures")
+    points = csv_rows(tables / "comparison_pressures.csv")
     at, measured, spread = (
         np.array([float(row[name] or "nan") for row in points])
         for name in ("strain [1]", "measured_fill_pressure [Pa]",
@@ -176,11 +174,13 @@ def test_a_logged_fill_pressure_is_compared_beside_the_tension(command, tmp_path
     assert there.sum() > 50
     assert np.mean(np.abs(measured - truth)[there] <= 2 * spread[there]) > 0.9
     (rubber,) = (
-        row for row in table(tables, "calibrations") if row["parameter_name"] != "wrap_angle"
+        row
+        for row in csv_rows(tables / "calibrations.csv")
+        if row["parameter_name"] != "wrap_angle"
     )
     assert rubber["fill_pressure_parameter_value [1]"] == ""
     shutil.rmtree(tables)  # the archive of the test, which has a variable fill_pressure, is kept
-    assert table(run(command, tmp_path), "comparisons") == [verdict]
+    assert csv_rows(run(command, tmp_path) / "comparisons.csv") == [verdict]
 
 
 def known_pressure(name):

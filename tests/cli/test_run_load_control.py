@@ -63,10 +63,6 @@ def run(command, folder, time, position, tension, *lines):
     return folder / "processed" / "load-control" / "tables"
 
 
-def table(folder, name):
-    return csv_rows(folder / f"{name}.csv")
-
-
 @pytest.fixture(scope="module")
 def creep():
     """Slack for 20 s, 300 N within 20 s, kept for 30 min, and back."""
@@ -79,8 +75,10 @@ def creep():
 def test_creep_at_constant_tension_has_its_rate(command, tmp_path, creep):
     lines = ['kind = "creep"', 'control = "load"']
     tables = run(command, tmp_path, *creep, *lines)
-    assert not [row for row in table(tables, "notes") if row["note_code"] == "hold-of-position"]
-    (hold,) = table(tables, "relaxation")
+    assert not [
+        row for row in csv_rows(tables / "notes.csv") if row["note_code"] == "hold-of-position"
+    ]
+    (hold,) = csv_rows(tables / "relaxation.csv")
     assert hold["hold_kind"] == "creep"
     assert float(hold["hold_start_time [s]"]) == pytest.approx(40, abs=0.5)
     assert float(hold["hold_duration [s]"]) == pytest.approx(1800, abs=1)
@@ -93,7 +91,7 @@ def test_creep_at_constant_tension_has_its_rate(command, tmp_path, creep):
     assert hold["relaxation_rate_per_decade [1]"] == hold["hold_refusal"] == ""
     at = {
         row["hold_time [s]"]: float(row["strain_at_time [1]"])
-        for row in table(tables, "relaxation_times")
+        for row in csv_rows(tables / "relaxation_times.csv")
         if row["strain_at_time [1]"]
     }
     # one hour is not reached
@@ -128,7 +126,9 @@ def test_a_hold_of_a_noisy_load_is_not_one_of_the_position(command, tmp_path, n_
     kind = ('kind = "cyclic"', 'waveform = "sinusoidal"') if n_cycles else ('kind = "creep"',)
     tables = run(command, tmp_path, time, 1 + strain, load, 'control = "load"', *kind)
     # the load was within its tolerance before the crosshead was where it stood later
-    assert not [row for row in table(tables, "notes") if row["note_code"] == "hold-of-position"]
+    assert not [
+        row for row in csv_rows(tables / "notes.csv") if row["note_code"] == "hold-of-position"
+    ]
 
 
 def sine(time):
@@ -140,7 +140,9 @@ def test_a_creep_test_without_a_hold_says_so(command, tmp_path, creep):
     time, tension = creep[0], sine(creep[0])
     tables = run(command, tmp_path, time, 1 + tension / STIFFNESS, tension, 'kind = "creep"')
     assert not (tables / "relaxation.csv").exists()
-    refusals = [row["note"] for row in table(tables, "notes") if row["note_code"] == "no-hold"]
+    refusals = [
+        row["note"] for row in csv_rows(tables / "notes.csv") if row["note_code"] == "no-hold"
+    ]
     assert len(refusals) == 1
     assert "the tension never stays within" in refusals[0]
     assert "phases.tension_tolerance" in refusals[0]
@@ -149,7 +151,9 @@ def test_a_creep_test_without_a_hold_says_so(command, tmp_path, creep):
 def test_a_relaxation_test_without_a_hold_says_so(command, tmp_path, creep):
     time, tension = creep[0], sine(creep[0])
     tables = run(command, tmp_path, time, 1 + tension / STIFFNESS, tension, 'kind = "relaxation"')
-    refusals = [row["note"] for row in table(tables, "notes") if row["note_code"] == "no-hold"]
+    refusals = [
+        row["note"] for row in csv_rows(tables / "notes.csv") if row["note_code"] == "no-hold"
+    ]
     assert len(refusals) == 1
     assert "the crosshead never stays within" in refusals[0]
 
@@ -165,8 +169,8 @@ def test_cycles_of_tension_keep_their_holds_of_tension(command, tmp_path):
     held = np.where(time > 240, 0.01 * np.log10(1 + np.clip(time - 240, 0, 120)), 0)
     position = 1 + tension / STIFFNESS + held * (tension > 0)
     tables = run(command, tmp_path, time, position, tension, 'control = "load"', "n_cycles = 20")
-    assert len(table(tables, "cycles")) == 20
-    (hold,) = table(tables, "relaxation")
+    assert len(csv_rows(tables / "cycles.csv")) == 20
+    (hold,) = csv_rows(tables / "relaxation.csv")
     assert hold["hold_kind"] == "creep"
     assert float(hold["hold_start_time [s]"]) == pytest.approx(240, abs=0.5)
     assert float(hold["hold_duration [s]"]) == pytest.approx(120, abs=1)

@@ -6,8 +6,7 @@ import shutil
 
 import pytest
 from commandruns import loaded_process, reduction
-from documentedcampaign import copied, run
-from nopage import leave_out_page
+from documentedcampaign import made_without_page
 
 from reduction.archive.product_files import processed_folders
 
@@ -16,12 +15,7 @@ NAME = "two-tethers"
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("verified")
-    (folder / "raw" / NAME).mkdir(parents=True)
-    with pytest.MonkeyPatch.context() as patch:
-        leave_out_page(patch)
-        assert run(copied(folder / "raw" / NAME), folder).exit_status == 0
-    return folder
+    return made_without_page(tmp_path_factory.mktemp("verified"), NAME)
 
 
 @pytest.fixture

@@ -5,8 +5,7 @@ from math import nan
 
 import numpy as np
 import pytest
-from archive_check import check_archive
-from rulesofcf import held_against_cf
+from rulesofcf import hold_against_cf
 
 from reduction.archive.campaign_products import outcomes_of_dataset, outcomes_to_dataset
 from reduction.archive.open import open_archive
@@ -67,10 +66,7 @@ def test_a_value_stands_under_its_quantity_with_its_unit_and_use(path):
 
 
 def test_the_file_keeps_every_rule(path):
-    assert check_archive(path) == []
-    done = held_against_cf(path)
-    assert done.returncode == 0, done.stdout
-    assert "All tests passed!" in done.stdout
+    hold_against_cf(path)
 
 
 def test_equal_outcomes_give_equal_bytes(path, tmp_path):

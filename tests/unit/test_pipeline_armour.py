@@ -2,10 +2,9 @@
 
 import numpy as np
 import pytest
-from predicted_cases import ARMOUR, LEAST_ARMOUR, changed
+from predicted_cases import ARMOUR, LEAST_ARMOUR, changed, predicted_armour
 
-from reduction.campaign.prediction_specs import load_armour_case
-from reduction.prediction.armour import predict_armour_case, wound_at_all_angles
+from reduction.prediction.armour import wound_at_all_angles
 from reduction.record.errors import SettingsError
 
 ANGLE, MODULUS, WIRE, STRAIN = np.radians(20.0), 210e9, 2.5e-3, 1e-3
@@ -16,12 +15,7 @@ COUNT = np.array([30, 36])
 @pytest.fixture
 def predict(tmp_path):
     def predicted(text=ARMOUR):
-        path = tmp_path / "cable.toml"
-        path.write_text(text, encoding="utf-8")
-        case = load_armour_case(path)
-        return predict_armour_case(
-            case.layers, case.strain, names=case.layer_names, tolerance=case.tolerance
-        )
+        return predicted_armour(tmp_path / "cable.toml", text)
 
     return predicted
 

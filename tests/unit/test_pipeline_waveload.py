@@ -4,10 +4,8 @@ import re
 
 import numpy as np
 import pytest
-from predicted_cases import LEAST_WAVE, WAVE
+from predicted_cases import LEAST_WAVE, WAVE, predicted_wave
 
-from reduction.campaign.prediction_specs import load_wave_case
-from reduction.prediction.wave_load import predict_wave_load
 from reduction.record.errors import DataError, FitError
 
 DIAMETER, DENSITY, DRAG, INERTIA = 0.114, 1025.0, 1.2, 2.0
@@ -18,9 +16,7 @@ STILL = {"current_velocity": 0.0, "wave_length": None}
 @pytest.fixture
 def predict(tmp_path):
     def predicted(text=WAVE, **changes):
-        path = tmp_path / "w.toml"
-        path.write_text(text, encoding="utf-8")
-        return predict_wave_load(**load_wave_case(path) | changes)
+        return predicted_wave(tmp_path / "w.toml", text, **changes)
 
     return predicted
 

@@ -1,16 +1,14 @@
 """Pages of a wave load and of an armour: figures, tables, notes, the page itself."""
 
 import json
+from functools import partial
 
 import numpy as np
 import plotly.graph_objects as go
 import pytest
-from predicted_cases import ARMOUR, LEAST_ARMOUR, WAVE, changed
+from predicted_cases import ARMOUR, LEAST_ARMOUR, WAVE, changed, predicted_armour, predicted_wave
 from reportparts import numbers, traces
 
-from reduction.campaign.prediction_specs import load_armour_case, load_wave_case
-from reduction.prediction.armour import predict_armour_case
-from reduction.prediction.wave_load import predict_wave_load
 from reduction.report.figures.theory_figures import (
     draw_errors,
     draw_section,
@@ -41,23 +39,13 @@ POUND, FOOT = 4.4482216152605, 0.3048
 
 @pytest.fixture
 def wave(tmp_path):
-    def predicted(**changes):
-        path = tmp_path / "w.toml"
-        path.write_text(WAVE, encoding="utf-8")
-        return predict_wave_load(**load_wave_case(path) | changes)
-
-    return predicted
+    return partial(predicted_wave, tmp_path / "w.toml", WAVE)
 
 
 @pytest.fixture
 def armour(tmp_path):
     def predicted(text=ARMOUR):
-        path = tmp_path / "a.toml"
-        path.write_text(text, encoding="utf-8")
-        case = load_armour_case(path)
-        return predict_armour_case(
-            case.layers, case.strain, names=case.layer_names, tolerance=case.tolerance
-        )
+        return predicted_armour(tmp_path / "a.toml", text)
 
     return predicted
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from csvrows import csv_rows
+from csvrows import csv_rows, hold_columns_explained
 from predicted_hoses import LAYERS, UNCERTAIN, dataset, pick_up_strain, predicted, working_tension
 
 from reduction.archive.csv_definitions import PREDICTION_TABLES
@@ -86,16 +86,8 @@ def test_every_table_says_whether_the_data_are_synthetic(tables):
 
 
 def test_every_column_is_explained(both):
-    explained = {(row["table"], row["column"]): row for row in both["columns"]}
     for table, rows in both.items():
-        header = list(rows[0])
-        for name, after in zip(header, [*header[1:], ""], strict=True):
-            row = explained[f"{table}.csv", name]
-            assert row["meaning"]
-            stem = name.partition(" [")[0]
-            has_uncertainty = after.startswith(f"{stem}_standard_uncertainty [")
-            assert has_uncertainty != bool(row["no_uncertainty"]), (table, name)
-            assert (row["unit"] not in ("", "1")) <= (f"[{row['unit']}]" in name)
+        hold_columns_explained(f"{table}.csv", list(rows[0]), both["columns"])
 
 
 def test_the_same_hoses_give_the_same_bytes(tables, tmp_path):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from compared_hoses import LOOP, NOT_APART, agreeing, dataset, differing, trading
-from csvrows import csv_rows
+from csvrows import csv_rows, hold_columns_explained
 
 from reduction.archive.campaign_products import outcomes_to_dataset
 from reduction.archive.csv_columns import OUTCOME_TABLES
@@ -113,15 +113,8 @@ def test_every_table_says_whether_the_data_are_synthetic(tables):
 
 
 def test_every_column_is_explained_and_has_an_uncertainty_or_a_reason(tables):
-    explained = {(row["table"], row["column"]): row for row in tables["columns"]}
     for table, rows in tables.items():
-        header = list(rows[0])
-        for name, after in zip(header, [*header[1:], ""], strict=True):
-            row = explained[f"{table}.csv", name]
-            assert row["meaning"]
-            stem = name.partition(" [")[0]
-            has_uncertainty = after.startswith(f"{stem}_standard_uncertainty [")
-            assert has_uncertainty != bool(row["no_uncertainty"]), (table, name)
+        hold_columns_explained(f"{table}.csv", list(rows[0]), tables["columns"])
 
 
 # tables of outcomes: made from their archive alone, complete, explained, the same bytes again
@@ -186,16 +179,8 @@ def test_every_table_says_whether_the_data_are_synthetic_in_outcomes(tables_of_o
 
 def test_every_column_is_explained(tables_of_outcomes):
     *paths, columns = tables_of_outcomes([*BREAKS, *CYCLES])
-    explained = {(row["table"], row["column"]): row for row in csv_rows(columns)}
     for path in paths:
-        header = list(csv_rows(path)[0])
-        for name, after in zip(header, [*header[1:], ""], strict=True):
-            row = explained[path.name, name]
-            assert row["meaning"]
-            stem = name.partition(" [")[0]
-            has_uncertainty = after.startswith(f"{stem}_standard_uncertainty [")
-            assert has_uncertainty != bool(row["no_uncertainty"]), (path.name, name)
-            assert (row["unit"] not in ("", "1")) <= (f"[{row['unit']}]" in name)
+        hold_columns_explained(path.name, list(csv_rows(path)[0]), csv_rows(columns))
 
 
 def test_a_table_that_outcomes_do_not_give_is_not_there(tables_of_outcomes, tmp_path):
