@@ -375,7 +375,7 @@ def covariance_root(covariance: Floats) -> Floats:
 
 
 def merged(parts: Sequence[Contributions]) -> Contributions:
-    """Merge contributions to different quantities over all their components.
+    """Merge contributions over all their components; those to the same quantity are added.
 
     A component absent from a part contributes zero to its quantities.
 
@@ -387,36 +387,11 @@ def merged(parts: Sequence[Contributions]) -> Contributions:
     --------
     >>> from reduction.record.contributions import Component
     >>> gain, zero = Component("tension_gain", "cell"), Component("tension_offset", "cell")
-    >>> both = merged([Contributions((zero,), {"force": np.array([[2.0]])}),
-    ...     Contributions((gain,), {"share": np.array([[0.01]])})])
+    >>> parts = [Contributions((zero,), {"force": np.array([[2.0]])}),
+    ...     Contributions((gain,), {"force": np.array([[1.5]]), "share": np.array([[0.01]])})]
+    >>> both = merged([*parts, parts[1]])
     >>> print([one.source for one in both.component], both.values["force"].ravel())
-    ['tension_gain', 'tension_offset'] [0. 2.]
-    """
-    component, place = _together(parts)
-    values = {}
-    for part in parts:
-        rows = [place[one] for one in part.component]
-        for name, array in part.values.items():
-            table = np.zeros((len(component), *array.shape[1:]))
-            table[rows] = array
-            values[name] = table
-    return Contributions(component, values)
-
-
-def added(parts: Sequence[Contributions]) -> Contributions:
-    """Contributions to a sum of several parts.
-
-    Notes
-    -----
-    Equal components are the same error ([1]_, F.1.2.3).
-
-    Examples
-    --------
-    >>> from reduction.record.contributions import Component
-    >>> gain = (Component("tension_gain", "cell"),)
-    >>> both = added([Contributions(gain, {"force": np.array([row])}) for row in (2.0, -0.5)])
-    >>> print(both.values["force"])
-    [1.5]
+    ['tension_gain', 'tension_offset'] [3. 2.]
     """
     component, place = _together(parts)
     values: dict[str, Floats] = {}

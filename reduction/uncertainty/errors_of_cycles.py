@@ -16,7 +16,6 @@ from reduction.record.contributions import (
     Component,
     Contributions,
     InstrumentErrors,
-    added,
     merged,
     stacked,
 )
@@ -821,7 +820,7 @@ def quasi_static_contributions(
     )
     errors = origin.errors
     name = f"{errors.specimen}, {errors.test}" if errors.test else errors.specimen
-    found = added([at_tension, along, fit_contributions(pull, tension, of=name)])
+    found = merged([at_tension, along, fit_contributions(pull, tension, of=name)])
     tau = float(line.relaxation_time[index])
     if not is_short_pull(pull, tau):
         return found
@@ -830,7 +829,7 @@ def quasi_static_contributions(
         spring_constant=float(line.dissipation_spring_constant[index]),
     )  # fmt: skip
     of_rate = Contributions((Component("pull_rate", name),), {_K_0: np.array([by_rate])})
-    return added([found, of_rate])
+    return merged([found, of_rate])
 
 
 def errors_of_pull(
