@@ -218,12 +218,10 @@ BLOCK_ROWS = 1 << 12
 """Rows in a block: three megabytes of text for a table as wide as that of the cycles. [1]"""
 
 
-def table_blocks(
-    archive: xr.Dataset, table: CsvTable, *, block_rows: int = BLOCK_ROWS
-) -> Iterator[pd.DataFrame]:
+def table_blocks(archive: xr.Dataset, table: CsvTable) -> Iterator[pd.DataFrame]:
     """Yield the rows of an archive for a table; none if it lacks the subject."""
     headers = [column.header for column in table.columns]
-    for place, columns in column_blocks(archive, archive.variables, table, block_rows=block_rows):
+    for place, columns in column_blocks(archive, archive.variables, table):
         # columns absent from the archive are missing, as on reading its file
         known = [
             np.full(place.size, np.nan) if isinstance(one, list) and set(one) == {""} else one

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Sequence
+from collections.abc import Container, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -167,10 +167,6 @@ class SpliceSlip:
     length: float
 
 
-Reader = Callable[..., tuple[Record, tuple[Source, ...]]]
-"""Reads the record of a log, like `reduction.readers.read_log.read_record`."""
-
-
 @dataclass
 class Survey:
     """One test after the first pass.
@@ -211,7 +207,7 @@ class Survey:
     error: ReductionError | None = None
 
 
-def _read_test(campaign: Campaign, plan: TestPlan, *, reader: Reader = read_record) -> list[Survey]:
+def _read_test(campaign: Campaign, plan: TestPlan) -> list[Survey]:
     """Read one log and locate its contents: one survey per test, or one per step."""
     files = [(campaign.file(name), campaign.layouts[layout], name) for name, layout in plan.files]
     if plan.kind == "stepwise":
@@ -229,7 +225,7 @@ def _read_test(campaign: Campaign, plan: TestPlan, *, reader: Reader = read_reco
                 extremes=extremes,
             )
         ]
-    record, sources = reader(
+    record, sources = read_record(
         files,
         test_id=plan.id,
         specimens=plan.specimens,
@@ -601,11 +597,11 @@ def _of_position(campaign: Campaign, located: Located) -> float:
     )
 
 
-def survey_log(campaign: Campaign, name: str, *, reader: Reader = read_record) -> list[Survey]:
+def survey_log(campaign: Campaign, name: str) -> list[Survey]:
     """Read and locate one log; an unreadable log gives one survey with its error."""
     plan = campaign.tests[name]
     try:
-        return _read_test(campaign, plan, reader=reader)
+        return _read_test(campaign, plan)
     except Exception as error:  # fails only this test, even for a defect of this program
         if isinstance(error, OSError) and error.errno is not None:
             error = unreadable(error.filename or plan.files[0][0], error)

@@ -176,13 +176,14 @@ def test_what_the_system_refuses_in_a_command_has_a_status_and_names_the_file(
     assert json.loads(done.stdout)["exit_status"] == 6
 
 
-def test_a_log_that_the_system_refuses_is_no_defect_of_the_program(older):
+def test_a_log_that_the_system_refuses_is_no_defect_of_the_program(older, monkeypatch):
     campaign = load_campaign(older / "raw" / "campaign.toml")
 
     def refused(*arguments, **options):
         raise OSError(errno.EIO, os.strerror(errno.EIO))
 
-    (found,) = survey_log(campaign, "A", reader=refused)
+    monkeypatch.setattr("reduction.batch.survey.read_record", refused)
+    (found,) = survey_log(campaign, "A")
     assert str(found.error) == (
         "A.csv: the file cannot be read; found Input/output error; "
         "needed a file that this user may read"
