@@ -927,7 +927,6 @@ def _calibrate_hose(
     parameters: Sequence[str],
     *,
     standard_uncertainty: Mapping[str, float] | None = None,
-    bounds: Mapping[str, tuple[float, float]] | None = None,
     load: Load = "tension",
 ) -> HoseCalibration:
     r"""Fit parameters of a hose to the judged curve of a test, with reliable intervals.
@@ -986,7 +985,7 @@ def _calibrate_hose(
     judged = measured.tension_of(measured.judged)
     used = np.isfinite(judged)
     start = np.array([_number_of(design, name) for name in names])
-    problem, sources = _pose(design, measured, names, bounds or {}, held, load)
+    problem, sources = _pose(design, measured, names, held, load)
     p = len(names)
     at_start = start / problem.unit
     begins = (problem.start(at_start), np.clip(at_start, problem.low, problem.high))
@@ -1055,7 +1054,6 @@ def _pose(
     design: HoseDesign,
     measured: MeasuredCurve,
     names: tuple[str, ...],
-    bounds: Mapping[str, tuple[float, float]],
     held: Mapping[str, float],
     load: Load,
 ) -> tuple[_FitProblem, tuple[str, ...]]:
@@ -1068,16 +1066,7 @@ def _pose(
         )
     start = np.array([_number_of(design, name) for name in names])
     unit = np.array([_plausible_error(name, at) for name, at in zip(names, start, strict=True)])
-    limits = []
-    for name, at in zip(names, start, strict=True):
-        low, high = bounds[name] if name in bounds else _parameter_bounds(name, at)
-        if not low < high:
-            raise SettingsError(
-                f"the bounds of {name} leave nothing between them",
-                found=f"{low:g} to {high:g}",
-                needed="a lower one below a higher one",
-            )
-        limits.append((low, high))
+    limits = [_parameter_bounds(name, at) for name, at in zip(names, start, strict=True)]
     low_high = np.array(limits) / unit[:, None]
     judged = measured.tension_of(measured.judged)
     used = np.isfinite(judged)
