@@ -54,7 +54,7 @@ def with_shared(
     values: Values,
     contributions: Contributions | None,
     shared_uncertainty_of_cycles: dict[str, Floats],
-    random: Values | None = None,
+    random: Values,
 ) -> Values:
     """Store the shared and random parts of every uncertainty, and the combined value."""
     known = SHARED | SHARED_OF_CHANNELS | SHARED_OF_STEPS
@@ -68,7 +68,7 @@ def with_shared(
         )
     found = dict(values)
     for name, shared in shared_uncertainty_of_cycles.items():
-        if random is not None and name in random:
+        if name in random:
             found[f"{name}_standard_uncertainty"] = random[name]
         _combine(found, name, shared[None])
     if contributions is None:
@@ -79,7 +79,7 @@ def with_shared(
         if name in SHARED_OF_CHANNELS:
             _combine_channel(found, name, rows)
             continue
-        if random is not None and name in random:
+        if name in random:
             found[f"{name}_standard_uncertainty"] = random[name]
         found[f"{name}_random_standard_uncertainty"] = _combine(found, name, rows)
         # without a number there are no contributions

@@ -292,11 +292,9 @@ def _number(value: float, variable: xr.Variable) -> str:
     return f"{value:.6g}" if unit in ("", "1") else f"{value:.6g} {unit}"
 
 
-def _find_place(
-    archive: xr.Dataset, dim: str, text: str | None, others: Mapping[str, int] | None = None
-) -> int:
+def _find_place(archive: xr.Dataset, dim: str, text: str | None, others: Mapping[str, int]) -> int:
     """Index of a requested place along a dimension."""
-    size, known = archive.sizes[dim], dict(others or {})
+    size, known = archive.sizes[dim], dict(others)
     labels = [str(_label_of(archive, dim, index)) for index in range(size)]
     told = [words_of(archive, dim, index, known) for index in range(size)]
     shown = (

@@ -32,9 +32,9 @@ class _FoundSteps:
     remark: Note | None = None
 
 
-def find_steps(plan: TestPlan, located: Located | None, campaign: Campaign) -> _FoundSteps:
+def find_steps(plan: TestPlan, located: Located, campaign: Campaign) -> _FoundSteps:
     """Find the levels of a cyclic log without stated steps."""
-    if located is None or located.cycles is None or plan.kind not in _LOOKED_AT:
+    if located.cycles is None or plan.kind not in _LOOKED_AT:
         return _FoundSteps()
     time, cycles = located.record.time, located.cycles
     control = control_channel(located.position, located.tension, plan.settings.cycles)

@@ -121,12 +121,10 @@ def find_member(path: Path, group: h5py.Group, name: str) -> h5py.Group | h5py.D
     return group
 
 
-def read_data_set(
-    path: Path, dataset: h5py.Group | h5py.Dataset, watch: Watch | None = None
-) -> NDArray[Any]:
+def read_data_set(path: Path, dataset: h5py.Group | h5py.Dataset, watch: Watch) -> NDArray[Any]:
     """All values of a data set stored in this file in a readable form."""
     found = _plain(path, dataset)
-    return _values(path, found, (), found.size, watch or Watch(path))
+    return _values(path, found, (), found.size, watch)
 
 
 def _plain(path: Path, dataset: h5py.Group | h5py.Dataset) -> h5py.Dataset:
@@ -277,11 +275,8 @@ def data_set(path: Path, dataset: h5py.Group | h5py.Dataset, watch: Watch) -> _D
     return _DataSet(path, _plain(path, dataset), watch)
 
 
-def read_texts(
-    path: Path, dataset: h5py.Group | h5py.Dataset, watch: Watch | None = None
-) -> tuple[str, ...]:
+def read_texts(path: Path, dataset: h5py.Group | h5py.Dataset, watch: Watch) -> tuple[str, ...]:
     """Texts of a data set of strings, limited to the maximum number of columns."""
-    watch = watch or Watch(path)
     dataset, axis = _column(path, dataset)
     texts: list[str] = []
     length = 0
@@ -309,11 +304,8 @@ def _no_text(path: Path, dataset: h5py.Dataset) -> LogError:
     )  # fmt: skip
 
 
-def _hdf5_table(
-    path: Path, file: h5py.File, layout: Layout, watch: Watch | None = None
-) -> ColumnTable:
+def _hdf5_table(path: Path, file: h5py.File, layout: Layout, watch: Watch) -> ColumnTable:
     """Columns of the group or matrix named by a layout."""
-    watch = watch or Watch(path)
     group = find_member(path, file, layout.group)
     if layout.matrix:
         names, units = (

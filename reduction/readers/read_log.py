@@ -88,13 +88,11 @@ def read_record(
     specimens: Sequence[str],
     quality: QualitySettings,
     length_needed: bool = True,
-    parts: LogParts | None = None,
     limits: Limits | None = None,
 ) -> tuple[Record, tuple[Source, ...]]:
     """Read the file or files of a test."""
     logs = [
-        (read_log(path, layout, name=name, parts=parts, limits=limits), layout)
-        for path, layout, name in files
+        (read_log(path, layout, name=name, limits=limits), layout) for path, layout, name in files
     ]
     record = to_record(
         logs, test_id=test_id, specimens=specimens, quality=quality, length_needed=length_needed
@@ -123,7 +121,7 @@ def _uncertainty(channel: Channel, layout: Layout, name: str) -> float:
 
 
 def read_step_readings(
-    files: Sequence[tuple[Path, Layout, str]], *, test_id: str, limits: Limits | None = None
+    files: Sequence[tuple[Path, Layout, str]], *, test_id: str, limits: Limits
 ) -> tuple[StepReadings, tuple[Source, ...]]:
     """Read the log of a stepwise test."""
     if len(files) != 1:

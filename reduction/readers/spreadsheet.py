@@ -298,10 +298,10 @@ _NOT_ZIP = (
 )  # fmt: skip
 
 
-def open_workbook(path: Path, watch: Watch | None = None) -> fastexcel.ExcelReader:
+def open_workbook(path: Path, watch: Watch) -> fastexcel.ExcelReader:
     """Open a workbook after checking it for damage."""
     if zipfile.is_zipfile(path):
-        _check_integrity(path, watch or Watch(path))
+        _check_integrity(path, watch)
     with _parsed(
         path,
         "the file is not a spreadsheet that can be read",

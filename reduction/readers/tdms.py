@@ -83,11 +83,11 @@ def _tdms_group(path: Path, file: nptdms.TdmsFile, group: str) -> nptdms.TdmsGro
 
 
 def tdms_table(
-    path: Path, file: nptdms.TdmsFile, group: nptdms.TdmsGroup, watch: Watch | None = None
+    path: Path, file: nptdms.TdmsFile, group: nptdms.TdmsGroup, watch: Watch
 ) -> ColumnTable:
     """Channels of a group as columns."""
     channels = group.channels()
-    (watch or Watch(path)).check_columns(len(channels))
+    watch.check_columns(len(channels))
     most = 8 * path.stat().st_size  # a value takes at least one bit
     for channel in channels:
         if len(channel) > most:

@@ -230,11 +230,8 @@ _ON_SCALE = {
 }
 
 
-def run_table(
-    view: ExperimentView, tests: Mapping[str, TestView] | None = None
-) -> PageTable | None:
+def run_table(view: ExperimentView, tests: Mapping[str, TestView]) -> PageTable | None:
     """Return the runs as planned and as reached, with the responses of each."""
-    own = {} if tests is None else tests
     strength = view.per_run("run_rated_break_strength")
     is_share = bool(np.isfinite(strength).any())
     load = Shown("%RBS", 100.0) if is_share else shown("tension", view.units)
@@ -249,7 +246,7 @@ def run_table(
     for name in view.responses:
         sheet.measured(
             in_words(name), view.per_run(f"{name}_measured"), response_unit(name, view.units),
-            expanded_of_runs(view, name, own), is_short=True,
+            expanded_of_runs(view, name, tests), is_short=True,
         )  # fmt: skip
     if any(view.texts("run_remark")):
         sheet.texts("remark", "run_remark")
@@ -257,7 +254,7 @@ def run_table(
     return sheet.table(
         f"Runs as planned (coded {factors}) and as reached: means over the cycles of each run; peak"
         " and minimum are the greatest and least of its cycles.",
-        remarks=[_about_runs(view, sheet, own)], is_compact=True,
+        remarks=[_about_runs(view, sheet, tests)], is_compact=True,
     )  # fmt: skip
 
 

@@ -85,8 +85,8 @@ def budget_of(
     *,
     random: float,
     degrees_of_freedom: float,
-    place: Mapping[str, str] | None = None,
-    words: Mapping[str, str] | None = None,
+    place: Mapping[str, str],
+    words: Mapping[str, str],
 ) -> Budget:
     """Put the sources of one number in order.
 
@@ -100,7 +100,8 @@ def budget_of(
     --------
     >>> cell = Component("tension_gain", "load cell")
     >>> budget = budget_of("segment_modulus", "Pa", 1e6, {cell: 3e3}, random=4e3,
-    ...     degrees_of_freedom=9.0)
+    ...     degrees_of_freedom=9.0,
+    ...     place={}, words={})
     >>> print([(row.source, round(row.share, 2)) for row in budget.rows])
     [('random', 0.64), ('tension_gain', 0.36)]
     >>> print(budget.standard_uncertainty, round(budget.coverage_factor, 2))
@@ -131,14 +132,14 @@ def budget_of(
     return Budget(
         quantity=quantity,
         unit=unit,
-        place=dict(place or {}),
+        place=dict(place),
         value=value,
         standard_uncertainty=total,
         expanded_uncertainty=factor * total,
         coverage_factor=factor,
         degrees_of_freedom=degrees_of_freedom,
         effective_degrees_of_freedom=float(effective),
-        words=dict(words or {}),
+        words=dict(words),
         rows=tuple(sorted(rows, key=lambda row: (-row.share, row.source, row.of))),
     )
 

@@ -38,7 +38,7 @@ def contributions():
 
 
 def test_the_standard_uncertainty_holds_both_parts_and_the_random_one_stands_beside():
-    found = with_shared(values(), contributions(), {})
+    found = with_shared(values(), contributions(), {}, {})
     assert found["segment_modulus_standard_uncertainty"][0, 0, 0] == 5.0
     assert found["segment_modulus_random_standard_uncertainty"][0, 0, 0] == 4.0
     assert found["uncertainty_source"].tolist() == ["tension_gain", "strain_calibration"]
@@ -47,25 +47,25 @@ def test_the_standard_uncertainty_holds_both_parts_and_the_random_one_stands_bes
 
 
 def test_nothing_contributes_to_a_number_that_is_not_there():
-    found = with_shared(values(), contributions(), {})
+    found = with_shared(values(), contributions(), {}, {})
     assert np.isnan(found["segment_modulus_uncertainty_contribution"][:, 0, 0, 1]).all()
 
 
 def test_a_curve_of_one_cycle_shares_the_error_of_the_mean():
-    found = with_shared(values(), contributions(), {})
+    found = with_shared(values(), contributions(), {}, {})
     spread = found["tangent_modulus_by_cycle_standard_uncertainty"]
     assert (spread[:, :, 0] == 5.0).all() and (spread[:, :, 1] == 4.0).all()
 
 
 def test_a_cycle_has_its_noise_and_what_all_cycles_share():
-    found = with_shared(values(), None, {"peak_tension": np.array([[4.0]])})
+    found = with_shared(values(), None, {"peak_tension": np.array([[4.0]])}, {})
     assert found["peak_tension_standard_uncertainty"][0, 0] == 5.0
     assert "uncertainty_source" not in found
 
 
 def test_where_nothing_is_shared_nothing_changes():
     before = values()
-    found = with_shared(before, None, {})
+    found = with_shared(before, None, {}, {})
     assert found.keys() == before.keys()
 
 
@@ -73,7 +73,7 @@ def test_where_a_contribution_is_not_known_the_uncertainty_is_not_either():
     unknown = np.full((2, 1, 2, 1), np.nan)
     found = with_shared(
         values() | {"tangent_modulus_standard_uncertainty": np.ones((1, 2, 1))},
-        Contributions((CELL, TAPE), {"tangent_modulus": unknown}), {},
+        Contributions((CELL, TAPE), {"tangent_modulus": unknown}), {}, {},
     )  # fmt: skip
     assert np.isnan(found["tangent_modulus_standard_uncertainty"]).all()
     assert (found["tangent_modulus_random_standard_uncertainty"] == 1.0).all()
@@ -82,7 +82,7 @@ def test_where_a_contribution_is_not_known_the_uncertainty_is_not_either():
 def test_contributions_without_a_variable_are_refused_and_not_dropped():
     lost = Contributions((Component("tension_gain", "cell"),), {"test_speed": np.ones((1, 1))})
     with pytest.raises(ArchiveError, match="no variable for contributions of shared errors"):
-        with_shared(values(), lost, {})
+        with_shared(values(), lost, {}, {})
 
 
 def channel(reading, rows):
@@ -90,7 +90,7 @@ def channel(reading, rows):
     before = {"tension": np.zeros((2, 9))}
     if reading is not None:
         before["tension_standard_uncertainty"] = np.array(reading)
-    found = with_shared(before, Contributions((CELL,), {"tension": np.array([rows])}), {})
+    found = with_shared(before, Contributions((CELL,), {"tension": np.array([rows])}), {}, {})
     return [
         found[f"tension{suffix}"].tolist()
         for suffix in (

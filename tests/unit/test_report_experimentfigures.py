@@ -142,7 +142,7 @@ def test_lines_of_one_time_and_of_inverse_frequency_cross_in_the_middle_of_the_r
     ]))  # fmt: skip
     noise = 1 + 1e-3 * np.cos(np.arange(15))
     check = check_single_time(runs.frequency, time * noise, 1 / time)
-    (figure,) = draw_single_time(view_of(replace(plain, runs=runs, single_time=check)))
+    (figure,) = draw_single_time(view_of(replace(plain, runs=runs, single_time=check)), {})
     level, falling = figure.data[:2]
     assert level["y"] == pytest.approx([2, 2])
     ratio = falling["x"][1] / falling["x"][0]
@@ -158,7 +158,7 @@ def test_forms_stand_beside_the_quadratic_surface():
     quadratic = view.array("apparent_spring_constant_residual")
     assert missed.data[-1]["y"] == pytest.approx(quadratic, rel=1e-4, abs=1e-6 * quadratic.max())
     nothing = view_of(screening_experiment())
-    assert draw_forms(nothing) == draw_single_time(nothing) == []
+    assert draw_forms(nothing) == draw_single_time(nothing, {}) == []
 
 
 def test_effects_have_the_least_that_counts():

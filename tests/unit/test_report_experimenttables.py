@@ -47,7 +47,7 @@ def column(table, start):
 
 def test_runs_stand_as_planned_and_as_reached_with_the_share_of_the_break_strength():
     result = law_experiment({"apparent_spring_constant": law})
-    table = run_table(view_of(result))
+    table = run_table(view_of(result), {})
     assert table.columns[:5] == (
         "run", "plan, coded", "frequency [Hz]", "mean tension [N]", "tension amplitude [N]",
     )  # fmt: skip
@@ -60,13 +60,13 @@ def test_runs_stand_as_planned_and_as_reached_with_the_share_of_the_break_streng
 
 
 def test_a_run_that_was_not_made_says_why():
-    table = run_table(view_of(surface_experiment(missing=(4,))))
+    table = run_table(view_of(surface_experiment(missing=(4,))), {})
     assert column(table, "remark")[4].text == "its test gave no results"
     assert column(table, "apparent spring constant")[4].text == NOT_GIVEN
 
 
 def test_a_plan_of_a_screening_has_its_factors_and_not_the_dummies():
-    table = run_table(view_of(screening_experiment()))
+    table = run_table(view_of(screening_experiment()), {})
     assert {len(text.split(",")) for text in (row[1].text for row in table.rows)} == {5}
 
 
@@ -83,7 +83,7 @@ def test_a_load_that_is_a_share_is_shown_in_per_cent_of_what_it_is_a_share_of(of
     data["factor_unit"].values[0, 2] = "1"
     whole = data["run_mean_tension"].values if of_mean else STRENGTH
     data["run_level"].values[..., 2] = data["run_tension_amplitude"].values / whole
-    table = run_table(replace(view, data=data))
+    table = run_table(replace(view, data=data), {})
     unit = "% of mean" if of_mean else "%RBS"
     cells = column(table, f"tension amplitude [{unit}]")
     wanted = 100 * data["run_level"].values[0, :, 2]

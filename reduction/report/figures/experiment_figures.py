@@ -470,15 +470,13 @@ def _kinds(view: ExperimentView, name: str) -> list[str]:
 _FORM_GREY = "#8C8C8C"
 
 
-def draw_single_time(
-    view: ExperimentView, tests: Mapping[str, TestView] | None = None
-) -> list[Figure]:
+def draw_single_time(view: ExperimentView, tests: Mapping[str, TestView]) -> list[Figure]:
     """Draw the relaxation time against frequency, with the lines of one time and of 1/f."""
     exponent = view.scalar("single_time_exponent")
     unit = shown("time", view.units)
     frequency = view.per_run("run_frequency")
     time = view.per_run("relaxation_time_measured") * unit.factor
-    spread = expanded_of_runs(view, "relaxation_time", {} if tests is None else tests)
+    spread = expanded_of_runs(view, "relaxation_time", tests)
     half = spread.half * unit.factor
     known = np.isfinite(frequency) & (time > 0)
     if not np.isfinite(exponent) or "frequency" not in view.factors or not known.any():
