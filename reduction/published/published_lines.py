@@ -36,7 +36,6 @@ from reduction.record.measurement import (
     read_only_arrays,
 )
 from reduction.record.notes import note
-from reduction.record.settings import StrainMethod
 
 POUND, INCH = scale_to_si("lbf", "force")[0], scale_to_si("in", "length")[0]
 
@@ -652,17 +651,14 @@ class TetherSegment:
     ----------
     name : SegmentName
         Test, condition, tether, table, place counted from the lowest strain.
-    branch : str
-        ``ascending``: no descending modulus is tabulated.
     strain_low, strain_high : float
-        By ``strain_method``; NaN where open. [1]
+        By a constant fraction, the method of the report; NaN where open. [1]
     tension_low, tension_high : float
         NaN where open. [N]
     modulus : float
-        With the area at zero tension; NaN where open. [Pa]
-    strain_method : StrainMethod
-        Method of the report; in T-1 its moduli are 1.145 (new) and 1.163 (used) times those of the
-        marks.
+        Ascending, as no descending modulus is tabulated, with the area at zero tension; NaN where
+        open. By the strain of the report: in T-1 1.145 (new) and 1.163 (used) times that of the
+        marks. [Pa]
     is_open : bool
         Whether a number of the row is open.
     errata : tuple of str
@@ -680,8 +676,6 @@ class TetherSegment:
     is_open: bool
     errata: tuple[str, ...]
     notes: tuple[str, ...]
-    branch: Literal["ascending"] = "ascending"
-    strain_method: StrainMethod = "constant-fraction"
 
 
 @dataclass(frozen=True)

@@ -213,7 +213,6 @@ def test_every_segment_that_is_not_open_is_a_chord_on_that_area(tether):
         # half a psi, half a unit of the last digit of a corrected limit, and of the diameter
         allowed = 0.5 * PSI + (0.0005 / 0.475 + 2 * 0.005 / 0.94) * chord
         assert one.modulus == pytest.approx(chord, abs=allowed), one.name
-        assert one.branch == "ascending"
 
 
 def test_segments_in_number_and_what_is_open_of_them():
