@@ -794,10 +794,11 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "warning",
         lambda share, is_open: (
             f"the wave does not repeat from cycle to cycle (it differs by {share:.0%} of"
-            " half its range), as when two frequencies are combined: a cycle is not a closed loop,"
-            " and its stiffness does not belong to one frequency"
+            " half its range), as when two frequencies are combined or the amplitude jumps between"
+            " cycles: a cycle is not a closed loop, and its stiffness does not belong to one"
+            " frequency and amplitude"
             + (". Its energy and loss are not given" if is_open else "")
-            + ". Test each frequency separately"
+            + ". Test each frequency separately, and declare each amplitude as a step of its own"
         ),
     ),
     "wave-changes": (
