@@ -36,7 +36,7 @@ from reduction.record.errors import (
 from reduction.record.measurement import Floats, Record, Source, Specimen, StepReadings
 from reduction.record.note_sentences import JERKS
 from reduction.record.notes import Note, note
-from reduction.record.row_counts import count_rows
+from reduction.record.row_counts import ROWS_FLAGGED, count_rows, notes_on_rows
 from reduction.record.samples import finite_extremes, step_of_codes
 from reduction.stages.load_at_slack import (
     load_at_slack,
@@ -87,7 +87,7 @@ def _log_summary(located: Located) -> dict[str, Any]:
 def _slice(record: Record, first: int, stop: int) -> Record:
     """The rows from ``first`` up to ``stop`` as a separate record."""
     part = slice(first, stop)
-    return replace(
+    own = replace(
         record,
         time=record.time[part],
         crosshead_position=record.crosshead_position[part],
@@ -99,6 +99,8 @@ def _slice(record: Record, first: int, stop: int) -> Record:
         cycle_counter=None if record.cycle_counter is None else record.cycle_counter[part],
         n_rows_read=stop - first,
     )
+    of_log = [one for one in record.notes if one.code not in ROWS_FLAGGED]
+    return replace(own, notes=(*of_log, *notes_on_rows(own)))
 
 
 _OF_STEP = 0.01  # an end behind that of the log or of the next step by less is rounded

@@ -275,6 +275,26 @@ def test_a_log_in_steps_has_each_in_the_history_and_one_that_fails_is_one_earlie
     assert names == "A, weights" and np.isnan(numbers).all()
 
 
+def test_a_spike_is_told_in_the_step_in_which_it_is(row, command):
+    lines = (row / "A.csv").read_text().splitlines()
+    place = 1 + next(at for at, line in enumerate(lines) if line.startswith("30.0"))
+    *before, load = lines[place].split(",")
+    lines[place] = ",".join([*before, str(float(load) + 100)])
+    (row / "A.csv").write_text("\n".join(lines) + "\n")
+    steps = "".join(
+        f'[[tests.A.steps]]\nname = "{name}"\nfrom = "{low} s"\nto = "{high} s"\n'
+        for name, low, high in (("first", 0, 50), ("second", 50, 100))
+    )
+    text = (row / "campaign.toml").read_text()
+    (row / "campaign.toml").write_text(text.replace("[tests.weights]", steps + "[tests.weights]"))
+    run(row, command)
+    told = []
+    for name in ("first", "second"):
+        with open_archive(row / "processed" / "row" / f"A.{name}.nc") as archive:
+            told.append("rows-flagged" in archive["note_code"].values.tolist())
+    assert told == [True, False]
+
+
 def test_a_step_is_reduced_again_where_its_range_moves(row, command):
     step = '[[tests.A.steps]]\nname = "first"\nfrom = "{} s"\nto = "{} s"\n'
     text = (row / "campaign.toml").read_text()
