@@ -1247,8 +1247,8 @@ def _no_length(position: Floats, flags: _Flags) -> Bools:
             found=f"{100 * share:.0f} % of the samples at or below 0 m, least "
             f"{finite_extremes(position)[0]:.4g} m",
             needed="the distance between the pins",
-            hint='Set datum = "displacement", with a reference_length where one is known, or '
-            "correct zero and sign.",
+            hint='Set datum = "displacement", with a reference_length where one is known; of a '
+            "displacement correct sign, zero or reference_length.",
         )
     return not_positive
 

@@ -510,6 +510,21 @@ def test_a_pull_that_bounces_where_the_specimen_parts_is_said_to_be_one():
         find(time, position)
 
 
+def test_no_cycle_runs_over_smaller_ones_that_the_band_hides():
+    """A protocol of growing amplitude: the first pair of turns had two cycles of half its range."""
+    sizes = np.repeat([1.0, 1.5, 3, 6, 12, 20], 3)
+    turns = np.concatenate([[0.0], np.stack([sizes, -sizes], axis=1).ravel(), [0.0]])
+    begins = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(turns)))])
+    time = np.arange(0, begins[-1], 0.1)
+    position = np.interp(time, begins, turns)
+    cycles = find(time, position + 100)
+    for first, last in zip(cycles.first, cycles.last, strict=True):
+        one = position[first : last + 1]
+        assert 2 * np.ptp(one) == pytest.approx(np.abs(np.diff(one)).sum(), rel=0.2)
+    # the cycle on the way to 6, and the first of each amplitude that is reached from a smaller one
+    assert cycles.n_cycles == 11
+
+
 def test_movements_that_never_repeat_are_refused():
     points = [(0, 3), (10, 3), (20, 5), (50, 5), (60, 4), (90, 4), (100, 6), (130, 6), (140, 3)]
     with pytest.raises(

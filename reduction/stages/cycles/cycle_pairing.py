@@ -799,6 +799,10 @@ _SETTLING = 0.3  # for the first cycle of a run, in which a machine settles
 
 _BESIDE = 24  # parts of a cycle, from a turn: where the drop-outs of a logger end
 
+_SMALL = 0.4  # of the median range: a cycle in which the band may hide others
+
+_RUNS_OVER = 0.3  # of the range of a cycle: a way back within a branch that is a cycle of its own
+
 _STEADY = 0.5  # of the step of a valley: least step of a neighbour in the same direction
 
 
@@ -828,6 +832,8 @@ def whole_cycles(values: Floats, halves: _HalfCycles) -> tuple[Indices, Indices,
     is, where the valley before or after steps in the same direction by at least half as much. The
     median of each valley and its neighbours is used, so that a drop-out at one does not open a
     cycle; but not where the channel stays below for longer, as when a specimen is unloaded.
+    Where amplitudes grow, the band hides the first cycles, and a branch may run over several of
+    them: a pair with a way back of more than three tenths of its range is left out.
 
     Examples
     --------
@@ -871,8 +877,26 @@ def whole_cycles(values: Floats, halves: _HalfCycles) -> tuple[Indices, Indices,
     steady[1:] |= goes_on & (np.abs(step[:-1]) >= slower[1:])
     steady[:-1] |= goes_on & (np.abs(step[1:]) >= slower[:-1])
     broken = is_open & ~steady
+    reach = np.abs(peak - np.minimum(begin, end))
+    small = _SMALL * np.median(reach) if reach.size else 0.0
+    for pair in np.flatnonzero(~broken & (reach < small)).tolist():
+        rise, fall = (
+            values[halves.first[branch] : halves.last[branch] + 1] for branch in both[pair]
+        )
+        broken[pair] = max(_back(rise), _back(-fall)) > _RUNS_OVER * reach[pair]
     kept = both[~broken]
     return halves.first[kept], halves.last[kept], halves.first[rising[broken]]
+
+
+def _back(rise: Floats) -> float:
+    """Greatest way back within a rise.
+
+    Examples
+    --------
+    >>> _back(np.array([0.0, 3.0, 1.0, np.nan, 4.0]))
+    2.0
+    """
+    return float(np.nanmax(np.fmax.accumulate(rise) - rise))
 
 
 def _steps(begin: Floats, end: Floats, follows: Bools) -> Floats:
