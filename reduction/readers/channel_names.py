@@ -625,7 +625,7 @@ class _Start:
     def _sign(self, key: str) -> tuple[str, list[str]]:
         """Sign reversal of a channel if tension would otherwise fall as the specimen stretches."""
         for load in self.loads.values() if key == "crosshead_position" else [self.loads[key]]:
-            if not np.ptp(load) > 0 or not np.corrcoef(self.position, load)[0, 1] < _OPPOSED:
+            if not self._opposes(load):
                 return "", []
             is_pulled = abs(float(load.max())) > abs(float(load.min()))
             if is_pulled == (key != "crosshead_position"):
@@ -636,6 +636,17 @@ class _Start:
         return ", sign = -1", [
             f"guess: sign of {key}: the load falls as the position rises, and lies {end} 0"
         ]
+
+    def _opposes(self, load: Floats) -> bool:
+        """Whether a load falls as the position rises; of a pull, on the way to its greatest load.
+
+        Behind it a pull that breaks slowly carries less and less over most of its travel.
+        """
+        place = self.position
+        peak = int(np.argmax(np.abs(load - load[0]))) + 1
+        if peak >= _LEAST_OF_PULL and _kind_of(place) == "tensile":
+            place, load = place[:peak], load[:peak]
+        return np.ptp(load) > 0 and bool(np.corrcoef(place, load)[0, 1] < _OPPOSED)
 
     def _sign_of_strain(self, key: str) -> tuple[str, list[str]]:
         """Sign reversal of a strain that falls as the position rises, once this has its sign."""

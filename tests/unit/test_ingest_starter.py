@@ -188,6 +188,18 @@ def test_the_kind_of_a_test_that_does_not_cycle_is_drafted(tmp_path, knots, kind
     assert ("# guess: the kinds in tests.csv" in files["campaign.toml"]) is bool(kind)
 
 
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_pull_that_breaks_slowly_keeps_its_sign(tmp_path, sign):
+    """A connection that is torn apart: its load falls over nine tenths of the travel; synthetic."""
+    travel = np.linspace(0, 30, 300)
+    load = 2700 * np.interp(travel, [0, 3, 30], [0, 1, 0.2])
+    rows = zip(np.arange(300) / 10, sign * travel, load, strict=True)
+    lines = [f"{t:.1f},{x:.3f},{f:.1f}" for t, x, f in rows]
+    (tmp_path / "T-1.csv").write_text("\n".join(["Time (s),Travel (mm),Load (N)", *lines, ""]))
+    layout = tomllib.loads(starter_campaign(tmp_path)["campaign.toml"])["layouts"]["log"]
+    assert layout["channels"]["crosshead_position"].get("sign", 1) == sign
+
+
 def test_a_sheet_of_means_beside_the_logs_is_no_log(tmp_path):
     """As in an export of testXpert with its statistics; synthetic."""
     log = [["Time [s]", "Travel [mm]", "Force [N]"], *([i, i, 2.0 * i] for i in range(20))]
