@@ -12,7 +12,7 @@ from reduction.pipeline.located_test import Located
 from reduction.record.errors import DataError, FitError
 from reduction.record.measurement import Floats, Integers, Specimen
 from reduction.record.notes import Note, note
-from reduction.record.samples import last_sample
+from reduction.record.samples import finite_extremes, last_sample
 from reduction.record.settings import CycleSettings, RopeSettings
 from reduction.stages.cycles.cycle_product import Cycles, Loops
 from reduction.stages.holds.hold_product import HoldResult
@@ -270,7 +270,7 @@ def rope_step(
             located.position, tension, strain, rated_break_strength=strength, broke=failed
         )
         if kind == "tensile":  # a slow pull need not end in a break
-            notes += _of_pull(pull, names)
+            notes += _of_pull(pull, tension, names)
         step = replace(step, tensile=pull)
     if step == RopeStep(step.name):
         return None
@@ -430,9 +430,15 @@ def _of_pairs(pairs: Sequence[HeldPair]) -> list[Note]:
     return notes
 
 
-def _of_pull(pull: TensilePull, names: Sequence[str]) -> list[Note]:
+_PUSHED = 2.0  # times the greatest tension: a load below zero that is no recoil
+
+
+def _of_pull(pull: TensilePull, tension: Floats, names: Sequence[str]) -> list[Note]:
     notes = []
     for row, name in enumerate(names):
+        least, most = finite_extremes(tension[row])
+        if -least > _PUSHED * max(most, 0.0):
+            notes.append(note("pushed-in-pull", name, least=least, most=most))
         if not pull.is_break[row]:
             peak = float(pull.peak_tension[row])
             notes.append(note("no-break", name, how=pull.how[row], tension=peak))

@@ -209,7 +209,8 @@ _OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "reference-length-elsewhere": (
         "warning",
         "reference_length is stated at {stated:.4g} N, but where displacement is first zero the"
-        " tension of {specimen} is {found:.4g} N",
+        " tension of {specimen} is {found:.4g} N. Check the zero of the load cell, and at which"
+        " tension displacement was set to zero",
     ),
     "reference-length-never-read": (
         "warning",
@@ -1440,6 +1441,12 @@ _OF_LINE: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "refusal",
         "tensile strength not given: {how}: the line carried {tension:.4g} N or more",
     ),
+    "pushed-in-pull": (
+        "warning",
+        "the load falls to {least:.4g} N and rises to {most:.4g} N only: the specimen is pushed,"
+        " and load and strain of this pull are not its strength. For a test in compression, set"
+        " sign = -1 for the load, and for a position that falls with it",
+    ),
     "no-strain-at-failure": (
         "refusal",
         "strain at failure not given: the strain at the peak is not known, or did not grow while"
@@ -2249,7 +2256,8 @@ CAUSES = (
     "cycles-in-other-kind", "hold-of-position", "cycles-unlike",
     "rate-not-as-stated", "level-not-as-stated",
     "load-never-falls", "load-zero-drifts", "load-zero-wrong", "load-negative",
-    "load-steps", "load-falls-with-stretch", "pushed-in-cycles", "reference-length-under-preload",
+    "load-steps", "load-falls-with-stretch", "pushed-in-cycles", "pushed-in-pull",
+    "reference-length-under-preload",
     "reference-length-elsewhere", "reference-length-never-read",
     "tension-far-below-strength", "extensometer-late",
     "extensometer-ends", "position-ends", "load-in-steps",

@@ -196,6 +196,19 @@ def test_a_pull_without_strain_has_a_strength_alone():
     )
 
 
+def test_a_test_in_compression_is_told_that_it_is_no_pull():
+    # a block that crushes at 2779 N; it pulls 1 N as the platen touches it
+    push = np.concatenate([np.linspace(1, -2779, 60), np.linspace(-2779, -20, 60)])
+    one = record(push, position=6.0 - np.arange(120) / 100)
+    located = locate(one, kind="tensile", settings=ReductionSettings())
+    found = rope_step(
+        located, located.tension * 0, located.tension, kind="tensile", specimens=(ROPE,),
+        loops=None, holds=(), failed=None, settings=RopeSettings(),
+    )  # fmt: skip
+    (told,) = (one for one in found.notes if one.code == "pushed-in-pull")
+    assert "falls to -2779 N and rises to 1.03" in str(told)
+
+
 def of_two(first, second, position):
     """Two lines side by side, each with its own load cell."""
     one, other = (record(load, position=position) for load in (first, second))
