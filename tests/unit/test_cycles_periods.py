@@ -54,6 +54,24 @@ def test_rests_that_differ_by_one_reading_are_parts_of_all_periods():
     assert period[:-1] == pytest.approx(np.full(n_cycles - 2, per), abs=0.2)
 
 
+@pytest.mark.parametrize("per", [33.3, 40.3, 52.7])
+def test_what_a_curved_flank_misses_does_not_add_up_over_the_periods(per):
+    """Pulses of a sine for 60 % of the time: their flanks bend about half way up."""
+    n_cycles = 400
+    turn = np.arange(int(per * n_cycles)) / per
+    wave = np.where(turn % 1 < 0.6, -np.cos(2 * np.pi * (turn % 1) / 0.6), -1.0)
+    begin = np.ceil(per * np.arange(n_cycles)).astype(int)
+    begin, end = begin[:-1], begin[1:]
+    peak = np.rint(per * (np.arange(n_cycles - 1) + 0.3)).astype(int)
+    cycles = Cycles(
+        begin, end, np.stack([begin, peak], axis=1), np.stack([peak, end], axis=1),
+        np.ones((n_cycles - 1, 2)), *np.zeros((3, turn.size)), 0.1,
+    )  # fmt: skip
+    time = np.arange(turn.size) * 1.0
+    period, _ = own_periods(time, wave, cycles, time[end] - time[begin], noise=1e-6)
+    assert period[:-1].mean() == pytest.approx(per, abs=4e-4)
+
+
 def test_a_cycle_that_was_not_counted_is_no_part_of_a_period():
     """Of three cycles, the one in the middle is missing: the others have their own periods."""
     turn = np.arange(3 * 20 + 1) / 20

@@ -11,6 +11,7 @@ from __future__ import annotations
 from functools import partial
 
 import numpy as np
+from scipy.ndimage import median_filter
 
 from reduction.record.measurement import Bools, Floats, Integers
 from reduction.record.samples import take_samples
@@ -476,14 +477,19 @@ def _flank_to_flank(
         steep = speed * (take_samples(time, end) - take_samples(time, begin)) / whole > _STEEP
         apart = level[touch] - level[touch - 1]
         alike = np.abs(apart) < _STEEP * np.abs(whole[touch])
-        step = np.abs(rise / (high - low))[touch]
+        # one level for cycles alike: of a level for each pair, what a flank bends would add up
+        per_reading = np.abs(rise / (high - low))
+        usual = median_filter(level, _LEVELS_ALIKE, mode="nearest")
+        usual = np.clip(usual, level - per_reading / 2, level + per_reading / 2)
+        common = (usual[touch] + usual[touch - 1]) / 2
+        step = per_reading[touch]
         missed = step + _BEYOND_NOISE * noise
         is_other = np.abs(ends[:, touch] - ends[:, touch - 1]).max(axis=0) > missed
         at_one_level, at_half_way = (
             np.subtract(*(at[one] + shift / speed[one] for one, shift in (
                 (touch, later), (touch - 1, earlier))))
             for later, earlier in (
-                (-apart / 2, apart / 2),
+                tuple(common - level[one] for one in (touch, touch - 1)),
                 tuple(half_way[one] - level[one] for one in (touch, touch - 1)),
             )
         )  # fmt: skip
@@ -496,6 +502,9 @@ def _flank_to_flank(
         beside = of_step if is_irregular else np.where(is_other, of_way, 0.0)
         own = np.hypot(noise / np.sqrt(n_apart) / np.abs(speed[touch]), beside)
     return found, own, steep[touch] & steep[touch - 1] & alike & (found > 0)
+
+
+_LEVELS_ALIKE = 11  # cycles, over which a slow change of level is none
 
 
 def _half_way(driven: Floats, begin: Integers, end: Integers) -> Integers:
