@@ -33,7 +33,6 @@ from reduction.cli.lookup import (
     line_of_request,
     lines_to_rank,
     lines_with,
-    name_of_quantity,
     parsed_search,
 )
 from reduction.lines import line_lookup
@@ -42,6 +41,7 @@ from reduction.lines.line_rank import rank_lines
 from reduction.lines.lookup_product import LEVEL_DIMENSIONS, DesignValues, LineSource
 from reduction.lines.population import PopulationValues, population_values, specimens_of_kind
 from reduction.prediction.hose_prediction import predict_from_plan
+from reduction.quantities.names import name_of_quantity
 from reduction.quantities.units import UnitSystem, parse_quantity
 from reduction.readers.raw_log import hash_source
 from reduction.record.errors import SettingsError

@@ -48,7 +48,7 @@ from reduction.campaign.unit_types import (
     Strain,
     value_in_si,
 )
-from reduction.quantities.names import QUANTITIES, quantity
+from reduction.quantities.names import QUANTITIES, name_of_quantity, quantity
 from reduction.quantities.units import Dimension, parse_in_unit, parse_quantity
 from reduction.readers.layout import Layout
 from reduction.record.contributions import (
@@ -397,7 +397,8 @@ def report_details(
 def _limit(
     path: Path, place: str, one: _LimitSection, tests: Mapping[str, TestPlan]
 ) -> ReportLimit:
-    if one.quantity not in QUANTITIES:
+    named = one.quantity if one.quantity in QUANTITIES else name_of_quantity(one.quantity)
+    if named not in QUANTITIES:
         raise in_toml(
             path, f"{place}.quantity is not known", found=repr(one.quantity),
             needed="a name such as tangent_modulus; `reduction budget PRODUCT.nc` lists them",
@@ -412,7 +413,7 @@ def _limit(
         raise in_toml(path, f"{place} has no limit", needed="lower, upper, or both")
     with at_place(f"{path}: {place}: "):
         lower, upper = (
-            None if text is None else parse_in_unit(text, quantity(one.quantity).unit)
+            None if text is None else parse_in_unit(text, quantity(named).unit)
             for text in (one.lower, one.upper)
         )
         at = {key: parse_place(key, str(value)) for key, value in one.at.items()}
@@ -421,8 +422,11 @@ def _limit(
             path, f"{place}: the lower limit is not below the upper one",
             found=f"{one.lower} and {one.upper}",
         )  # fmt: skip
+    # of no single cycle: the mean of the test
+    if f"test_{named}" in QUANTITIES and "cycle" not in at:
+        named = f"test_{named}"
     return ReportLimit(
-        quantity=one.quantity, test=product[0], at=at, lower=lower, upper=upper, source=one.source
+        quantity=named, test=product[0], at=at, lower=lower, upper=upper, source=one.source
     )
 
 

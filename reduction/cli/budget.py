@@ -16,10 +16,10 @@ from reduction.archive.uncertainty_budget import (
     quantities_with_budget,
 )
 from reduction.archive.variables import stored
-from reduction.cli.lookup import name_of_quantity
 from reduction.cli.output import CommandOutput
 from reduction.cli.printed_numbers import plain, short, table_of
 from reduction.quantities.flags import LINE_METHODS
+from reduction.quantities.names import name_of_quantity
 from reduction.record.errors import SettingsError
 from reduction.stages.three_parameter_line.line_product import LINE_PARAMETERS
 from reduction.uncertainty.budget import Budget

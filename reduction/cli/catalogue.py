@@ -26,7 +26,7 @@ from reduction.batch.catalogue import (
 )
 from reduction.cli.output import CommandOutput, plain_table
 from reduction.cli.printed_numbers import plain, short, table_of
-from reduction.quantities.names import QUANTITIES
+from reduction.quantities.names import QUANTITIES, name_of_quantity
 
 _SPREAD = "_standard_uncertainty"
 
@@ -62,11 +62,7 @@ def query_of(
 
 def _named(text: str) -> str:
     """Name of a quantity, also if requested by its symbol."""
-    if text in QUANTITIES:
-        return text
-    from reduction.cli.lookup import name_of_quantity
-
-    return name_of_quantity(text)
+    return text if text in QUANTITIES else name_of_quantity(text)
 
 
 def show_catalogue(

@@ -48,7 +48,6 @@ from reduction.lines.lookup_product import (
 )
 from reduction.lines.published_source import published_sources
 from reduction.lines.tether_comparison import compared_tethers
-from reduction.quantities.names import SINGLE_QUANTITIES
 from reduction.quantities.names import quantity as quantity_of
 from reduction.quantities.units import UnitSystem, display_unit, parse_quantity
 from reduction.record.errors import ArchiveError, DataError, SettingsError
@@ -58,19 +57,6 @@ from reduction.stages.three_parameter_line.line_product import REASONS
 if TYPE_CHECKING:
     from reduction.lines.export_tables import ValueTable
     from reduction.lines.population import PopulationValues
-
-_OF_CYCLES = (
-    "apparent_spring_constant", "hysteresis_energy", "quasi_static_spring_constant",
-    "dissipation_spring_constant", "relaxation_time", "dashpot_coefficient",
-)  # fmt: skip
-
-# the tension curve over strain is stored under the name of its branches; rope programmes call K_ap
-# dynamic stiffness, and the results of a run call it EA
-_BY_WORDS = {
-    "tension": "branch_tension",
-    "dynamicstiffness": "apparent_spring_constant",
-    "EA": "apparent_spring_constant",
-}
 
 _ENDINGS = (".nc", ".toml", ".csv")
 
@@ -104,21 +90,6 @@ def lines_of_source(source: str) -> list[LineSource]:
         + (f"one of {', '.join(near)}" if near else f"one of {len(published)} published lines"),
         hint="List them with `reduction lookup published --list`.",
     )
-
-
-def name_of_quantity(text: str) -> str:
-    """Name of a quantity requested by its symbol in the source, or as ``tension``.
-
-    Examples
-    --------
-    >>> [name_of_quantity(text) for text in ("K_ap", "tension", "EA", "loss_factor")]
-    ['apparent_spring_constant', 'branch_tension', 'apparent_spring_constant', 'loss_factor']
-    """
-    symbols = {
-        SINGLE_QUANTITIES[name].source.split(",")[0].split()[-1].replace("_", ""): name
-        for name in _OF_CYCLES
-    } | _BY_WORDS
-    return symbols.get(text.replace("_", ""), text)
 
 
 def _is_path(source: str) -> bool:

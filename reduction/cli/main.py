@@ -402,10 +402,10 @@ def lookup(
             look_up_population,
             look_up_ranked,
             look_up_values,
-            name_of_quantity,
             parsed_search,
         )
         from reduction.cli.remote_paths import local_sources
+        from reduction.quantities.names import name_of_quantity
         from reduction.quantities.units import parse_quantity
         from reduction.record.errors import SettingsError
 

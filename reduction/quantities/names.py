@@ -112,6 +112,35 @@ QUANTITIES: dict[str, Quantity] = SINGLE_QUANTITIES | {
 """All names allowed in a product or a table, without their companions."""
 
 
+_OF_CYCLES = (
+    "apparent_spring_constant", "hysteresis_energy", "quasi_static_spring_constant",
+    "dissipation_spring_constant", "relaxation_time", "dashpot_coefficient",
+)  # fmt: skip
+
+# the tension curve over strain is stored under the name of its branches; rope programmes call K_ap
+# dynamic stiffness, and the results of a run call it EA
+_BY_WORDS = {
+    "tension": "branch_tension",
+    "dynamicstiffness": "apparent_spring_constant",
+    "EA": "apparent_spring_constant",
+}
+
+
+def name_of_quantity(text: str) -> str:
+    """Name of a quantity requested by its symbol in the source, or as ``tension``.
+
+    Examples
+    --------
+    >>> [name_of_quantity(text) for text in ("K_ap", "tension", "EA", "loss_factor")]
+    ['apparent_spring_constant', 'branch_tension', 'apparent_spring_constant', 'loss_factor']
+    """
+    symbols = {
+        SINGLE_QUANTITIES[name].source.split(",")[0].split()[-1].replace("_", ""): name
+        for name in _OF_CYCLES
+    } | _BY_WORDS
+    return symbols.get(text.replace("_", ""), text)
+
+
 def quantity(name: str) -> Quantity:
     """Return the row of a name; `KeyError` if unknown."""
     return QUANTITIES[name]

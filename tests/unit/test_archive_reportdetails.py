@@ -88,6 +88,15 @@ def test_a_place_is_read_as_the_budget_reads_it():
     assert found.at == {"strain": "1.25", "branch": "ascending", "segment": "2"}
 
 
+@pytest.mark.parametrize("name", ["K_ap", "EA", "apparent_spring_constant"])
+def test_a_limit_of_no_single_cycle_is_of_the_mean_of_the_test(name):
+    wanted = {"quantity": name, "test": "T-1", "lower": "500 kN"}
+    (found,) = limits(wanted)
+    assert (found.quantity, found.lower) == ("test_apparent_spring_constant", 5e5)
+    (found,) = limits(wanted | {"at": {"cycle": 3}})
+    assert found.quantity == "apparent_spring_constant"
+
+
 def test_a_step_of_a_test_goes_by_its_product():
     (found,) = limits(LIMIT | {"test": "P-1/slow pull"})
     assert found.test == "P-1.slow-pull"
