@@ -2417,10 +2417,34 @@ def test_bins_beside_harmonics_stand_where_their_readings_are(share, n_phases):
     """A log in step with its period, of a load that jumps; more phases are found than are read."""
     place = np.tile((np.arange(400) + 0.5) / 400, 60)
     rest = share * (place % 0.5 - 0.25)
-    curve, _ = _beside_harmonics(place, rest, n_phases, 0.0)
+    curve, _ = _beside_harmonics(place, rest, n_phases, 0.0, np.zeros(721))
     at = np.linspace(0, 1, 721)
     inside = (np.abs(at % 0.5 - 0.25) < 0.24) & (np.abs(at % 0.5 - 0.25) > 0.05)
     assert curve[inside, 1] == pytest.approx(share * (at % 0.5 - 0.25)[inside], abs=1e-4 * share)
+
+
+@pytest.mark.parametrize("per_cycle", [40, 64, 100, 120])
+@pytest.mark.parametrize("friction", [2e3, 4e3])
+def test_friction_under_a_sine_in_step_with_the_log_has_the_range_of_its_readings(
+    per_cycle, friction
+):
+    """Synthetic: a spring of 800 kN and friction that turns with the motion, by a stiff spring."""
+    phase = np.arange(12 * per_cycle + 1) / per_cycle + 0.3 / per_cycle
+    strain = 0.03 - 0.01 * np.cos(2 * np.pi * phase)
+    fine = np.arange(-400, 12 * 400 + 400) / 400
+    held = np.zeros(fine.size)
+    moves = 2e7 * np.diff(0.03 - 0.01 * np.cos(2 * np.pi * fine))
+    for place, move in enumerate(moves, start=1):
+        held[place] = np.clip(held[place - 1] + move, -friction, friction)
+    tension = 8e5 * strain + np.interp(phase, fine, held)
+    rng = np.random.default_rng(3)
+    tension += rng.standard_normal(phase.size)
+    loops = close_loops(
+        10 * phase, tension[None], strain[None], cycles_of(per_cycle, 12, phase.size),
+        waveform="sinusoidal",
+    )  # fmt: skip
+    expected = 8e5 + friction / 0.01
+    assert loops.apparent_spring_constant.mean() == pytest.approx(expected, rel=6e-3)
 
 
 def loops_between(knots):

@@ -547,7 +547,7 @@ def _shape_of_wave(
     not_shown = 2 * float(size[1]) if order == 2 else 0.0
     missed = float(np.linalg.norm([by_number, rounded, by_noise, not_shown]))
     rest = wave - of_wave[0] - design @ (np.append(0.0, np.tile(faded[-1], 2)) * weights)
-    bins, of_bins = _beside_harmonics(read, rest, n_phases, rounding / usual)
+    bins, of_bins = _beside_harmonics(read, rest, n_phases, rounding / usual, sums[:, -1])
     beside = np.zeros((bins.shape[0], 1))
     if of_bins and by_number > max(_NOT_SETTLED, of_bins):
         of_readings = _half_range(sums[:, -1:] + bins)
@@ -643,17 +643,18 @@ _SHOWN = 5.0  # standard errors of the mean of a bin
 
 
 def _beside_harmonics(
-    place: Floats, rest: Floats, n_phases: float, rounding: float
+    place: Floats, rest: Floats, n_phases: float, rounding: float, harmonics: Floats
 ) -> tuple[Floats, float]:
     """Means of readings less their harmonics in bins of a cycle, and the width of what they hide.
 
     A load that turns at once, as of friction, is not a sum of few harmonics: they overshoot beside
     the turn, where the readings are.  Two columns over the places of `_shape_of_wave`, of bins of
-    twice the width and of single ones; zero, with no width, where no bin differs from the harmonics
-    by more than chance.
+    twice the width and of single ones, with chords in place of the sum of ``harmonics`` between the
+    few phases of a synchronous log; zero, with no width, where no bin differs from the harmonics by
+    more than chance.
     """
     curve, width = np.zeros((721, 2)), 0.0
-    n_bins = int(min(rest.size // _OF_BIN, _MOST_BINS, n_phases / 2)) // 2 * 2
+    n_bins = int(min(rest.size // _OF_BIN, _MOST_BINS, n_phases)) // 2 * 2
     for column, n in enumerate((n_bins // 2, n_bins)):
         if n < _MOST_HARMONICS:
             return np.zeros((721, 2)), 0.0
@@ -669,7 +670,12 @@ def _beside_harmonics(
         filled = np.unique(number)
         at = (np.bincount(number, place, n) / count)[filled]
         shown = np.where(is_shown, mean, 0.0)[filled]
-        curve[:, column] = np.interp(np.linspace(0, 1, 721), at, shown, period=1)
+        places = np.linspace(0, 1, harmonics.size)
+        if n_phases < _MOST_BINS and is_shown.any():
+            shown += np.interp(at, places, harmonics)
+            curve[:, column] = np.interp(places, at, shown, period=1) - harmonics
+        else:
+            curve[:, column] = np.interp(places, at, shown, period=1)
     return curve, width
 
 
