@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from reduction.pipeline.located_test import PULLED, Located, slips_of
+from reduction.pipeline.located_test import FEWEST_SLACK, PULLED, Located, slips_of
 from reduction.record.arrays import run_blocks
 from reduction.record.errors import DataError, FitError
 from reduction.record.measurement import Bools, Floats, Integers, Specimen, areas_of
 from reduction.record.notes import Note, note
-from reduction.record.samples import finite_extremes, first_sample
+from reduction.record.samples import copied, finite_extremes, first_sample
 from reduction.record.settings import ReductionSettings
 from reduction.stages.cycles.cycle_product import Cycles, Loops, turns_alike
 from reduction.stages.cycles.cycle_search import control_channel
@@ -363,6 +363,21 @@ def _without_modulus(curves: ModulusCurves, lacks_area: Bools) -> ModulusCurves:
 _PRELOAD = 0.2  # of the greatest load
 
 
+def _until_parted(located: Located, strain: Floats, tension: Floats) -> Floats:
+    """Strain up to the last reading before a specimen parts, whose load falls over some readings.
+
+    The machine runs on, and without this the fall would be part of the first rise.
+    """
+    if max(located.parted, default=-1) < 0:
+        return strain
+    strain = copied(strain)
+    for row, sample in enumerate(located.parted):
+        if sample > 0:
+            last = tension[row, max(sample - FEWEST_SLACK, 0) : sample]
+            strain[row, sample - last.size + int(np.nanargmax(last)) + 1 :] = np.nan
+    return strain
+
+
 def parts_of_first_loading(
     located: Located,
     strain: Floats,
@@ -392,6 +407,7 @@ def parts_of_first_loading(
             {},
             [],
         )  # that of a rope or hose is `stages.three_parameter_line.slow_pull`'s, without an area
+    strain = _until_parted(located, strain, tension)
     curves = first_loading_curves(
         strain, tension, area=np.where(has_area, area, 1.0), settings=settings.modulus,
         standstills=located.standstills,

@@ -455,6 +455,27 @@ def test_a_pull_that_breaks_above_the_rated_strength_is_no_mistake(tmp_path, n_a
     assert ("rated_break_strength" in result.tests[0].message) == (status == "check")
 
 
+@pytest.mark.parametrize("readings", [(), (4e4,), (6e4, 2e4)])
+def test_the_curve_of_a_first_loading_ends_where_the_specimen_breaks(tmp_path, readings):
+    time = np.arange(0.0, 100.0, 0.05)
+    place = np.clip(time - 10, 0, None) / 100  # 1 MN; the machine runs on after the break
+    load = np.where(time < 70, 1e5 * place, 0.0)
+    broke = int(np.argmax(time >= 70))
+    load[broke : broke + len(readings)] = readings
+    log_of_loads(tmp_path / "pull.csv", time, load, position=place)
+    rope = 'kind = "rope"\ndiameter = ["20 mm"]\ngauge_length = "10 m"'
+    gauge = 'strain = { method = "gauge-length" }'
+    result = run(
+        tmp_path, "[specimens.R-3]", rope,
+        made.single("pull", "tensile", POSITION, gauge, specimen="R-3"),
+    )  # fmt: skip
+    assert [one.status for one in result.tests] == ["reduced"]
+    curve = table(result, "first_loading").dropna(subset=["tangent_modulus_first_loading"])
+    assert 0.0590 < curve["first_loading_strain_bin"].max() < 0.0600
+    modulus = curve["tangent_modulus_first_loading"] * np.pi * 0.01**2
+    assert modulus.to_numpy() == pytest.approx(1e6, rel=0.05)
+
+
 @pytest.mark.parametrize("readings", [(), (8e3,), (2e4, 8e3)])
 def test_the_readings_of_a_break_are_no_step_of_the_load(tmp_path, readings):
     time = np.arange(0.0, 130.0, 0.25)
