@@ -492,15 +492,15 @@ def _late_extensometers(
 _BEYOND_LAG = 2.0  # stated standard uncertainties
 
 
-def _with_drift_of_zero(
+def _with_zero_at_slack(
     located: Located, instruments: Sequence[InstrumentErrors], *, control: Control
 ) -> tuple[tuple[InstrumentErrors, ...], list[Note]]:
-    """Errors with the zero of a load cell uncertain by its drift during the log, with notes."""
+    """Errors with the zero of a load cell uncertain by what the log shows of it, with notes."""
     rests = located.load_at_slack or (None,) * len(instruments)
     found, notes = [], []
     for index, (errors, rest) in enumerate(zip(instruments, rests, strict=False)):
         stated = errors.tension_offset
-        moved = 0.0 if rest is None else rest.drift_uncertainty(stated)
+        moved = 0.0 if rest is None else rest.zero_uncertainty(stated)
         jump = _jump_at_stop(located, index) if control == "position" else None
         if jump is not None and jump[1] ** 2 > max(2 * stated, 3**0.5 * moved) ** 2:
             number, size, explained = jump
@@ -816,7 +816,7 @@ def reduce_test(
     late = _late_extensometers(located, models, strain, instruments)
     record = replace(record, notes=(*record.notes, *late))
     located = replace(located, record=record)
-    drifting, of_zero = _with_drift_of_zero(located, instruments, control=settings.cycles.control)
+    drifting, of_zero = _with_zero_at_slack(located, instruments, control=settings.cycles.control)
     instruments = _with_late_readings(record, drifting)
     lag, lag_notes = (
         (None, [])

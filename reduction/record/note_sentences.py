@@ -451,6 +451,7 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         lambda load, n_rests, zero: (
             f"the load cell reads {load:.4g} N at slack ({_rests(n_rests)}), more than its noise"
             + (f'. Set zero = "{zero}" for this channel' if zero else "")
+            + ". Until then the interval of every tension includes it"
         ),
     ),
     "load-zero-drifted": (

@@ -61,19 +61,23 @@ class LoadAtSlack:
         """Whether it differs significantly from zero."""
         return abs(self.load) > _BEYOND * self.standard_uncertainty
 
-    def drift_uncertainty(self, offset_uncertainty: float) -> float:
-        """Uncertainty of the zero due to a drift; none if the stated one covers it. [N].
+    def zero_uncertainty(self, offset_uncertainty: float) -> float:
+        """Uncertainty of the zero that the log shows; none if the stated one covers it. [N].
 
-        While the specimen was loaded the zero was anywhere between its two readings: an error
-        uniformly distributed from zero to the drift has a mean square of a third of its square.
+        A specimen that is slack has no load, and while it was loaded a drifting zero was anywhere
+        between its two readings: an error uniformly distributed from zero to the reading, or to
+        the drift, has a mean square of a third of its square.
 
         Examples
         --------
         >>> rest = LoadAtSlack(0.0, 0.01, 1, 0.0, 0.0, drift=3.0)
-        >>> print(round(rest.drift_uncertainty(1.0), 3), rest.drift_uncertainty(2.0))
+        >>> print(round(rest.zero_uncertainty(1.0), 3), rest.zero_uncertainty(2.0))
         1.732 0.0
+        >>> print(round(LoadAtSlack(-3.0, 0.01, 1, -3.0, -3.0).zero_uncertainty(1.0), 3))
+        1.732
         """
-        return abs(self.drift) / 3**0.5 if abs(self.drift) > _COVERED * offset_uncertainty else 0.0
+        seen = max(abs(self.drift), abs(self.load) if self.is_beyond_noise else 0.0)
+        return seen / 3**0.5 if seen > _COVERED * offset_uncertainty else 0.0
 
     def drift_within(self, duration: float) -> float:
         """Uncertainty of a difference of two tensions due to a drift between them. [N].
@@ -344,6 +348,6 @@ def notes_on_zero(
                 notes.append(note("load-zero-wrong", name, effect=rest.load / reach, **said))
             elif rest.is_beyond_noise:
                 notes.append(note("load-zero-off", name, **said))
-            if abs(change) <= serious and rest.drift_uncertainty(offset_uncertainty):
+            if abs(change) <= serious and abs(rest.drift) > _COVERED * offset_uncertainty:
                 notes.append(note("load-zero-drifted", name, drift=rest.drift))
     return tuple(notes)

@@ -145,6 +145,29 @@ def test_the_zero_that_is_named_puts_it_right(tethers, command):
     assert "zero" not in done.stdout and "A: load at slack rests: new " in done.stdout
 
 
+@pytest.mark.parametrize("off", [-5.0, 5.0])
+def test_a_small_zero_that_a_rest_shows_is_in_the_interval_of_tensions(tmp_path, command, off):
+    write_cord(tmp_path, first=0.0, keys=', reference_length = "1 m"', rest=True)
+    head, *lines = (tmp_path / "A.csv").read_text().splitlines()
+    rows = [line.split(",") for line in lines]
+    moved = [f"{t},{x},{float(f) + off:.2f}" for t, x, f in rows]  # 0.4 % of the peak load
+    (tmp_path / "A.csv").write_text("\n".join([head, *moved]) + "\n")
+    command("run", tmp_path / "campaign.toml", cwd=tmp_path)
+    with open_archive(tmp_path / "processed" / "cord" / "A.nc") as archive:
+        mean, spread, of_amplitude = (
+            float(archive[f"test_{name}"].item())
+            for name in (
+                "mean_tension", "mean_tension_standard_uncertainty",
+                "tension_amplitude_standard_uncertainty",
+            )
+        )  # fmt: skip
+        notes = archive["note"].to_numpy().tolist()
+    assert mean == pytest.approx(700 + off, abs=0.5)
+    assert spread == pytest.approx(abs(off) / 3**0.5, rel=0.1)
+    assert of_amplitude < 1.0  # a difference
+    assert any("Until then the interval of every tension includes it" in one for one in notes)
+
+
 @pytest.mark.nightly
 def test_a_load_cell_with_the_wrong_sign_keeps_that_advice(tethers, command):
     folder, rewrite = tethers

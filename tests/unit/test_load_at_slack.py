@@ -201,7 +201,7 @@ def test_a_zero_that_moves_is_told_by_the_rests_at_one_length(drift):
     # what is stated of the zero holds it
     assert not any("drift" in one for one in notes(load, found, offset=20.0))
     # an error of none to all of it, evenly spread
-    assert found.drift_uncertainty(1.0) == pytest.approx(abs(found.drift) / 3**0.5)
+    assert found.zero_uncertainty(1.0) == pytest.approx(abs(found.drift) / 3**0.5)
 
 
 def test_a_rest_that_is_stretched_or_noisy_is_no_drift():
