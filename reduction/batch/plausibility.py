@@ -84,6 +84,8 @@ _LATE = 0.01
 
 _BACKWARD = 0.25
 
+_COVERED = 2.0  # standard uncertainties of the stated lag
+
 _COARSE = 0.015  # step of a load relative to its maximum
 
 _DRIFT = 0.05  # of the mean tension
@@ -317,7 +319,8 @@ def _of_statements(campaign: Campaign, survey: Survey, models: Models) -> Iterat
         specimen = campaign.specimens[name]
         early = _EARLY_ELASTOMER if specimen.kind == "elastomer" else _EARLY
         early = _BACKWARD if specimen.can_push else early
-        if -_BACKWARD < lead < -_LATE or early < lead < _BACKWARD:
+        stated = _COVERED * (campaign.uncertainty.lag or 0.0) * levels.frequency
+        if -_BACKWARD < lead < -max(_LATE, stated) or max(early, stated) < lead < _BACKWARD:
             yield note(
                 "tension-behind-position" if lead < 0 else "position-behind-tension", name,
                 delay=abs(float(levels.lead[index])),

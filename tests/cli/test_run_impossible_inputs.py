@@ -168,6 +168,20 @@ def test_a_small_zero_that_a_rest_shows_is_in_the_interval_of_tensions(tmp_path,
     assert any("Until then the interval of every tension includes it" in one for one in notes)
 
 
+@pytest.mark.parametrize(("lag", "is_told"), [("0.05 s", True), ("0.2 s", False)])
+def test_a_late_load_is_told_unless_the_stated_lag_explains_it(tmp_path, command, lag, is_told):
+    write_cord(tmp_path, first=0.0, keys=', reference_length = "1 m"', rest=True)
+    head, *lines = (tmp_path / "A.csv").read_text().splitlines()
+    rows = [line.split(",") for line in lines]
+    late = [f"{t},{x},{f}" for (t, x, _), (*_, f) in zip(rows[3:], rows[:-3], strict=True)]  # 0.3 s
+    (tmp_path / "A.csv").write_text("\n".join([head, *late]) + "\n")
+    text = (tmp_path / "campaign.toml").read_text().replace('"rope"', '"elastomer"')
+    (tmp_path / "campaign.toml").write_text(text + f'[uncertainty]\nlag = "{lag}"\n')
+    done = command("check", tmp_path / "campaign.toml", "--json", cwd=tmp_path)
+    [test] = json.loads(done.stdout)["tests"]
+    assert ("tension lags position by 0.3" in test["message"]) == is_told
+
+
 @pytest.mark.nightly
 def test_a_load_cell_with_the_wrong_sign_keeps_that_advice(tethers, command):
     folder, rewrite = tethers
