@@ -37,7 +37,7 @@ from reduction.record.measurement import Floats, Record, Source, Specimen, StepR
 from reduction.record.note_sentences import JERKS
 from reduction.record.notes import Note, note
 from reduction.record.row_counts import ROWS_FLAGGED, count_rows, notes_on_rows
-from reduction.record.samples import finite_extremes, step_of_codes
+from reduction.record.samples import finite_extremes
 from reduction.stages.load_at_slack import (
     load_at_slack,
     notes_on_zero,
@@ -327,9 +327,9 @@ def _find_zero_strain(survey: Survey, located: Located, campaign: Campaign, plan
     survey.reference_length = length
     at_slack = zero_at_slack(
         located.standstills,
+        located.position,
         position_is_length=is_length,
         length_at_slack=length_at_slack(layouts),
-        code_step=step_of_codes(located.position),
     )
     for name, tension in zip(plan.specimens, located.tension, strict=True):
         reference = campaign.specimens[name].reference_tension or tension_of_layout

@@ -1046,6 +1046,31 @@ def _describe_standstills(
     )
 
 
+def level_of_standstill(
+    position: Floats, standstills: Standstills, index: int
+) -> tuple[float, int]:
+    """Mean position of a standstill without the ramps at its ends, and number of its readings.
+
+    Examples
+    --------
+    A minute at rest, and three seconds of a slow ramp that noise hides:
+
+    >>> position = np.r_[np.zeros(60), 0.01, 0.02, 0.03]
+    >>> one = lambda value: np.array([value])
+    >>> rest = Standstills(
+    ...     one(0), one(62), one(0.0), one(62.0), one(0.0), np.array([[0.0]]), one(True), 0.05, 5.0)
+    >>> level_of_standstill(position, rest, 0)
+    (0.0, 60)
+    """
+    first, last = standstills.first[index : index + 1], standstills.last[index : index + 1]
+    stride = max(int(last[0] + 1 - first[0]) // _LEVEL_SAMPLES, 1)
+    level = np.nanmedian(take_samples(position, np.arange(first[0], last[0] + 1, stride)))
+    first, last = _without_ramps(
+        position, first.copy(), last.copy(), np.array([level]), standstills.position_tolerance
+    )
+    return float(_interval_means(position, first, last)[0]), int(last[0] + 1 - first[0])
+
+
 def find_standstills(
     time: ArrayLike,
     position: ArrayLike,

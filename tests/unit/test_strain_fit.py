@@ -10,8 +10,8 @@ from scipy import stats
 from reduction.record.contributions import InstrumentErrors
 from reduction.record.errors import DataError, FitError
 from reduction.record.measurement import Specimen, SpliceMarks
-from reduction.record.settings import StrainSettings
-from reduction.stages.standstills import Standstills
+from reduction.record.settings import PhaseSettings, StrainSettings
+from reduction.stages.standstills import Standstills, find_standstills
 from reduction.stages.strain.strain_fit import PooledMarks, fit_strain_model, fit_to_marks
 from reduction.stages.strain.strain_model import (
     StrainModel,
@@ -275,19 +275,40 @@ def rests(positions, is_rest):
 
 def test_zero_strain_is_at_the_first_rest():
     stands = rests([0.5, 0.1, 0.2], [False, True, True])
-    assert zero_at_slack(stands, position_is_length=True).position == 0.1
+    place = np.array([0.5, 0.1, 0.2, *np.arange(1.0, 30.0)])
+    assert zero_at_slack(stands, place, position_is_length=True).position == 0.1
+
+
+def test_zero_strain_is_uncertain_by_codes_and_noise():
+    stands = dataclasses.replace(rests([0.1], [True]), last=np.array([99]))
     # a position in steps of a millimetre stands anywhere within one: half of it over root three
-    coarse = zero_at_slack(stands, position_is_length=True, code_step=1e-3)
-    assert coarse.position == 0.1
-    assert coarse.standard_uncertainty == pytest.approx(0.5e-3 / np.sqrt(3))
+    coarse = np.round(np.clip(0.0003 * np.arange(1000.0) - 0.03, 0, None), 3) + 0.1
+    zero = zero_at_slack(stands, coarse, position_is_length=True)
+    assert zero.position == pytest.approx(0.1)
+    assert zero.standard_uncertainty == pytest.approx(0.5e-3 / np.sqrt(3), rel=0.05)
+    noisy = coarse + np.random.default_rng(1).normal(0, 0.01, 1000)
+    zero = zero_at_slack(stands, noisy, position_is_length=True)
+    assert zero.standard_uncertainty == pytest.approx(0.001, rel=0.1)
+    assert abs(zero.position - 0.1) < 3 * zero.standard_uncertainty
+
+
+def test_zero_strain_is_that_of_a_rest_without_the_slow_ramp_after_it():
+    # noise hides the first two seconds of a ramp of 9 mm a second
+    time = np.arange(0.0, 180.0, 0.35)
+    place = 3 + 0.009 * np.clip(time - 8, 0, None)
+    place += np.random.default_rng(2).normal(0, 2e-3, time.size)
+    stands = find_standstills(time, place, [100 * (place - 3)], settings=PhaseSettings())
+    zero = zero_at_slack(stands, place, position_is_length=True)
+    assert zero.position == pytest.approx(3, abs=2 * zero.standard_uncertainty)
+    assert zero.standard_uncertainty < 0.6e-3
 
 
 def test_without_a_rest_only_a_displacement_has_a_zero():
     stands = rests([0.5], [False])
-    assert zero_at_slack(stands, position_is_length=False).position == 0.0
-    assert zero_at_slack(stands, position_is_length=True).position is None
+    assert zero_at_slack(stands, np.arange(9.0), position_is_length=False).position == 0.0
+    assert zero_at_slack(stands, np.arange(9.0), position_is_length=True).position is None
     # the length at displacement zero, read at slack, is that of zero strain
-    stated = zero_at_slack(stands, position_is_length=True, length_at_slack=1.5)
+    stated = zero_at_slack(stands, np.arange(9.0), position_is_length=True, length_at_slack=1.5)
     assert stated.position == 1.5
 
 

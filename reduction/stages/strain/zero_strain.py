@@ -19,7 +19,12 @@ import numpy as np
 from reduction.record.errors import DataError
 from reduction.record.measurement import Bools, Floats
 from reduction.record.samples import finite_extremes, first_sample, last_sample, step_of_codes
-from reduction.stages.standstills import Standstills, estimate_noise, noise_range
+from reduction.stages.standstills import (
+    Standstills,
+    estimate_noise,
+    level_of_standstill,
+    noise_range,
+)
 
 # of the reference tension, on either side of it: there the curve of a rope is straight
 _BAND = 0.2
@@ -49,25 +54,30 @@ class ZeroStrain:
 
 def zero_at_slack(
     standstills: Standstills,
+    position: Floats,
     *,
     position_is_length: bool,
     length_at_slack: float | None = None,
-    code_step: float = 0.0,
 ) -> ZeroStrain:
     """Position of the first rest, else that at which the layout states that the specimen is slack.
 
-    A position that is written in coarse codes is uncertain by one of them.
+    It is uncertain by the noise of a mean over the rest, and by one of the codes in which
+    positions are written.
 
     Examples
     --------
     >>> none = np.empty(0)
     >>> no_rest = Standstills(none, none, none, none, none, np.empty((1, 0)), none > 0, 0.01, 5.0)
-    >>> print(zero_at_slack(no_rest, position_is_length=False).position)
+    >>> print(zero_at_slack(no_rest, np.arange(9.0), position_is_length=False).position)
     0.0
     """
-    rests = standstills.mean_position[standstills.is_rest]
+    rests = np.flatnonzero(standstills.is_rest)
     if rests.size:
-        return ZeroStrain(float(rests[0]), code_step / float(np.sqrt(12)), is_logged=True)
+        level, count = level_of_standstill(position, standstills, int(rests[0]))
+        spread = np.hypot(
+            step_of_codes(position) / 12**0.5, estimate_noise(position)[0] / count**0.5
+        )
+        return ZeroStrain(level, float(spread), is_logged=True)
     return ZeroStrain(length_at_slack if position_is_length else 0.0)
 
 
