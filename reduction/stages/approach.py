@@ -253,3 +253,72 @@ def _early_level(held: Floats) -> float:
     early = held[: n_early : max(n_early // _LEVEL_SAMPLES_MOST, 1)]
     early = early[np.isfinite(early)]
     return float(np.median(early)) if early.size else float("nan")
+
+
+def corner_in_noise(
+    time: Floats, values: Floats, *, begin: int, first: int, last: int, noise_range: float
+) -> int | None:
+    """First sample of a standstill behind a ramp that noise hides; None if the ramp goes on.
+
+    Parameters
+    ----------
+    time, values : ndarray, shape (n_samples,)
+        Record, NaN where a sample is missing. [s], [any unit]
+    begin : int
+        Sample of the previous standstill, or the first of the record. [1]
+    first, last : int
+        First and last sample that noise does not tell from the standstill. [1]
+    noise_range : float
+        Range of the channel due to noise alone. [unit of the channel]
+
+    Returns
+    -------
+    corner : int or None
+        ``first`` where the channel does not come from another level, or from far beyond noise. [1]
+
+    Notes
+    -----
+    A line and a level that meet at a corner are fitted by least squares to the second half of the
+    ramp and as much time behind it as the whole ramp takes.  If one line through all of them fits
+    as well, an interval that is shorter than the ramp is part of it.
+
+    Examples
+    --------
+    A ramp of 20 s to 100 N with a noise of 5 N stands from 20 s on, and not in the middle:
+
+    >>> time = np.arange(0.0, 60.0, 0.5)
+    >>> load = np.minimum(5 * time, 100) + np.random.default_rng(0).normal(0, 5, time.size)
+    >>> one = corner_in_noise(time, load, begin=0, first=30, last=119, noise_range=60.0)
+    >>> print(float(time[one]))
+    20.5
+    >>> print(corner_in_noise(time, load, begin=0, first=20, last=28, noise_range=60.0))
+    None
+    """
+    level, from_level = _early_level(values[first : last + 1]), np.nanmean(values[begin:][:3])
+    sign = np.sign(level - from_level)
+    if not _FROM_NOISE * noise_range < abs(level - from_level) <= 2 * _RESOLVED * noise_range:
+        return first
+    halfway = (level + from_level) / 2
+    below = last_sample(lambda part: sign * (values[part] - halfway) < 0, begin, first + 1, values)
+    stop = min(2 * first - begin, last) + 1
+    start = begin if below is None or stop - below <= 2 * _FEWEST_ON_LINE else below + 1
+    known = start + np.flatnonzero(np.isfinite(values[start:stop]))
+    known = known[:: max(known.size // _LEVEL_SAMPLES_MOST, 1)]
+    if known.size < 2 * _FEWEST_ON_LINE:
+        return first
+    seconds, place = time[known], values[known]
+
+    def left_by(shape: Floats) -> float:
+        slope, level = np.polyfit(shape, place, 1)
+        return float(np.sum((place - level - slope * shape) ** 2))
+
+    corners = known[2:-2]
+    left = np.array([left_by(np.minimum(seconds - time[one], 0.0)) for one in corners])
+    best = int(np.argmin(left))
+    gained = (left_by(seconds) - left[best]) * (known.size - 3)
+    if gained > _CORNER * left[best]:
+        return int(corners[best])
+    return first if last - first > 2 * (first - start) else None
+
+
+_CORNER = 12.0  # F of one more constant: 0.1 % of straight ramps of a hundred readings exceed it

@@ -28,7 +28,7 @@ from reduction.record.samples import (
     take_samples,
 )
 from reduction.record.settings import PhaseSettings
-from reduction.stages.approach import NEAR_SHARE, SLOW_SHARE, find_approach
+from reduction.stages.approach import NEAR_SHARE, SLOW_SHARE, corner_in_noise, find_approach
 
 _STRETCHES, _STRETCH_SAMPLES = 64, 1024
 
@@ -572,7 +572,14 @@ def _from_approaches(
     for index, (one, end) in enumerate(zip(first.tolist(), last.tolist(), strict=True)):
         begin = int(last[index - 1]) + 1 if index else 0
         approach = find_approach(time, values, begin=begin, first=one, last=end, noise_range=noise)
-        if approach is not None:
+        if approach is None:
+            # the ramp may begin before the end of the standstill before it
+            since = (int(first[index - 1]) + begin) // 2 if index else 0
+            corner = corner_in_noise(
+                time, values, begin=since, first=one, last=end, noise_range=noise
+            )
+            starts[index] = end + 1 if corner is None else corner  # of a ramp nothing is left
+        else:
             starts[index] = approach.end
         stop = int(first[index + 1]) if index + 1 < first.size else values.size
         left = find_approach(

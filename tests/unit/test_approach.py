@@ -8,7 +8,7 @@ from reduction.stages.approach import find_approach
 from reduction.stages.holds.hold_selection import select_hold
 from reduction.stages.holds.ramp_end import ramp_end_time
 from reduction.stages.holds.relaxation_and_creep import reduce_holds
-from reduction.stages.standstills import find_standstills
+from reduction.stages.standstills import find_standstills, find_tension_stands
 
 END, RAMP, DURATION = 20.0, 15.0, 300.0
 
@@ -72,6 +72,20 @@ def test_small_steps_are_holds_of_their_own():
     place = np.interp(time, corners, [0, 0, 1, 1, 1.005, 1.005, 1.010, 1.010, 1.015, 1.015])
     found = find_standstills(time, place, [100 * place], settings=PhaseSettings(), is_held=True)
     assert found.start_time == pytest.approx([0, 20, 60.1, 100.1, 140.1], abs=0.11)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_load_that_noise_hides_stands_where_its_slow_ramp_ends(seed):
+    # two ramps of 20 s to 180 and 260 N, with a noise of 1 % of the range
+    time = np.arange(0.0, 300.0, 0.45)
+    load = np.interp(time, [0, 8, 28, 150, 170, 300], [0, 0, 180, 180, 260, 260])
+    noise = np.random.default_rng(seed)
+    place = load / 100 + noise.normal(0, 1e-4, time.size)
+    load += noise.normal(0, 2.5, time.size)
+    found = find_tension_stands(time, place, [load], settings=PhaseSettings(), is_held=True)
+    held = found.start_time[~found.is_rest]
+    # a reading, or the time in which the ramp passes a fifth of a deviation of the noise
+    assert held == pytest.approx([28, 170], abs=1.0)
 
 
 def test_between_cycles_a_standstill_keeps_its_edges():
