@@ -5,8 +5,7 @@ from binary_layouts import layout_of
 
 from reduction.readers.columns import matrix_table
 from reduction.readers.hdf5 import data_set, open_hdf5, read_hdf5
-from reduction.readers.layout import Layout, Watch
-from reduction.readers.hdf5 import read_hdf5
+from reduction.readers.layout import Watch
 from reduction.record.errors import LogError
 
 layout = layout_of("hdf5")
