@@ -45,13 +45,16 @@ class Truth:
         cos2, sin2 = np.cos(self.wrap_angle) ** 2, np.sin(self.wrap_angle) ** 2
         return np.sqrt(stretch**2 * cos2 + sin2 / stretch)
 
+    def cord_load(self, cord):
+        curve = PchipInterpolator(CORD_STRAIN, CORD_LOAD, extrapolate=False)
+        return self.cord_load_scale * curve(np.maximum(cord - 1, 0) / self.cord_strain_scale)
+
     def tension(self, strain):
         """Net tension [N] at strains of the whole length."""
         stretch = 1 + np.asarray(strain) / (1 - self.dead_length_share)
         cos2, sin2 = np.cos(self.wrap_angle) ** 2, np.sin(self.wrap_angle) ** 2
         cord = self.cord_stretch(stretch)
-        curve = PchipInterpolator(CORD_STRAIN, CORD_LOAD, extrapolate=False)
-        load = self.cord_load_scale * curve(np.maximum(cord - 1, 0) / self.cord_strain_scale)
+        load = self.cord_load(cord)
         # cords in length L: fabric across the cords is pi d cos(a0) wide, each L / cos(a0) long
         n_cords = sum(pi * d * np.cos(self.wrap_angle) for d in self.layer_diameter)
         n_cords *= self.cords_per_length
@@ -64,8 +67,7 @@ class Truth:
         """Fill pressure [Pa]: hoop force of the cords of each layer over its radius."""
         stretch = 1 + np.asarray(strain) / (1 - self.dead_length_share)
         cord = self.cord_stretch(stretch)
-        curve = PchipInterpolator(CORD_STRAIN, CORD_LOAD, extrapolate=False)
-        load = self.cord_load_scale * curve(np.maximum(cord - 1, 0) / self.cord_strain_scale)
+        load = self.cord_load(cord)
         # sine of the angle of the stretched hose: radius and cord length change it
         sine = np.sin(self.wrap_angle) / (cord * np.sqrt(stretch))
         pressure = 0.0

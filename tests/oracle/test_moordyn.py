@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from export_lines import constant, growing, line, syrope
 from export_readers import moordyn_sections, moordyn_table
-from moordyn_runs import at_rest, run, write
+from moordyn_runs import at_rest, last_cycles, run, write
 
 from reduction.cli.curves import deployed_line
 from reduction.cli.export import _with_syrope
@@ -45,10 +45,8 @@ def test_the_dynamic_stiffness_is_that_of_the_three_parameters(tmp_path, form, p
     write(tmp_path, moordyn_files(line(viscoelasticity=part), "deck", form=form))
     done, tension = run(tmp_path, mean=0.1, amplitude=0.005, frequency=frequency, cycles=40)
     assert done.returncode == 0, done.stdout[-800:]
-    phase = 2 * np.pi * np.arange(400) / 200
-    waves = np.stack([np.ones(400), np.sin(phase), np.cos(phase)], axis=1)
     # the tension of a step is that at its end
-    _, rise, lag = np.linalg.lstsq(waves, tension[-400:], rcond=None)[0]
+    rise, lag = last_cycles(tension)
     found = np.hypot(rise, lag) / 0.005
     slow, fast = part.static_stiffness, part.fast_stiffness
     turned = 2j * np.pi * frequency * part.relaxation_time
@@ -213,10 +211,8 @@ def test_k_ap_is_that_of_the_look_up_within_2_percent(tmp_path, name, coded):
         tmp_path, mean=0.1, amplitude=amplitude, frequency=levels["frequency"], cycles=cycles
     )
     assert done.returncode == 0, done.stdout[-800:]
-    phase = 2 * np.pi * np.arange(400) / 200
-    waves = np.stack([np.ones(400), np.sin(phase), np.cos(phase)], axis=1)
     # the tension of a step is that at its end, a phase of a two-hundredth cycle later
-    _, sine, cosine = np.linalg.lstsq(waves, tension[-400:], rcond=None)[0]
+    sine, cosine = last_cycles(tension)
     turned = complex(sine, cosine) * np.exp(-2j * np.pi / 200)
     assert abs(turned) / amplitude == pytest.approx(wanted, rel=0.02)
     assert np.pi * amplitude * turned.imag == pytest.approx(energy, rel=0.1)

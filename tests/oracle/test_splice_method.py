@@ -37,14 +37,17 @@ LAW = StrainModel(
 )  # fmt: skip
 
 
-def model_by(method):
-    tension = middle(HOLDS)
+def marks_of(tension):
     free, both = FREE * (1 + HOLDS), splices(tension)
-    marks = SpliceMarks(
+    return SpliceMarks(
         "new", ("T",) * 4, ("slack", "min", "centre", "max"), both / 2, both / 2 + free, both + free
     )
+
+
+def model_by(method):
+    tension = middle(HOLDS)
     fitted = fit_strain_model(
-        Specimen("new"), test_id="T", marks=marks, mark_tension=tension,
+        Specimen("new"), test_id="T", marks=marks_of(tension), mark_tension=tension,
         settings=StrainSettings(method=method),
     )  # fmt: skip
     # as many marks would say
@@ -99,10 +102,7 @@ def test_a_slack_specimen_has_no_slope_over_tension():
 
 def test_what_is_asked_for_is_judged_by_the_laws_that_the_marks_do_not_reject():
     tension = middle(HOLDS)
-    free, both = FREE * (1 + HOLDS), splices(tension)
-    marks = SpliceMarks(
-        "new", ("T",) * 4, ("slack", "min", "centre", "max"), both / 2, both / 2 + free, both + free
-    )
+    marks = marks_of(tension)
     by_position = fit_strain_model(
         Specimen("new"), test_id="T", marks=marks, settings=StrainSettings(method="marks")
     )

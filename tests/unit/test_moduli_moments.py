@@ -33,6 +33,14 @@ def fits_of(strain, tension, *, grid=GRID, curve=None, n_curves=1, minimum_count
     return fit_windows(moments, minimum_count=minimum_count)
 
 
+def pooled_fits(strain, tension, *, grid, curve, n_curves):
+    """Fits of all curves, each put on the mean curve."""
+    moments, _ = accumulate_moments(
+        strain, tension, curve=curve, n_curves=n_curves, grid=grid, tension_reference=300.0
+    )
+    return fit_windows(moments.pooled(1), minimum_count=4)
+
+
 def tells_a_bend(strain, grid=GRID):
     """Whether the samples of each window leave of u**2, beside a line, 5 % of what even ones do."""
     shares = []
@@ -190,10 +198,7 @@ def test_the_levels_of_curves_of_few_samples_are_found_beside_their_slope():
     curve = np.repeat(np.arange(n_curves), n_each)
     tension = 1000 * strain + 400 * strain**2 - 3.0 * curve
     grid = StrainGrid(low=1.0, width=0.02, n_bins=25, half_window=7)
-    moments, _ = accumulate_moments(
-        strain, tension, curve=curve, n_curves=n_curves, grid=grid, tension_reference=300.0
-    )
-    fits = fit_windows(moments.pooled(1), minimum_count=4)
+    fits = pooled_fits(strain, tension, grid=grid, curve=curve, n_curves=n_curves)
     known = np.isfinite(fits.slope[0])
     assert known.sum() > 15
     # across a bin tension rises by 35 N; of that, a few hundredths of a newton are taken for level
@@ -389,10 +394,7 @@ def test_curves_that_soften_are_put_on_the_mean_curve_in_proportion():
     share = 1 - 0.01 * curve
     tension = share * (200 + 1000 * strain - 200 * np.maximum(strain - 1.25, 0))
     grid = StrainGrid(low=1.0, width=0.02, n_bins=25, half_window=2)
-    moments, _ = accumulate_moments(
-        strain, tension, curve=curve, n_curves=n_curves, grid=grid, tension_reference=300.0
-    )
-    fits = fit_windows(moments.pooled(1), minimum_count=4)
+    fits = pooled_fits(strain, tension, grid=grid, curve=curve, n_curves=n_curves)
     beside = np.isfinite(fits.slope[0]) & (np.abs(grid.centres - 1.25) > 0.06)
     expected = np.where(grid.centres < 1.25, 1000, 800) * share.mean()
     assert fits.slope[0, beside] == pytest.approx(expected[beside], rel=1e-3)
@@ -410,10 +412,7 @@ def test_a_curve_that_a_gap_has_emptied_is_not_put_on_the_range_of_those_that_so
     tension = share * (200 + 1000 * strain)
     curve[(curve == 5) & (np.arange(curve.size) % n_each >= n_left)] = -1
     grid = StrainGrid(low=1.0, width=0.02, n_bins=25, half_window=2)
-    moments, _ = accumulate_moments(
-        strain, tension, curve=curve, n_curves=n_curves, grid=grid, tension_reference=300.0
-    )
-    fits = fit_windows(moments.pooled(1), minimum_count=4)
+    fits = pooled_fits(strain, tension, grid=grid, curve=curve, n_curves=n_curves)
     known = np.isfinite(fits.slope[0])
     assert known.sum() > 20
     assert fits.slope[0, known] == pytest.approx(1000 * share[curve >= 0].mean(), rel=2e-3)
