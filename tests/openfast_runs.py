@@ -6,25 +6,9 @@ import subprocess
 import numpy as np
 from export_readers import moordyn_sections
 
+from reduction.lines.client_runs import _OPENFAST
+
 DRIVER = shutil.which("moordyn_driver")
-PROBLEM = """the line of a deck, stretched
---- ENVIRONMENT ---
-0.0 Gravity
-1025.0 rhoW
-{depth} WtrDepth
---- MOORDYN ---
-"{deck}" MDInputFile
-"out" OutRootName
-{end} TMax
-{step} dtC
-1 InputsMode
-"motion.txt" InputsFile
-0 NumTurbines
---- INITIAL POSITIONS ---
-X Y Z surge_init sway_init heave_init roll_init pitch_init
-(m) (m) (m) (m) (m) (m) (rad) (rad)
-0 0 0 0 0 0 0 0
-"""
 
 
 def stretched(folder, deck, time, strain):
@@ -39,7 +23,7 @@ def stretched(folder, deck, time, strain):
     motion = np.column_stack([time, 0 * height, 0 * height, height])
     np.savetxt(folder / "motion.txt", motion, fmt="%.10g")
     (folder / "driver.inp").write_text(
-        PROBLEM.format(depth=depth, deck=deck, end=time[-1], step=time[1] - time[0])
+        _OPENFAST.format(depth=depth, deck=deck, end=time[-1], step=time[1] - time[0])
     )
     done = subprocess.run(
         [DRIVER, "driver.inp"], cwd=folder, capture_output=True, text=True, check=False

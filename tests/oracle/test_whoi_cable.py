@@ -6,6 +6,7 @@ import subprocess
 import numpy as np
 import pytest
 
+from reduction.lines.client_runs import _CABLE
 from reduction.lines.composite import CompositeRule, compose
 from reduction.lines.deck_formats import _whoicable_text
 from reduction.lines.export_line import SEA_WATER
@@ -13,28 +14,6 @@ from reduction.lines.export_sources import line_from_composite, line_from_lookup
 from reduction.lines.published_source import published_piece_sources, published_sources
 
 CABLE, RES2ASC = shutil.which("cable"), shutil.which("res2asc")
-PROBLEM = """
-Problem Description
-    title = "a line under an end force"
-    type = general
-Analysis Parameters
-    static-relaxation = 0.1
-    static-iterations = 5000
-    static-tolerance = 1e-6
-Environment
-    rho = 1025.0
-    gravity = 9.81
-    depth = 100.0
-Buoys
-    ball type = sphere d = 0.5 m = 1.0
-Anchors
-    clump
-Layout
-    terminal = {{ anchor = clump }}
-    segment = {{ length = 10.0 material = "{name}" nodes = (101, 1.0) }}
-    terminal = {{ buoy = ball x-force = 1.0 z-force = {force} }}
-{material}
-"""
 
 
 ENDS = 0.3  # of the strain of a curve, by which its straight end is looked at
@@ -63,9 +42,7 @@ def a_line(name):
 def test_the_length_under_a_force_is_that_of_the_curve(tmp_path, form, name, share):
     one = a_line(name)
     force = share * float(one.tension[-1])
-    text = PROBLEM.format(
-        name=one.identifier, force=force, material=_whoicable_text(one, form=form)
-    )
+    text = _CABLE.format(name=one.identifier, force=force, material=_whoicable_text(one, form=form))
     (tmp_path / "x.cbl").write_text(text)
     done = subprocess.run(
         [CABLE, "-in", "x.cbl", "-out", "x.crs", "-static", "-nocpp", "-quit"],
