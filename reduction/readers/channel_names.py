@@ -646,7 +646,7 @@ class _Start:
         peak = int(np.argmax(np.abs(load - load[0]))) + 1
         if peak >= _LEAST_OF_PULL and _kind_of(place) == "tensile":
             place, load = place[:peak], load[:peak]
-        return np.ptp(load) > 0 and bool(np.corrcoef(place, load)[0, 1] < _OPPOSED)
+        return bool(np.ptp(load) > 0 and np.corrcoef(place, load)[0, 1] < _OPPOSED)
 
     def _sign_of_strain(self, key: str) -> tuple[str, list[str]]:
         """Sign reversal of a strain that falls as the position rises, once this has its sign."""
