@@ -484,6 +484,36 @@ def _range_beside(values: Floats, runs: _Runs, lengths: int) -> Floats:
     return np.asarray(np.fmax.reduce(looks, axis=1) - np.fmin.reduce(looks, axis=1))
 
 
+def _codes_near(values: Floats, level: Floats) -> Floats:
+    """Steps of a channel near given readings: rounding to so many digits makes them coarser there.
+
+    Examples
+    --------
+    >>> load = np.concatenate([np.arange(0.0, 10, 0.01), np.arange(10.0, 100, 0.1)])
+    >>> _codes_near(load, np.array([5.0, 50.0])).round(3)
+    array([0.01, 0.1 ])
+    """
+    _, step = _noise_of(values)
+    windows = _sampled_windows(values)
+    levels = np.unique(windows[np.isfinite(windows)])
+    if levels.size <= 2 * _CODES_BESIDE:
+        return np.full(level.shape, step)
+    first = np.clip(
+        np.searchsorted(levels, level) - _CODES_BESIDE, 0, levels.size - 2 * _CODES_BESIDE - 1
+    )
+    gaps = np.diff(levels[first[:, np.newaxis] + np.arange(2 * _CODES_BESIDE + 1)], axis=1)
+    least = gaps.min(axis=1)
+    # readings of a fine channel that happen to be apart are no multiples of one step
+    codes = gaps / least[:, np.newaxis]
+    is_code = (np.abs(codes - codes.round()) < _OF_A_CODE).all(axis=1)
+    return np.where(is_code, least, step)
+
+
+_CODES_BESIDE = 5  # values on each side of a reading
+
+_OF_A_CODE = 0.01
+
+
 def _outlasts_one_code(tension: Floats, position: Floats, runs: _Runs) -> Bools:
     """Whether the load should change by more than its converter step in each run.
 
@@ -493,7 +523,7 @@ def _outlasts_one_code(tension: Floats, position: Floats, runs: _Runs) -> Bools:
     """
     if not runs.start.size:
         return np.empty(0, dtype=bool)
-    _, step = _noise_of(tension)
+    step = _codes_near(tension, take_samples(tension, runs.start))
     travel = _range_beside(position, runs, 0)
     expected = np.full(travel.size, np.nan)
     for way in (-1, 1):

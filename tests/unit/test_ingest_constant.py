@@ -74,6 +74,15 @@ def test_a_channel_that_repeats_a_value_while_the_crosshead_moves_is_stuck():
     assert loops(_find_stuck(load, POSITION, samples=50)) == [(730, 830)]
 
 
+def test_readings_written_with_three_digits_are_not_stuck():
+    """A slow pull to 1800 N at 100 Hz: steps of 1 N, above 1000 N of 10 N."""
+    position = np.linspace(0, 600, 60_000)
+    load = 1800 * (position / 600) ** 0.8
+    written = np.array([float(f"{one:.3g}") for one in load])
+    stuck = _find_stuck(written, position, samples=50)
+    assert not stuck[written > 1100].any() and not stuck[written < 900].any()
+
+
 def test_a_hold_is_not_stuck_however_even_its_load():
     position = np.concatenate([POSITION[:300], np.full(1000, POSITION[300]), POSITION[300:1000]])
     load = np.concatenate(
