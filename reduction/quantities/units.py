@@ -237,6 +237,10 @@ def _scale_by_pint(unit: str, dimension: Dimension) -> tuple[float, float]:
             known.Quantity(1.0, text).to_root_units().unit_items()
         ):
             target_unit = known.Unit("turn/s")
+        # a number of cycles is a count; in pint each is 2 pi
+        names = [name for name, _ in known.Quantity(1.0, text).unit_items()]
+        if dimension == "number" and any(name.endswith(("turn", "rev")) for name in names):
+            target_unit = known.Unit("turn")
         zero = known.Quantity(0.0, text).to(target_unit).magnitude
         one = known.Quantity(1.0, text).to(target_unit).magnitude
     except pint.DimensionalityError as error:

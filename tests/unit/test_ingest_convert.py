@@ -237,6 +237,9 @@ def test_uncertainties_are_carried_and_unknown_where_not_declared():
 
 def test_the_machines_counter_is_kept_as_whole_numbers():
     count = np.floor(TIME / 10)
+    in_cycles = channels(cycle_counter={"unit": "cycles"})
+    record = convert((log({"cycle_counter": count}), layout(in_cycles)))
+    assert record.cycle_counter.tolist() == count.astype(int).tolist()
     declared = channels(cycle_counter={})
     record = convert((log({"cycle_counter": count}), layout(declared)))
     assert record.cycle_counter.dtype == np.int64

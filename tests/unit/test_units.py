@@ -1,5 +1,7 @@
 """Units at the edge; factors are the international definitions, written out here."""
 
+import math
+
 import pytest
 from refusals import refusals
 
@@ -176,6 +178,15 @@ def test_units_of_a_coefficient_are_multiplied_out(unit, others, powers, combine
 )  # fmt: skip
 def test_a_turn_is_one_cycle_in_every_way_of_writing_a_frequency(unit, hertz):
     assert scale_to_si(unit, "frequency") == pytest.approx((hertz, 0.0))
+
+
+@pytest.mark.parametrize(
+    ("unit", "factor"),
+    [("cycles", 1.0), ("cycle", 1.0), ("rev", 1.0), ("kcycles", 1000.0), ("Mcycles", 1e6),
+     ("counts", 1.0), ("rad", 1.0), ("deg", math.pi / 180)],
+)  # fmt: skip
+def test_a_number_of_cycles_is_a_count_and_no_angle(unit, factor):
+    assert scale_to_si(unit, "number") == pytest.approx((factor, 0.0))
 
 
 @pytest.mark.parametrize("unit", sorted({unit for unit, _ in _USUAL}))
