@@ -884,7 +884,8 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "warning",
         "the specimen goes slack in {n_slack} of {n_cycles} cycles (tension at or below"
         " {slack_tension:.4g} N); their amplitudes and energies include the slack part. If it is"
-        " taut at this load, state a lower phases.slack_tension",
+        " taut at this load, state a lower phases.slack_tension. A load of exactly 0 in them may"
+        " be cut off by a logger without negative readings: correct its zero and test again",
     ),
     "pushed-in-cycles": (
         "warning",
