@@ -48,7 +48,7 @@ JUSTIFIED = (
     ("nylon-synthetic", "experiment nylon", "a quadratic of H is negative inside the range",
      "this surface falls to"),
     ("hose-synthetic", "L-64", "the static cycles begin and end slack: amplitudes are no EA",
-     "If it is taut at this load, state a lower phases.slack_tension. 1 similar note in L-68"),
+     "correct its zero and test again. 1 similar note in L-68"),
     ("hose-synthetic", "D-64", "no lag is stated, and 5 ms are 8 % of H",
      "the lag between tension and position is not stated"),
     ("hose-synthetic", "comparison H64-dynamic", "angle and cord load do the same to one curve",
