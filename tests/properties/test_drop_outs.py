@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 from examples import examples
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from reduction.pipeline.located_test import _without_flagged_samples, locate
@@ -108,6 +108,8 @@ def test_single_samples_that_drop_out_change_no_cycle_and_no_loop(places, share)
 
 @settings(max_examples=examples(60), deadline=None)
 @given(drop_outs(longest=10), st.sampled_from([-1.0, 5.0]))
+@example([("position", 808, 4)], -1.0)
+@example([("position", 188, 8)], -1.0)
 def test_drop_outs_of_up_to_ten_samples_are_flagged_and_change_no_count(places, share):
     record = flag_record(
         with_drop_outs(places, {"position": share, "tension": 1000.0 * share}),

@@ -591,7 +591,12 @@ def _waits(time: Floats, values: Floats, nodes: Indices, far: int, *, is_whole: 
     >>> _waits(np.arange(40.0), wave, np.array([15, 23, 31]), 0, is_whole=False)
     True
     """
-    turn, beside, alike = (int(node) for node in nodes)
+    low, high = min(int(nodes.min()), far), max(int(nodes.max()), far) + 1
+    time, values = time[low:high], values[low:high]
+    # missing readings are no wait
+    known = np.flatnonzero(np.isfinite(values))
+    values = np.interp(np.arange(values.size), known, values[known])
+    far, turn, beside, alike = (int(node) - low for node in (far, *nodes))
     passed = np.array(
         [
             [

@@ -126,7 +126,8 @@ def _on_corners(values: Floats, gaps: Integers, nodes: Integers, on_chords: Floa
     """
     outer = np.clip(2 * nodes[:, [0, 3]] - nodes[:, [1, 2]], 0, values.size - 1)
     times = np.column_stack([outer[:, 0], nodes, outer[:, 1]])
-    slopes = np.diff(values[times], axis=1) / np.diff(times, axis=1)
+    with np.errstate(divide="ignore", invalid="ignore"):  # at the ends of the series
+        slopes = np.diff(values[times], axis=1) / np.diff(times, axis=1)
     earlier, arrives, chord, leaves, later = slopes.T
     bend = arrives - leaves
     is_corner = np.abs(bend) > np.maximum(np.abs(arrives), np.abs(leaves))
