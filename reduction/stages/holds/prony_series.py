@@ -92,7 +92,6 @@ def left_by_ramp(
     added: ArrayLike,
     at_end: Floats,
     relaxation_time: Floats,
-    long_time_tension: float,
     *,
     ramp_duration: float,
 ) -> Floats:
@@ -106,8 +105,8 @@ def left_by_ramp(
         Tension that the ramp had added at even times up to its end. [N]
     at_end, relaxation_time : ndarray, shape (n_terms,)
         Terms as they are at the end of the ramp. [N], [s]
-    long_time_tension, ramp_duration : float
-        [N], [s]
+    ramp_duration : float
+        [s]
 
     Returns
     -------
@@ -122,7 +121,7 @@ def left_by_ramp(
     >>> left = _ramp_factor([5.0], ramp_duration=5.0)
     >>> logged = 240 * t / 5 + 160 * (1 - np.exp(-t / 5))
     >>> print(left.round(3),
-    ...       left_by_ramp(logged, 160 * left, np.array([5.0]), 240.0, ramp_duration=5.0).round(3))
+    ...       left_by_ramp(logged, 160 * left, np.array([5.0]), ramp_duration=5.0).round(3))
     [0.632] [0.632]
     """
     logged = np.asarray(added, dtype=np.float64)
@@ -131,7 +130,7 @@ def left_by_ramp(
     left = np.ones_like(at_end)
     for _ in range(MOST_PASSES):
         before, step = left, at_end / left
-        share = step / (long_time_tension + step.sum())
+        share = step / (logged[-1] + np.sum(step - at_end))
         rest = 1.0 - share.sum()
         elastic, states = 0.0, np.zeros(relaxation_time.size)
         for load in logged[1:]:
@@ -383,10 +382,10 @@ def fit_prony(
         criterion += "; the slowest time is longer than the hold, so its term is extrapolated"
     texts = [criterion, *sorted(refused)]
 
-    def left(times: Floats, at_end: Floats, level: float) -> Floats:
+    def left(times: Floats, at_end: Floats) -> Floats:
         if added is None:
             return _ramp_factor(times, ramp_duration=ramp_duration)
-        return left_by_ramp(added, at_end, times, level, ramp_duration=ramp_duration)
+        return left_by_ramp(added, at_end, times, ramp_duration=ramp_duration)
 
     return _reported(fits[n_terms], longest, left, "; ".join(texts))
 
@@ -394,20 +393,19 @@ def fit_prony(
 def _reported(
     fit: SeparableFit,
     longest: float,
-    left: Callable[[Floats, Floats, float], Floats],
+    left: Callable[[Floats, Floats], Floats],
     criterion: str,
 ) -> PronyFit:
     """Amplitudes for a step, corrected for the ramp, with propagated uncertainties."""
     order = np.argsort(fit.shape)
     n_terms = order.size
     times, at_end = np.exp(fit.shape[order]), fit.amplitude[1 + order]
-    level = float(fit.amplitude[0])
     index = np.concatenate([[0], 1 + order, 1 + n_terms + order])
     covariance = fit.covariance[np.ix_(index, index)] * lag_one_inflation(fit.residual)
-    factor = left(times, at_end, level)
+    factor = left(times, at_end)
     size = at_end / factor
     # d(ln factor) / d(ln time): 0 for a step, 1 for terms much shorter than the ramp.
-    growth = np.log(left(_A_LITTLE * times, at_end, level) / factor) / np.log(_A_LITTLE)
+    growth = np.log(left(_A_LITTLE * times, at_end) / factor) / np.log(_A_LITTLE)
     slopes = np.zeros((2 * n_terms, 2 * n_terms + 1))
     terms = np.arange(n_terms)
     slopes[terms, 1 + terms] = 1 / factor
@@ -422,7 +420,7 @@ def _reported(
         time=times,
         time_standard_uncertainty=np.sqrt(variance[n_terms:]),
         left=factor,
-        long_time_tension=level,
+        long_time_tension=float(fit.amplitude[0]),
         long_time_tension_standard_uncertainty=float(np.hypot(np.sqrt(covariance[0, 0]), unseen)),
         criterion=criterion,
     )
