@@ -9,6 +9,7 @@ References
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import ceil, comb, sqrt
 
@@ -335,6 +336,32 @@ def _still_blocks(
     return first, last
 
 
+def _levels_between(
+    values: Floats, found: Sequence[tuple[int, int]], span: slice, *, fewest: int, tolerance: float
+) -> list[tuple[int, int]]:
+    """First and last samples of levels before, between and after the standstills of a span.
+
+    Two holds a small step apart are one run of `_still_intervals` if the ramp between them is slow,
+    and its mean is near the longer one.
+
+    Examples
+    --------
+    >>> values = np.repeat([0.0, 1.0], [40, 80])
+    >>> _levels_between(values, [(40, 119)], slice(0, 120), fewest=8, tolerance=0.9)
+    [(0, 39)]
+    """
+    ends = np.array(sorted(found), dtype=np.intp).reshape(-1, 2)
+    first, last = np.r_[span.start, ends[:, 1] + 1], np.r_[ends[:, 0] - 1, span.stop - 1]
+    is_long = last - first + 1 >= fewest
+    first, last = first[is_long], last[is_long]
+    level = _levels(values, first, last, tolerance)
+    between = []
+    for i in np.flatnonzero(np.isfinite(level)):
+        near = np.abs(values[first[i] : last[i] + 1] - level[i]) <= tolerance / 4
+        between.append((int(first[i] + np.argmax(near)), int(last[i] - np.argmax(near[::-1]))))
+    return between
+
+
 def _levels(values: Floats, first: Integers, last: Integers, tolerance: float) -> Floats:
     """Level of half of the readings of each interval, or NaN: the others are its edges.
 
@@ -472,6 +499,11 @@ def _mean_of_finite(values: Floats) -> float:
     return total / count if count else float("nan")
 
 
+def _fewest_of(time: Floats, minimum_duration: float) -> int:
+    """Number of samples in the shortest standstill."""
+    return max(ceil(minimum_duration / median_step(time) - 1e-6) + 1, FEWEST_SAMPLES)
+
+
 def _still_intervals(
     time: Floats, values: Floats, *, tolerance: float, minimum_duration: float
 ) -> tuple[Integers, Integers]:
@@ -496,7 +528,7 @@ def _still_intervals(
     >>> print(first, last)
     [ 0 70] [ 60 129]
     """
-    fewest = max(ceil(minimum_duration / median_step(time) - 1e-6) + 1, FEWEST_SAMPLES)
+    fewest = _fewest_of(time, minimum_duration)
     length = max(fewest // 4, 1)
     # a standstill of the fewest samples holds this many whole blocks, wherever it begins
     window = max((fewest - length + 1) // length, 1)
@@ -578,7 +610,7 @@ def _from_approaches(
             corner = corner_in_noise(
                 time, values, begin=since, first=one, last=end, noise_range=noise
             )
-            starts[index] = end + 1 if corner is None else corner  # of a ramp nothing is left
+            starts[index] = end + 1 if corner is None else max(corner, begin)  # a ramp has none
         else:
             starts[index] = approach.end
         stop = int(first[index + 1]) if index + 1 < first.size else values.size
@@ -644,6 +676,7 @@ def _held_intervals(
     clock, series, index = _evenly(time, values, minimum_duration)
     low, high = finite_extremes(series)
     tolerance = max(tolerance, _FINEST_SHARE * (high - low))
+    fewest = _fewest_of(clock, minimum_duration)
     found: list[tuple[int, int]] = []
     work = [(0, series.size, max(tolerance, NEAR_SHARE * (high - low)), 0)]
     while work:
@@ -664,7 +697,12 @@ def _held_intervals(
             else:
                 work.append((first, last + 1, max(tolerance, width / 4), origin))
             origin = last
-        if width > tolerance:  # between them are parts that are one hold at this width, or none
+        if width <= tolerance:
+            inside = [one for one in found if begin <= one[0] < stop]
+            found += _levels_between(
+                series, inside, slice(begin, stop), fewest=2 * fewest, tolerance=tolerance
+            )
+        else:  # between them are parts that are one hold at this width, or none
             starts, stops = [begin, *(begin + lasts + 1).tolist()], [*(begin + firsts), stop]
             work += [
                 (start, int(end), max(tolerance, width / 4), start)

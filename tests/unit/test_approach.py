@@ -88,6 +88,19 @@ def test_a_load_that_noise_hides_stands_where_its_slow_ramp_ends(seed):
     assert held == pytest.approx([28, 170], abs=1.0)
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_two_holds_a_slow_small_step_apart_are_two(seed):
+    # 58 N in 12 s, with a noise of 3.3 N
+    time = np.arange(0.0, 535.0, 1.36)
+    load = np.interp(time, [0, 7, 8, 212, 224, 535], [0, 0, 361, 361, 419, 419])
+    noise = np.random.default_rng(seed)
+    place = load / 100 + noise.normal(0, 1e-4, time.size)
+    load += noise.normal(0, 3.3, time.size)
+    found = find_tension_stands(time, place, [load], settings=PhaseSettings(), is_held=True)
+    assert found.start_time[~found.is_rest] == pytest.approx([8, 224], abs=2.0)
+    assert found.end_time[~found.is_rest] == pytest.approx([212, 535], abs=8.0)
+
+
 def test_between_cycles_a_standstill_keeps_its_edges():
     time = np.arange(0.0, END + DURATION, 0.1)
     place = ramp(time, "settles")
