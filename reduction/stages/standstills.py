@@ -541,8 +541,9 @@ def _still_intervals(
     level = np.full(first.size, np.nan)
     level[~stays] = _levels(values, first[~stays], last[~stays], tolerance)
     stays |= np.isfinite(level)
-    first_block, last_block, first, last, level = (
-        one[stays] for one in (first_block, last_block, first, last, level)
+    level = level[stays]
+    first_block, last_block, first, last = (
+        one[stays] for one in (first_block, last_block, first, last)
     )
     centre = _interval_means(values, first, last)
     for block, step in ((first_block, 1), (last_block, -1)):  # a block that moves is not an edge
