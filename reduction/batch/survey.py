@@ -16,6 +16,7 @@ from reduction.batch.workers import Task, Workers, work_on
 from reduction.campaign.plan import Campaign, StepPlan, TestPlan, cycles_of_kind
 from reduction.pipeline.extremes import Extremes, extremes_of_readings, extremes_of_test
 from reduction.pipeline.located_test import (
+    CYCLIC,
     FEWEST_SLACK,
     Located,
     locate,
@@ -57,6 +58,7 @@ from reduction.stages.strain.zero_strain import (
     half_band_of,
     jumps_of_length,
     zero_at_slack,
+    zero_at_start,
     zero_at_tension,
     zero_of_bent,
 )
@@ -331,6 +333,10 @@ def _find_zero_strain(survey: Survey, located: Located, campaign: Campaign, plan
         position_is_length=is_length,
         length_at_slack=length_at_slack(layouts),
     )
+    if at_slack.position is None and plan.kind not in CYCLIC:
+        slack = located.standstills.slack_tension
+        start = zero_at_start(located.position, located.tension, slack_tension=slack)
+        at_slack = start or at_slack
     for name, tension in zip(plan.specimens, located.tension, strict=True):
         reference = campaign.specimens[name].reference_tension or tension_of_layout
         if not reference:

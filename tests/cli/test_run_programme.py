@@ -455,6 +455,29 @@ def test_a_pull_that_breaks_above_the_rated_strength_is_no_mistake(tmp_path, n_a
     assert ("rated_break_strength" in result.tests[0].message) == (status == "check")
 
 
+def test_a_slow_log_begins_slack_with_fewer_readings_than_a_rest(tmp_path):
+    time = np.arange(0.0, 240.0, 3.0)
+    place = 10 + np.clip(time - 8, 0, None) / 400  # three readings at slack, then 1 MN
+    load = 1e5 * (place - 10)
+    log_of_loads(tmp_path / "pull.csv", time, load, position=place)
+    layout = "\n".join([
+        '[layouts.pins]', 'format = "delimited"', '[layouts.pins.channels]',
+        'time = { column = "t_s", unit = "s" }',
+        'crosshead_position = { column = "x_m", unit = "m", datum = "pin-to-pin" }',
+        'tension.1 = { column = "F_N", unit = "N" }',
+    ])  # fmt: skip
+    rope = '[specimens.R-3]\nkind = "rope"\ngauge_length = "10 m"\ndiameter = ["20 mm"]'
+    pull = ('layout = "pins"', 'strain = { method = "gauge-length" }')
+    result = run(
+        tmp_path, layout, rope, made.single("pull", "quasi-static", POSITION, *pull, specimen="R-3")
+    )
+    assert [one.status for one in result.tests] == ["reduced"]
+    curve = table(result, "slow_pull").dropna()
+    assert curve["quasi_static_strain"].to_numpy() == pytest.approx(
+        curve["tension_grid"].to_numpy() / 1e6, abs=1e-5
+    )
+
+
 @pytest.mark.parametrize("readings", [(), (4e4,), (6e4, 2e4)])
 def test_the_curve_of_a_first_loading_ends_where_the_specimen_breaks(tmp_path, readings):
     time = np.arange(0.0, 100.0, 0.05)
