@@ -134,21 +134,6 @@ def test_only_as_much_is_alike_as_both_channels_miss():
     assert summary.uncertainty["apparent_spring_constant"] == pytest.approx([100.0])
 
 
-def test_a_first_cycle_that_settles_does_not_give_its_error_to_the_mean():
-    """Its turns are known to 2 %, those of the others to 0.01 %: the mean of eight is, too."""
-    values = np.full((1, 8), 1e3)
-    missed = values * np.where(np.arange(8) == 0, 0.02, 1e-4)
-    loops = replace(loops_of(values), tension_turn_missed=missed)
-    summary = summarise_amplitude(loops, area=[1.0])
-    found = summary.uncertainty["apparent_spring_constant"]
-    assert found == pytest.approx([1e-4 * 1e3 / 8**0.5], rel=0.05)
-    # corners anywhere between two readings: half of what may be missed, as in a mean
-    anywhere = values * np.linspace(0, 0.02, 8)
-    loops = replace(loops, tension_turn_missed=anywhere)
-    found = summarise_amplitude(loops, area=[1.0]).uncertainty["apparent_spring_constant"]
-    assert found == pytest.approx([0.01 * 1e3 / 8**0.5], rel=0.05)
-
-
 def test_readings_of_the_slope_of_the_loop_spread_with_the_loss_angle():
     # at 13 degrees 1/cos - cos = 0.0519; its slope on tan by a difference
     tangent = np.tan(np.radians(13.0))

@@ -176,7 +176,7 @@ class Loops:
 
         with np.errstate(divide="ignore", invalid="ignore"):
             tension, strain, energy = (
-                _of_most(getattr(self, f"{name}_turn_missed")[:, cycles])
+                np.nan_to_num(mean(f"{name}_turn_missed"))
                 for name in ("tension", "strain", "energy")
             )
             # tension may turn at another place between its samples than strain; the common error
@@ -220,12 +220,6 @@ class Loops:
             *(one for one in own if isinstance(one, np.ndarray)), *self.uncertainty.values()
         )
         trim_heap_after(self.frequency)
-
-
-def _of_most(missed: Floats) -> Floats:
-    """Mean of the quartiles over cycles: what a first cycle misses as it settles is not in all."""
-    known = np.where(np.isfinite(missed).any(axis=1, keepdims=True), missed, 0.0)
-    return np.asarray(np.nanquantile(known, (0.25, 0.5, 0.75), axis=1).mean(axis=0))
 
 
 def turns_alike(lag: Floats, interval: float, *, period: float = 0.0, n_cycles: int = 1) -> Floats:
