@@ -395,7 +395,7 @@ def test_a_bedding_in_that_begins_above_slack_gives_the_first_cycle(log, tmp_pat
     )  # fmt: skip
     (original,) = properties(result, "original stiffness")
     near(original, "property_stiffness", made.bedding_stiffness(1))
-    assert "of the first cycle" in original["property_remark"]
+    assert "from the first cycle" in original["property_remark"]
 
 
 def test_cycles_of_a_sine_that_bed_a_rope_in_begin_with_the_first(tmp_path):
