@@ -505,7 +505,12 @@ def _fewest_of(time: Floats, minimum_duration: float) -> int:
 
 
 def _still_intervals(
-    time: Floats, values: Floats, *, tolerance: float, minimum_duration: float
+    time: Floats,
+    values: Floats,
+    *,
+    tolerance: float,
+    minimum_duration: float,
+    is_noise: bool = True,
 ) -> tuple[Integers, Integers]:
     """First and last sample of every interval in which a channel stands still.
 
@@ -518,7 +523,8 @@ def _still_intervals(
     The turn of a slow cycle also stays within the tolerance for a while, but takes as
     long again to get away from there.  An interval is kept where the channel is four
     tolerances away within as long as it lasts, before or after it, where the record never goes
-    that far, or where half of its readings are at one level (a rest before a slow pull).
+    that far, or, if the tolerance ``is_noise``, where half of its readings are at one level (a rest
+    before a slow pull).
 
     Examples
     --------
@@ -539,8 +545,9 @@ def _still_intervals(
     first = first_block * length
     last = np.minimum((last_block + 1) * length, values.size) - 1
     level = np.full(first.size, np.nan)
-    level[~stays] = _levels(values, first[~stays], last[~stays], tolerance)
-    stays |= np.isfinite(level)
+    if is_noise:
+        level[~stays] = _levels(values, first[~stays], last[~stays], tolerance)
+        stays |= np.isfinite(level)
     level = level[stays]
     first_block, last_block, first, last = (
         one[stays] for one in (first_block, last_block, first, last)
@@ -686,7 +693,7 @@ def _held_intervals(
             continue
         firsts, lasts = _still_intervals(
             clock[begin:stop], series[begin:stop],
-            tolerance=width, minimum_duration=minimum_duration,
+            tolerance=width, minimum_duration=minimum_duration, is_noise=width <= tolerance,
         )  # fmt: skip
         for first, last in zip((begin + firsts).tolist(), (begin + lasts).tolist(), strict=True):
             # the approach to a hold begins at the one before, even outside the part searched

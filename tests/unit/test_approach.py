@@ -88,6 +88,16 @@ def test_a_load_that_noise_hides_stands_where_its_slow_ramp_ends(seed):
     assert held == pytest.approx([28, 170], abs=1.0)
 
 
+@pytest.mark.parametrize("share", [0.04, 0.05, 0.06])
+def test_a_hold_a_small_step_above_another_begins_at_the_end_of_its_ramp(share):
+    # a ramp of 10 s that 2 % of the whole stroke does not tell from the hold behind it
+    time = np.arange(0.0, 420.0, 0.25)
+    place = np.interp(time, [0, 20, 30, 270, 280], [0, 0, 1, 1, 1 + share])
+    place += np.random.default_rng(1).normal(0, 1e-5, time.size)
+    found = find_standstills(time, place, [100 * place], settings=PhaseSettings(), is_held=True)
+    assert found.start_time == pytest.approx([0, 30, 280], abs=0.5)
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_two_holds_a_slow_small_step_apart_are_two(seed):
     # 58 N in 12 s, with a noise of 3.3 N
