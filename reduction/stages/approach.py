@@ -303,21 +303,20 @@ def corner_in_noise(
     stop = min(2 * first - begin, last) + 1
     start = begin if below is None or stop - below <= 2 * _FEWEST_ON_LINE else below + 1
     known = start + np.flatnonzero(np.isfinite(values[start:stop]))
+    known = known[np.diff(time[known], prepend=-np.inf) > 0]
     known = known[:: max(known.size // _LEVEL_SAMPLES_MOST, 1)]
     if known.size < 2 * _FEWEST_ON_LINE:
         return first
-    seconds, place = time[known], values[known]
-
-    def left_by(shape: Floats) -> float:
-        slope, level = np.polyfit(shape, place, 1)
-        return float(np.sum((place - level - slope * shape) ** 2))
-
-    corners = known[2:-2]
-    left = np.array([left_by(np.minimum(seconds - time[one], 0.0)) for one in corners])
-    best = int(np.argmin(left))
-    gained = (left_by(seconds) - left[best]) * (known.size - 3)
-    if gained > _CORNER * left[best]:
-        return int(corners[best])
+    seconds, place = (one[known] - one[known].mean() for one in (time, values))
+    # sums over the ramp before a corner at each reading; at the last one it is one line through all
+    count, since = np.arange(1.0, known.size + 1), np.cumsum(seconds)
+    ramp = since - count * seconds
+    square = np.cumsum(seconds**2) - seconds * (since + ramp)
+    product = np.cumsum(seconds * place) - seconds * np.cumsum(place)
+    left = (place @ place - product[2:] ** 2 / (square - ramp**2 / known.size)[2:]).clip(0)
+    best = int(np.argmin(left[:-2]))
+    if (left[-1] - left[best]) * (known.size - 3) > _CORNER * left[best]:
+        return int(known[best + 2])
     return first if last - first > 2 * (first - start) else None
 
 
