@@ -18,7 +18,7 @@ from reduction.stages.strain.strain_model import (
     strain_by_model,
     strain_sensitivity_of,
 )
-from reduction.stages.strain.zero_strain import ZeroStrain, zero_at_slack
+from reduction.stages.strain.zero_strain import ZeroStrain, zero_at_slack, zero_at_start
 from reduction.uncertainty.error_field import error_field
 
 L0, LS = 2.55, 1.18
@@ -290,6 +290,19 @@ def test_zero_strain_is_uncertain_by_codes_and_noise():
     zero = zero_at_slack(stands, noisy, position_is_length=True)
     assert zero.standard_uncertainty == pytest.approx(0.001, rel=0.1)
     assert abs(zero.position - 0.1) < 3 * zero.standard_uncertainty
+
+
+@pytest.mark.parametrize("rate", [0.5, 1.0, 2.0])  # deviations of the noise per reading
+@pytest.mark.parametrize("standing", [1, 3, 4, 6])
+def test_a_slow_ramp_among_the_first_readings_is_in_the_interval_of_their_zero(rate, standing):
+    off = []
+    for seed in range(100):
+        noise = np.random.default_rng(seed).normal(0, 1e-4, 400)
+        place = 7 + 1e-4 * rate * np.clip(np.arange(400) - (standing - 1), 0, None) + noise
+        zero = zero_at_start(place, 1e4 * (place[None] - 7), slack_tension=1e3)
+        if zero is not None:
+            off.append((zero.position - 7) / zero.standard_uncertainty)
+    assert np.sqrt(np.mean(np.square(off))) < 2.5
 
 
 def test_zero_strain_is_that_of_a_rest_without_the_slow_ramp_after_it():

@@ -82,32 +82,30 @@ def zero_at_slack(
 
 
 def zero_at_start(position: Floats, tension: Floats, *, slack_tension: float) -> ZeroStrain | None:
-    """Level of the first readings of a log that begins slack, if too few for a rest stand there.
+    """Level of the first three readings of a log that begins slack with too few for a rest.
 
-    None if fewer than three readings stand.  ``tension`` has the shape (n_specimens, n_samples).
+    None if they do not stand.  ``tension`` has the shape (n_specimens, n_samples).  It is uncertain
+    by the noise of one reading, since a slow ramp may begin among them.
 
     Examples
     --------
     A pull that is logged every three seconds, from nine seconds on:
 
-    >>> place = 7.0 + 0.02 * np.clip(np.arange(60.0) - 3, 0, None)
+    >>> place = 7.0 + 0.02 * np.clip(np.arange(60.0) - 2, 0, None)
     >>> print(zero_at_start(place, 1e4 * (place[None] - 7), slack_tension=200.0).position)
     7.0
-    >>> late = place[3:]
+    >>> late = place[2:]
     >>> print(zero_at_start(late, 1e4 * (late[None] - 7), slack_tension=200.0))
     None
     """
-    first = position[:_MOST_AT_START]
-    stands = np.abs(first - first[0]) <= noise_range(position) / 2
-    stands &= (tension[:, :_MOST_AT_START] <= slack_tension).all(axis=0)
-    count = int(np.argmin(np.append(stands, False)))
-    if count < _FEWEST - 1:  # four are a rest
+    first = position[: _FEWEST - 1]  # four are a rest
+    noise = noise_range(position)
+    # of the noise alone, one range of three readings in a hundred is wider
+    stands = np.ptp(first) <= noise / 3
+    if not (stands and (tension[:, : first.size] <= slack_tension).all()):
         return None
-    spread = np.hypot(step_of_codes(position) / 12**0.5, estimate_noise(position)[0] / count**0.5)
-    return ZeroStrain(float(np.median(first[:count])), float(spread), is_logged=True)
-
-
-_MOST_AT_START = 8  # readings: more would be a rest, unless a slow ramp is among them
+    spread = np.hypot(step_of_codes(position) / 12**0.5, estimate_noise(position)[0])
+    return ZeroStrain(float(np.median(first)), float(spread), is_logged=True)
 
 
 def zero_of_bent(
