@@ -876,8 +876,8 @@ def _are_turns(
     With noise in the channel, the turn of a slow sine stays within the tolerance as long as a
     standstill might.  At a turn, and a quarter of the interval to either side, the channel is
     a parabola; at a standstill it is a level left by straight or rounded ramps.  Where the
-    mean squares differ by less than a factor of eight, those of all intervals decide that are as
-    long, within a factor of two, at the same level.
+    mean squares differ by less than a factor of eight, those of all such intervals decide that are
+    as long, within a factor of two, at the same level: a hold before the cycles is not one of them.
 
     Examples
     --------
@@ -908,11 +908,11 @@ def _are_turns(
         misfits[:, index] = np.maximum(of_both, _TINY) / free
     ratio = np.log2(misfits[0] / misfits[1])
     is_turn: Bools = ratio < 0
-    unclear = np.flatnonzero(np.abs(ratio) < _UNCLEAR)
+    is_unclear = np.abs(ratio) < _UNCLEAR
     level = _interval_means(values, first, last)
     length = np.log2(np.maximum(time[last] - time[first], _TINY))
-    for index in unclear.tolist():  # as the others at its level
-        is_near = np.abs(level - level[index]) <= tolerance
+    for index in np.flatnonzero(is_unclear).tolist():  # as the others at its level
+        is_near = is_unclear & (np.abs(level - level[index]) <= tolerance)
         alike = misfits[:, is_near & (np.abs(length - length[index]) <= 1)]
         parabolas, stands = np.nansum(alike, axis=1)
         is_turn[index] = parabolas < stands

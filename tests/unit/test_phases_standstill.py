@@ -531,3 +531,17 @@ def test_turns_of_coarse_noisy_sines_are_no_holds_and_dwells_of_four_readings_ar
             kept[name] += int(((found.start_time > ends[0]) & (found.end_time < ends[1])).sum())
     assert kept["rounded"] <= 2
     assert kept["dwelling"] >= 118  # of 15 in each of eight logs
+
+
+@pytest.mark.parametrize("second", [0.0, 0.03, 0.06])
+def test_a_hold_before_noisy_cycles_does_not_make_holds_of_their_valleys(second):
+    """Synthetic: 160 readings per cycle, a second harmonic, and noise of 1 % of the range."""
+    clock = np.arange(8 * 160) / 160
+    wave = (1 - np.cos(2 * np.pi * clock)) / 2 + second * (np.cos(4 * np.pi * clock) - 1)
+    shape = np.concatenate([np.linspace(-0.3, 0, 30), np.zeros(50), wave, np.zeros(60)])
+    time, rng, found = np.arange(shape.size, dtype=float), np.random.default_rng(1), 0
+    for _ in range(6):
+        load = 800 + 2000 * (shape + 0.01 * rng.standard_normal(shape.size))
+        stands = find_tension_stands(time, 0.1 + 0.1 * shape, [load], settings=PhaseSettings())
+        found += int(((stands.start_time > 112) & (stands.end_time < time[-93])).sum())
+    assert found <= 6  # of 90 turns
