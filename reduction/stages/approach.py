@@ -294,7 +294,9 @@ def corner_in_noise(
     >>> print(corner_in_noise(time, load, begin=0, first=20, last=28, noise_range=60.0))
     None
     """
-    level, from_level = _early_level(values[first : last + 1]), np.nanmean(values[begin:][:3])
+    arrives = values[begin : last + 1]
+    level = _early_level(arrives[first - begin :])
+    from_level = arrives[np.isfinite(arrives)][:3].mean()
     sign = np.sign(level - from_level)
     if not _FROM_NOISE * noise_range < abs(level - from_level) <= 2 * _RESOLVED * noise_range:
         return first
@@ -317,7 +319,8 @@ def corner_in_noise(
     best = int(np.argmin(left[:-2]))
     if (left[-1] - left[best]) * (known.size - 3) > _CORNER * left[best]:
         return int(known[best + 2])
-    return first if last - first > 2 * (first - start) else None
+    seen = np.count_nonzero(np.isfinite(values[start:first]))
+    return first if last - first > 2 * seen else None
 
 
 _CORNER = 12.0  # F of one more constant: 0.1 % of straight ramps of a hundred readings exceed it

@@ -382,6 +382,8 @@ def _levels(values: Floats, first: Integers, last: Integers, tolerance: float) -
         stride = max((end + 1 - one) // _LEVEL_SAMPLES, 1)
         readings = take_samples(values, np.arange(one, end + 1, stride))
         readings = np.sort(readings[np.isfinite(readings)])
+        if readings.size < FEWEST_SAMPLES:
+            continue
         half = readings.size // 2
         width = readings[half:] - readings[: readings.size - half]
         nearest = int(np.argmin(width))
@@ -409,7 +411,8 @@ def _without_ramps(
     for i in np.flatnonzero(np.isfinite(level)):
         away = values[first[i] : last[i] + 1] - level[i]
         for edge, step in ((first, 1), (last, -1)):
-            ramp = np.nanmean(away[::step][: max(away.size // 8, 1)])
+            known = away[::step][np.isfinite(away[::step])]
+            ramp = known[: max(away.size // 8, 1)].mean()
             if abs(ramp) > tolerance / 8:
                 edge[i] += step * int(np.argmax(away[::step] * ramp <= 0))
     return first, last

@@ -98,6 +98,19 @@ def test_a_hold_a_small_step_above_another_begins_at_the_end_of_its_ramp(share):
     assert found.start_time == pytest.approx([0, 30, 280], abs=0.5)
 
 
+@pytest.mark.parametrize("missing", [(0, 8), (70, 110), (76, 119), (100, 140), (148, 160)])
+@pytest.mark.filterwarnings("error")
+def test_holds_are_found_beside_missing_readings(missing):
+    # two ramps of 10 s whose ends noise hides, and a hold of 60 s behind each
+    time = np.arange(0.0, 160.0)
+    place = np.interp(time, [0, 20, 30, 90, 100, 160], [0, 0, 1, 1, 2, 2])
+    place += np.random.default_rng(3).normal(0, 0.03, time.size)
+    place[slice(*missing)] = np.nan
+    for find in (find_standstills, find_tension_stands):
+        found = find(time, place, [100 * place], settings=PhaseSettings(), is_held=True)
+        assert [np.any(abs(found.start_time - end) < 25) for end in (30, 100)] == [True, True]
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_two_holds_a_slow_small_step_apart_are_two(seed):
     # 58 N in 12 s, with a noise of 3.3 N
