@@ -879,8 +879,9 @@ def _are_turns(
     With noise in the channel, the turn of a slow sine stays within the tolerance as long as a
     standstill might.  At a turn, and a quarter of the interval to either side, the channel is
     a parabola; at a standstill it is a level left by straight or rounded ramps.  Where the
-    mean squares differ by less than a factor of eight, those of all such intervals decide that are
-    as long, within a factor of two, at the same level: a hold before the cycles is not one of them.
+    mean squares differ by less than a factor of eight, those of all such intervals at the same
+    level decide; one that is more than twice as long as most, as a hold before the cycles, does
+    not count.
 
     Examples
     --------
@@ -911,14 +912,16 @@ def _are_turns(
         misfits[:, index] = np.maximum(of_both, _TINY) / free
     ratio = np.log2(misfits[0] / misfits[1])
     is_turn: Bools = ratio < 0
-    is_unclear = np.abs(ratio) < _UNCLEAR
-    level = _interval_means(values, first, last)
-    length = np.log2(np.maximum(time[last] - time[first], _TINY))
-    for index in np.flatnonzero(is_unclear).tolist():  # as the others at its level
-        is_near = is_unclear & (np.abs(level - level[index]) <= tolerance)
-        alike = misfits[:, is_near & (np.abs(length - length[index]) <= 1)]
-        parabolas, stands = np.nansum(alike, axis=1)
-        is_turn[index] = parabolas < stands
+    unclear = np.flatnonzero(np.abs(ratio) < _UNCLEAR)  # judged with those like them
+    level = _interval_means(values, first[unclear], last[unclear])
+    duration = time[last[unclear]] - time[first[unclear]]
+    is_long = duration > 2 * np.median(duration) if unclear.size else duration > 0
+    by_level = np.lexsort((level, is_long))
+    is_next = (np.diff(level[by_level]) > tolerance) | np.diff(is_long[by_level])
+    alike = np.empty_like(unclear)
+    alike[by_level] = np.concatenate([[0], np.cumsum(is_next)])[: unclear.size]
+    parabolas, stands = (np.bincount(alike, weights=one[unclear]) for one in misfits)
+    is_turn[unclear] = (parabolas < stands)[alike]
     return is_turn
 
 
