@@ -211,7 +211,8 @@ def _judge_product(answer, good, files, expected):
         raise InvariantError(
             f"a product of files that say nothing: {type(error).__name__}: {error}"
         ) from error
-    if any("in time order" in text or "newest first" in text for _, text in answer.notes):
+    in_order = "sorted by time", "repeated rows", "newest first"
+    if any(words in text for _, text in answer.notes for words in in_order):
         reading = reading.in_order()
     if differing := readings_that_differ(reading, answer.dataset):
         raise InvariantError("; ".join(differing))
