@@ -272,7 +272,7 @@ _PRONY = (
     "prony_tension_standard_uncertainty",
     "prony_time",
     "prony_time_standard_uncertainty",
-    "prony_left",
+    "prony_fraction_at_ramp_end",
 )
 
 

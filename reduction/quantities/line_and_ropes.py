@@ -438,7 +438,7 @@ OF_LINE: tuple[Quantity, ...] = (
         ),
         measured("prony_time", "s", "relaxation time of a Prony term", tables=("prony",)),
         stated(
-            "prony_left",
+            "prony_fraction_at_ramp_end",
             "1",
             "fraction of a Prony term left at the end of the ramp",
             CHECK,

@@ -171,7 +171,7 @@ def make_hold(rng, specimen, start_time, kind="relaxation", n_terms=2):
         prony_tension_standard_uncertainty=array(rng, n_terms),
         prony_time=array(rng, n_terms),
         prony_time_standard_uncertainty=array(rng, n_terms),
-        prony_left=array(rng, n_terms),
+        prony_fraction_at_ramp_end=array(rng, n_terms),
         criterion="corrected Akaike",
         refusals=()
         if n_terms

@@ -309,7 +309,7 @@ def test_a_ramp_of_two_rates_has_the_terms_of_a_step(slower):
     # by the integral of exp(-t / 10 s) over the ramp as it was driven
     left = 0.7 * (np.exp(-0.3 * slower) - np.exp(-1 - 0.3 * slower))
     left += (1 - np.exp(-0.3 * slower)) / slower
-    assert hold.prony_left == pytest.approx([left], rel=0.01)
+    assert hold.prony_fraction_at_ramp_end == pytest.approx([left], rel=0.01)
 
 
 def test_a_ramp_within_two_steps_of_the_log_is_known_to_what_a_decade_takes():

@@ -55,7 +55,7 @@ def draw_holds(view: TestView) -> list[Figure]:
                 make_figure(
                     f"{view.key}-hold-{kind}-{index}", f"{view.id}: {kind}, {specimen}",
                     f"{what.capitalize()} in the holds at {held} against time since the hold"
-                    " began; dashed grey: the fitted Prony series (of a step in length), where the"
+                    " began; dashed grey: the fitted Prony series, where the"
                     " record supports one.",
                     traces, synthetic=view.is_synthetic,
                     xaxis=axis(
@@ -107,7 +107,7 @@ def _one_hold(
 
 
 def _prony(view: TestView, hold: int, since: Floats, start: float) -> tuple[Floats, Floats] | None:
-    names = ("prony_tension", "prony_left", "prony_time")
+    names = ("prony_tension", "prony_fraction_at_ramp_end", "prony_time")
     found = [view.array(name) for name in names]
     long_time, ended = view.array("long_time_tension"), view.array("hold_ramp_end_time")
     if long_time is None or np.isnan(long_time[hold]):

@@ -67,7 +67,7 @@ class HoldResult:
         Shape (n_times,), or empty. [N], [1]
     is_unloading : bool
         Whether tension fell on the ramp that led to the hold.
-    prony_left : ndarray, shape (n_terms,)
+    prony_fraction_at_ramp_end : ndarray, shape (n_terms,)
         Fraction of each term left at the end of the ramp. [1]
     """
 
@@ -106,7 +106,7 @@ class HoldResult:
     tension_at_time_standard_uncertainty: Floats = field(default_factory=lambda: np.empty(0))
     strain_at_time_standard_uncertainty: Floats = field(default_factory=lambda: np.empty(0))
     is_unloading: bool = False
-    prony_left: Floats = field(default_factory=lambda: np.empty(0))
+    prony_fraction_at_ramp_end: Floats = field(default_factory=lambda: np.empty(0))
 
     @property
     def refused(self) -> str:

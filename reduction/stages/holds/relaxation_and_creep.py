@@ -711,7 +711,7 @@ def _result(
         prony_tension_standard_uncertainty=(
             _EMPTY if prony is None else prony.tension_standard_uncertainty
         ),
-        prony_left=_EMPTY if prony is None else prony.left,
+        prony_fraction_at_ramp_end=_EMPTY if prony is None else prony.left,
         prony_time=_EMPTY if prony is None else prony.time,
         prony_time_standard_uncertainty=(
             _EMPTY if prony is None else prony.time_standard_uncertainty
