@@ -1105,10 +1105,8 @@ def _describe_standstills(
     )
 
 
-def level_of_standstill(
-    position: Floats, standstills: Standstills, index: int
-) -> tuple[float, int]:
-    """Mean position of a standstill without the ramps at its ends, and number of its readings.
+def level_of_standstill(position: Floats, standstills: Standstills, index: int) -> float:
+    """Mean position of a standstill without the ramps at its ends.
 
     Examples
     --------
@@ -1119,7 +1117,7 @@ def level_of_standstill(
     >>> rest = Standstills(
     ...     one(0), one(62), one(0.0), one(62.0), one(0.0), np.array([[0.0]]), one(True), 0.05, 5.0)
     >>> level_of_standstill(position, rest, 0)
-    (0.0, 60)
+    0.0
     """
     first, last = standstills.first[index : index + 1], standstills.last[index : index + 1]
     stride = max(int(last[0] + 1 - first[0]) // _LEVEL_SAMPLES, 1)
@@ -1127,7 +1125,7 @@ def level_of_standstill(
     first, last = _without_ramps(
         position, first.copy(), last.copy(), np.array([level]), standstills.position_tolerance
     )
-    return float(_interval_means(position, first, last)[0]), int(last[0] + 1 - first[0])
+    return float(_interval_means(position, first, last)[0])
 
 
 def find_standstills(

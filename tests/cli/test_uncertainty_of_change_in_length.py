@@ -230,7 +230,7 @@ def test_the_page_and_the_table_show_what_is_shared(tmp_path):
     assert any("working strain" in row and "position_gain" in row for row in rows)
 
 
-def test_without_stated_instruments_the_zero_of_strain_alone_is_shared(tmp_path):
+def test_without_stated_instruments_nothing_is_shared(tmp_path):
     found = reduced(tmp_path / "bare", stated="")
-    assert set(found["uncertainty_source"].values.tolist()) == {"strain_calibration"}
+    assert "uncertainty_source" not in found
     assert np.isfinite(found["property_stiffness_standard_uncertainty"].values).any()

@@ -279,17 +279,13 @@ def test_zero_strain_is_at_the_first_rest():
     assert zero_at_slack(stands, place, position_is_length=True).position == 0.1
 
 
-def test_zero_strain_is_uncertain_by_codes_and_noise():
+def test_zero_strain_of_a_coarse_position_is_uncertain_by_a_code():
     stands = dataclasses.replace(rests([0.1], [True]), last=np.array([99]))
     # a position in steps of a millimetre stands anywhere within one: half of it over root three
     coarse = np.round(np.clip(0.0003 * np.arange(1000.0) - 0.03, 0, None), 3) + 0.1
     zero = zero_at_slack(stands, coarse, position_is_length=True)
     assert zero.position == pytest.approx(0.1)
     assert zero.standard_uncertainty == pytest.approx(0.5e-3 / np.sqrt(3), rel=0.05)
-    noisy = coarse + np.random.default_rng(1).normal(0, 0.01, 1000)
-    zero = zero_at_slack(stands, noisy, position_is_length=True)
-    assert zero.standard_uncertainty == pytest.approx(0.001, rel=0.1)
-    assert abs(zero.position - 0.1) < 3 * zero.standard_uncertainty
 
 
 @pytest.mark.parametrize("rate", [0.5, 1.0, 2.0])  # deviations of the noise per reading
@@ -312,8 +308,7 @@ def test_zero_strain_is_that_of_a_rest_without_the_slow_ramp_after_it():
     place += np.random.default_rng(2).normal(0, 2e-3, time.size)
     stands = find_standstills(time, place, [100 * (place - 3)], settings=PhaseSettings())
     zero = zero_at_slack(stands, place, position_is_length=True)
-    assert zero.position == pytest.approx(3, abs=2 * zero.standard_uncertainty)
-    assert zero.standard_uncertainty < 0.6e-3
+    assert zero.position == pytest.approx(3, abs=2 * 2e-3 / np.sqrt(23))
 
 
 def test_without_a_rest_only_a_displacement_has_a_zero():

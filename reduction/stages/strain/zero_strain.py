@@ -61,8 +61,7 @@ def zero_at_slack(
 ) -> ZeroStrain:
     """Position of the first rest, else that at which the layout states that the specimen is slack.
 
-    It is uncertain by the noise of a mean over the rest, and by one of the codes in which
-    positions are written.
+    A position that is written in coarse codes is uncertain by one of them.
 
     Examples
     --------
@@ -73,11 +72,8 @@ def zero_at_slack(
     """
     rests = np.flatnonzero(standstills.is_rest)
     if rests.size:
-        level, count = level_of_standstill(position, standstills, int(rests[0]))
-        spread = np.hypot(
-            step_of_codes(position) / 12**0.5, estimate_noise(position)[0] / count**0.5
-        )
-        return ZeroStrain(level, float(spread), is_logged=True)
+        level = level_of_standstill(position, standstills, int(rests[0]))
+        return ZeroStrain(level, step_of_codes(position) / float(np.sqrt(12)), is_logged=True)
     return ZeroStrain(length_at_slack if position_is_length else 0.0)
 
 
