@@ -198,7 +198,8 @@ def test_noise_of_one_reading_is_no_error_that_samples_share(tmp_path):
     ]
     assert {one.validation.verdict for one in found} == {found[0].validation.verdict}
     for one in found:
-        assert [each.source for each in one.measured.component] == ["strain_calibration"]
+        # the gauge length, and the step of 0.001 in of the position at the rest of zero strain
+        assert [each.source for each in one.measured.component] == ["strain_calibration"] * 2
         assert any(
             "no load cell uncertainty is stated" in note for note in map(str, one.validation.notes)
         )
@@ -219,13 +220,20 @@ def test_strain_and_temperature_reach_a_comparison_as_they_reach_the_test(
     plan = campaign.comparisons["H64-static"]
     named = compare_archive(processed / "L-64.nc", campaign.hoses["H64"], plan)
     curve = named.comparison.measured
-    (row,) = curve.contribution_of("ascending")
-    assert [one.source for one in curve.component] == [source]
+    # beside the step of the position at the rest of zero strain
+    rows = curve.contribution_of("ascending")
+    assert sorted(one.source for one in curve.component) == sorted([source, "strain_calibration"])
+    (row,) = (
+        of_error
+        for of_error, one in zip(rows, curve.component, strict=True)
+        if one.source == source
+    )
     with open_archive(processed / "L-64.nc") as archive:
         strain = archive["strain_bin"].to_numpy()
         tension = archive["branch_tension"].to_numpy()[0, 0]
         rows = archive["branch_tension_uncertainty_contribution"].to_numpy()[:, 0, 0]
-    of_test = np.sqrt(np.sum(rows**2, axis=0)) / tension
+        sources = archive["uncertainty_source"].to_numpy().tolist()
+    of_test = np.abs(rows[sources.index(source)]) / tension
     here = np.abs(row) / curve.tension_of("ascending")
     for at in (0.3, 0.7, 0.9):
         expected = np.interp(at, strain, of_test)
@@ -238,20 +246,24 @@ def test_strain_and_temperature_reach_a_comparison_as_they_reach_the_test(
 
 def test_that_nothing_is_stated_is_said_where_nothing_is(tmp_path):
     found = compared(tmp_path, "", edit=without_length)
-    assert found.measured.component == ()
+    # the log itself shows the step of the position at the rest of zero strain
+    assert [one.source for one in found.measured.component] == ["strain_calibration"]
     assert any(
-        "no calibration uncertainty is stated" in one for one in map(str, found.validation.notes)
+        "no load cell uncertainty is stated" in one for one in map(str, found.validation.notes)
     )
 
 
 @pytest.mark.nightly
-def test_a_hose_without_a_diameter_says_that_its_instruments_are_left_out(tmp_path):
+def test_a_hose_without_a_diameter_says_that_its_lag_is_left_out(tmp_path):
     campaign, processed = reduced(
-        tmp_path, GAIN, edit=lambda text: text.replace('diameter = ["5 in"]\n', "")
-    )
+        tmp_path, '[uncertainty]\nlag = "1 ms"\n' + GAIN,
+        edit=lambda text: text.replace('diameter = ["5 in"]\n', ""),
+    )  # fmt: skip
     plan = campaign.comparisons["H64-static"]
     named = compare_archive(processed / "L-64.nc", campaign.hoses["H64"], plan)
     assert any("has no curve with instrument errors" in note for note in map(str, named.notes))
-    # the length that strain is over is known all the same
-    (gain,) = named.comparison.measured.strain_error
-    np.testing.assert_allclose(gain, named.comparison.measured.strain * 0.05 / LENGTH, atol=1e-12)
+    # the gain of the load, and the length that strain is over, count all the same
+    measured = named.comparison.measured
+    assert "tension_gain" in [one.source for one in measured.component]
+    of_length = max(np.abs(measured.strain_error), key=np.max)
+    np.testing.assert_allclose(of_length, measured.strain * 0.05 / LENGTH, atol=1e-12)

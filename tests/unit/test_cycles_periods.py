@@ -14,6 +14,16 @@ from reduction.stages.cycles.periods import change_of_period, own_periods, perio
 from reduction.stages.standstills import find_standstills
 
 
+def periods_of(wave, begin, peak, end):
+    """Periods of cycles between these samples of a wave read once a second."""
+    cycles = Cycles(
+        begin, end, np.stack([begin, peak], axis=1), np.stack([peak, end], axis=1),
+        np.ones((begin.size, 2)), *np.zeros((3, wave.size)), 0.1,
+    )  # fmt: skip
+    time = np.arange(wave.size) * 1.0
+    return own_periods(time, wave, cycles, time[end] - time[begin], noise=1e-6)[0]
+
+
 def test_a_dwell_that_is_a_rest_behind_some_cycles_alone_is_part_of_all_periods():
     # ramps of 80 readings, dwells of 16 at both ends; a quarter of those below were found as rests
     per, n_cycles, step = 192.3, 12, 0.2
@@ -44,12 +54,7 @@ def test_rests_that_differ_by_one_reading_are_parts_of_all_periods():
     begin = np.ceil(per * np.arange(n_cycles)).astype(int)[:-1]
     end = np.append(begin[1:], int(per * (n_cycles - 1))) - 4 - np.arange(n_cycles - 1) % 2
     peak = np.ceil(per * (np.arange(n_cycles - 1) + 0.3)).astype(int)
-    cycles = Cycles(
-        begin, end, np.stack([begin, peak], axis=1), np.stack([peak, end], axis=1),
-        np.ones((n_cycles - 1, 2)), *np.zeros((3, turn.size)), 0.1,
-    )  # fmt: skip
-    time = np.arange(turn.size) * 1.0
-    period, _ = own_periods(time, wave, cycles, time[end] - time[begin], noise=1e-6)
+    period = periods_of(wave, begin, peak, end)
     # from turn to turn, half of them lasted 18 to 19 readings
     assert period[:-1] == pytest.approx(np.full(n_cycles - 2, per), abs=0.2)
 
@@ -63,12 +68,7 @@ def test_what_a_curved_flank_misses_does_not_add_up_over_the_periods(per):
     begin = np.ceil(per * np.arange(n_cycles)).astype(int)
     begin, end = begin[:-1], begin[1:]
     peak = np.rint(per * (np.arange(n_cycles - 1) + 0.3)).astype(int)
-    cycles = Cycles(
-        begin, end, np.stack([begin, peak], axis=1), np.stack([peak, end], axis=1),
-        np.ones((n_cycles - 1, 2)), *np.zeros((3, turn.size)), 0.1,
-    )  # fmt: skip
-    time = np.arange(turn.size) * 1.0
-    period, _ = own_periods(time, wave, cycles, time[end] - time[begin], noise=1e-6)
+    period = periods_of(wave, begin, peak, end)
     assert period[:-1].mean() == pytest.approx(per, abs=4e-4)
 
 
