@@ -117,11 +117,10 @@ _OF_CYCLES = (
     "dissipation_spring_constant", "relaxation_time", "dashpot_coefficient",
 )  # fmt: skip
 
-# the tension curve over strain is stored under the name of its branches; rope programmes call K_ap
-# dynamic stiffness, and the results of a run call it EA
+# the tension curve over strain is stored under the name of its branches; the results of a run call
+# K_ap EA. Not here: the dynamic stiffness of a rope programme, K_ap over the last cycles of a step
 _BY_WORDS = {
     "tension": "branch_tension",
-    "dynamicstiffness": "apparent_spring_constant",
     "EA": "apparent_spring_constant",
 }
 

@@ -141,7 +141,7 @@ def test_original_and_slow_stiffness_stand_beside_the_levels(line, lines, rope):
 def test_a_table_has_the_levels_that_were_tested(command, rope, tmp_path):
     out = tmp_path / "levels.csv"
     done = command(
-        "lookup", rope, "--quantity", "dynamic_stiffness", "--table", "--mean-tension", "21 %RBS",
+        "lookup", rope, "--quantity", "apparent_spring_constant", "--table", "--mean-tension", "21 %RBS",
         "--medium", "wet", "--out", out,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
@@ -167,7 +167,7 @@ def test_a_condition_that_was_not_tested_says_so(line):
 
 
 def test_python_asks_for_conditions_as_the_command_does(rope):
-    found = reduction.look_up(rope, "dynamic_stiffness", medium="wet", **CENTRE)
+    found = reduction.look_up(rope, "apparent_spring_constant", medium="wet", **CENTRE)
     assert float(found[K_AP]) == float(reduction.look_up(rope, K_AP, **CENTRE)[K_AP])
     with pytest.raises(DataError, match="medium wet"):
         reduction.look_up(rope, K_AP, medium="dry", **CENTRE)
