@@ -35,6 +35,7 @@ _STRETCHES, _STRETCH_SAMPLES = 64, 1024
 
 _ORDERS = (2, 4, 6)
 
+_ROUNDING = 1e-9  # of a mean of many readings
 _TINY = 1e-12  # least range, for a channel that is zero throughout
 
 _NORMAL_MEDIAN = 0.67449  # median of |z| of a normal variable
@@ -467,13 +468,14 @@ def median_step(time: Floats) -> float:
     return float(np.median(later))
 
 
-def _reach(values: Floats, edge: Integers, centre: Floats, half: float, step: int) -> Integers:
+def _reach(values: Floats, edge: Integers, centre: Floats, half: Floats, step: int) -> Integers:
     """Samples beyond each edge, at most ``abs(step)``, that stay near the centre."""
     offsets = np.sign(step) * np.arange(1, abs(step) + 1)
     index = edge[:, None] + offsets
     inside = (index >= 0) & (index < values.size)
     value = take_samples(values, np.clip(index, 0, values.size - 1))
-    near = inside & ~(np.abs(value - centre[:, None]) > half)  # a missing sample is not a movement
+    # a missing sample is not a movement
+    near = inside & ~(np.abs(value - centre[:, None]) > half[:, None])
     return np.where(near.all(axis=1), abs(step), np.argmin(near, axis=1))
 
 
@@ -556,18 +558,18 @@ def _still_intervals(
         one[stays] for one in (first_block, last_block, first, last)
     )
     centre = _interval_means(values, first, last)
+    # the mean of equal readings is off by its rounding
+    half = np.maximum(tolerance / 2, _ROUNDING * np.abs(centre))
     for block, step in ((first_block, 1), (last_block, -1)):  # a block that moves is not an edge
         outside = np.ones(centre.size, dtype=bool)
         while outside.any():
-            outside = (greatest[block] - centre > tolerance / 2) | (
-                centre - least[block] > tolerance / 2
-            )
+            outside = (greatest[block] - centre > half) | (centre - least[block] > half)
             outside &= first_block < last_block
             block[outside] += step
     first = first_block * length
     last = np.minimum((last_block + 1) * length, values.size) - 1
-    first -= _reach(values, first, centre, tolerance / 2, -length)
-    last += _reach(values, last, centre, tolerance / 2, length)
+    first -= _reach(values, first, centre, half, -length)
+    last += _reach(values, last, centre, half, length)
     last[:-1] = np.minimum(last[:-1], first[1:] - 1)
 
     for edge, step in ((first, 1), (last, -1)):  # an edge is a sample that is not missing

@@ -433,6 +433,13 @@ def test_holds_of_a_creeping_specimen_are_where_its_tension_stands():
     assert not np.any(np.abs(by_position.start_time - 40) < 1)
 
 
+def test_a_load_without_noise_whose_mean_is_rounded_is_a_hold():
+    time, position, tension = creep(noise=0.0)
+    found = find_of_held(time, position, 0.3 / 0.7 * tension)
+    assert found.tension_tolerance == 0.0
+    assert found.start_time == pytest.approx(START_OF_HELD, abs=0.5)
+
+
 def test_the_mean_of_the_specimens_is_what_stands_still():
     time, position, tension = creep(noise=0.1)
     # one sheds to the other what it loses, as two on one crosshead under load control do
