@@ -397,6 +397,19 @@ def test_a_long_standstill_soon_after_a_short_one_leaves_both():
     np.testing.assert_array_equal(last, [59, 299])
 
 
+def test_steps_of_time_that_alternate_are_no_noise():
+    # the least and the greatest reading of every 0.5 s of a sine of 20 s after a rest of 10 s
+    every = np.arange(0, 210, 0.02)
+    stroke = 1 - np.cos(2 * np.pi * np.clip(every - 10, 0, None) / 20)
+    noisy = stroke + np.random.default_rng(4).normal(0, 0.002, every.size)
+    blocks = noisy[: noisy.size // 25 * 25].reshape(-1, 25)
+    kept = np.sort([blocks.argmin(axis=1), blocks.argmax(axis=1)], axis=0)
+    kept = (kept + 25 * np.arange(len(blocks))).T.ravel()
+    found = find_standstills(every[kept], noisy[kept], [noisy[kept]], settings=PhaseSettings())
+    assert found.start_time.tolist() == [every[kept[0]]]
+    assert found.end_time[0] == pytest.approx(10, abs=1)
+
+
 # holds at constant tension: the crosshead creeps in them and is no guide to where they are
 
 LOAD = [(0, 0), (20, 0), (40, 300), (640, 300), (650, 500), (950, 500), (960, 0), (1000, 0)]

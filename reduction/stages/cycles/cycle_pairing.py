@@ -755,7 +755,7 @@ def find_half_cycles(
         np.concatenate([standstills.last[~is_dwell], gap_after, apart + 1]),
     )
     tolerance = _still(standstills)
-    noise = max(noise_range(values), _CODES_APART * step_of_codes(values))
+    noise = max(noise_range(values, time), _CODES_APART * step_of_codes(values))
     runs = [
         _fit_ends(time, values, run, is_sinusoidal=is_sinusoidal, still=tolerance, tolerance=noise)
         for run in _runs_that_cycle(

@@ -334,9 +334,9 @@ def _paired_cycles(
     if settings.band is not None:
         found = pair((find_reversals(values, band=settings.band), settings.band))
     else:
-        found = pair(reversals_of_typical_cycles(values))
+        found = pair(reversals_of_typical_cycles(values, time))
     if settings.band is None and not is_counted and not found.branch_first.size:
-        small = pair(reversals_of_small_cycles(values))
+        small = pair(reversals_of_small_cycles(values, time))
         if _are_alike(time, values, small.branch_first, small.branch_last):
             ends = take_samples(values, small.branch_last) - take_samples(
                 values, small.branch_first

@@ -171,7 +171,9 @@ def _typical_range(values: ArrayLike) -> float:
     return float(ranges[np.searchsorted(travel, travel[-1] / 2)])
 
 
-def reversals_of_typical_cycles(values: ArrayLike) -> tuple[NDArray[np.intp], float]:
+def reversals_of_typical_cycles(
+    values: ArrayLike, time: Floats | None = None
+) -> tuple[NDArray[np.intp], float]:
     """Reversals of a record without a stated band, and the band found: between noise and cycles.
 
     Notes
@@ -190,7 +192,7 @@ def reversals_of_typical_cycles(values: ArrayLike) -> tuple[NDArray[np.intp], fl
     11 0.1
     """
     values = np.asarray(values, dtype=np.float64)
-    noise = noise_range(values)
+    noise = noise_range(values, time)
     reversals, band = find_reversals(values, band=noise), noise
     while reversals.size > 1:
         levels = take_samples(values, reversals)
@@ -202,7 +204,7 @@ def reversals_of_typical_cycles(values: ArrayLike) -> tuple[NDArray[np.intp], fl
     return reversals, band
 
 
-def reversals_of_small_cycles(values: Floats) -> tuple[Indices, float]:
+def reversals_of_small_cycles(values: Floats, time: Floats | None = None) -> tuple[Indices, float]:
     """Reversals of small cycles in a record dominated by large pulls, and the band.
 
     The band is a tenth of the range of the most numerous movements.
@@ -215,7 +217,7 @@ def reversals_of_small_cycles(values: Floats) -> tuple[Indices, float]:
     >>> reversals_of_typical_cycles(wave)[0].size, reversals_of_small_cycles(wave)[0].size
     (3, 23)
     """
-    band = noise_range(values)
+    band = noise_range(values, time)
     reversals = find_reversals(values, band=band)
     if reversals.size < 2 * FEWEST_SMALL:
         return reversals, band
