@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import scipy
+from numpy.typing import NDArray
 
 from reduction.record.contributions import (
     Component,
@@ -16,6 +17,7 @@ from reduction.record.contributions import (
     stacked,
 )
 from reduction.record.measurement import Floats, areas_of
+from reduction.record.samples import sample_blocks
 from reduction.record.settings import CycleSettings
 from reduction.stages.moduli.elastomer_laws import LAWS
 from reduction.stages.moduli.modulus_product import (
@@ -58,6 +60,11 @@ def strain_rates(
     frequency, amplitude = summary.frequency[index], summary.strain_amplitude[index]
     if not (frequency > 0 and amplitude > 0):
         return np.zeros((2, 2, test.curves.strain_bin.size))
+    if cycles.waveform == "other" and test.strain is not None:
+        rates = _logged_rates(
+            test.record.time, test.strain[index], test.cycles.branch, test.curves.strain_bin
+        )
+        return np.stack([rates, [_smooth_slope(one, test.curves.strain_bin) for one in rates]])
     rate, slope = strain_rate_of_wave(
         test.curves.strain_bin,
         frequency=float(frequency),
@@ -69,6 +76,39 @@ def strain_rates(
         ),
     )
     return np.stack([[rate, -rate], [slope, -slope]])
+
+
+def _logged_rates(
+    time: Floats, strain: Floats, branch: NDArray[np.int8], strain_bin: Floats
+) -> Floats:
+    """Mean strain rate of both branches in the bins of strain, shape (2, n_bins).
+
+    Examples
+    --------
+    Up at 1 per second to the middle, then at 3 per second, and down at 2 per second:
+
+    >>> time = np.arange(0, 1.166, 0.001)
+    >>> strain = np.interp(time, [0, 0.5, 0.5 + 1 / 6, 0.5 + 1 / 6 + 0.5], [0, 0.5, 1, 0])
+    >>> branch = np.where(time < 0.5 + 1 / 6, 1, 2).astype(np.int8)
+    >>> print(_logged_rates(time, strain, branch, np.array([0.25, 0.75])).round(1))
+    [[ 1.  3.]
+     [-2. -2.]]
+    """
+    n_bins = strain_bin.size
+    edges = (strain_bin[1:] + strain_bin[:-1]) / 2
+    moved, lasted = np.zeros(2 * n_bins), np.zeros(2 * n_bins)
+    for part in sample_blocks(time.size, time, strain, overlap=1):
+        step, seconds, sides = np.diff(strain[part]), np.diff(time[part]), branch[part][:-1]
+        here = np.flatnonzero((sides > 0) & np.isfinite(step))
+        place = np.searchsorted(edges, strain[part][here]) + n_bins * (sides[here] - 1)
+        moved += np.bincount(place, step[here], 2 * n_bins)
+        lasted += np.bincount(place, seconds[here], 2 * n_bins)
+    rates = np.zeros((2, n_bins))
+    for row, way, over in zip(rates, moved.reshape(2, -1), lasted.reshape(2, -1), strict=True):
+        known = over > 0
+        if known.any():
+            row[:] = np.interp(strain_bin, strain_bin[known], way[known] / over[known])
+    return rates
 
 
 def rise_rates(test: ReducedTest, index: int) -> Floats:
