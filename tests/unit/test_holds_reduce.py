@@ -188,6 +188,14 @@ def test_a_hold_that_does_not_relax_keeps_its_drop_and_refuses_the_rest():
     assert sum("less than three times" in reason for reason in map(str, hold.refusals)) == 2
 
 
+def test_a_digital_load_that_loses_nothing_has_a_drop_of_nought():
+    time, _, _ = record()
+    part = np.clip((time - 20) / 5, 0, 1)
+    # the position of a hold is a level that rounding moves
+    (hold,) = reduce(time, 4 + 2 * part + 1e-15 * np.cos(time), 300 * part)
+    assert hold.relaxation_drop == pytest.approx(0, abs=1e-6)
+
+
 def test_a_straight_fall_has_a_drop_and_a_reason_for_no_series():
     time, position, _ = record(duration=60.0)
     rng = np.random.default_rng(4)

@@ -341,7 +341,8 @@ def _motion_of(hold: Hold) -> _Motion:
         quantum / np.sqrt(12) if noise < quantum / 2 else 0.0,
     )
     distance = blocks.value - begin.value
-    told = np.where(np.abs(distance) > _MOTION_TOLD * spread, distance, 0.0)
+    least = np.maximum(_MOTION_TOLD * spread, _ROUNDED * abs(begin.value))
+    told = np.where(np.abs(distance) > least, distance, 0.0)
     return _Motion(
         blocks.elapsed + hold.ramp_end_time, distance, float(told[np.argmax(np.abs(told))]),
         begin.standard_uncertainty if begin.standard_uncertainty > own else 0.0,

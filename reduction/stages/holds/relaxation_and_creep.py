@@ -316,11 +316,12 @@ def _at_one_length(hold: Hold, ends: _Ends) -> tuple[Hold, float]:
     worth = stiffness * motion.greatest
     # a crosshead that settles between two readings
     of_begin = float(np.nan_to_num(abs(stiffness) * motion.known_to))
-    if not abs(worth) > _MOTION_WORTH * abs(ends.initial - ends.final):
+    loss = abs(ends.initial - ends.final)
+    if not abs(worth) > _MOTION_WORTH * loss:
         return hold, of_begin
     distance = np.interp(hold.time, motion.time, motion.distance)
     lost = min(max(ends.drop, 0.0), 1.0)
-    share = abs(worth) / abs(ends.initial - ends.final)
+    share = abs(worth) / loss if loss else np.inf
     found = note("hold-settles", motion=motion.greatest, worth=worth, share=share)
     # the intervals cover half of it
     hold.notes.append(replace(found, severity="note") if share < _MOTION_LARGE else found)
