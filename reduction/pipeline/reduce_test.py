@@ -91,7 +91,12 @@ from reduction.uncertainty.effects_on_answers import (
 )
 from reduction.uncertainty.error_field import error_field
 from reduction.uncertainty.errors_of_curves import with_shared_ratios
-from reduction.uncertainty.errors_of_cycles import PullOrigin, with_shared_steps, with_splice_slips
+from reduction.uncertainty.errors_of_cycles import (
+    PullOrigin,
+    with_drift_not_placed,
+    with_shared_steps,
+    with_splice_slips,
+)
 from reduction.uncertainty.monte_carlo import with_line_spread
 from reduction.uncertainty.propagation import with_diameter
 from reduction.uncertainty.shared_contributions import (
@@ -949,8 +954,9 @@ def _with_shared_errors(
     if not instruments:
         return test
     of_numbers = contributions_of_test(
-        test, instruments, cycles=settings, pulls=pulls, pull_origins=pull_origins
-    )
+        test, with_drift_not_placed(test, instruments), cycles=settings, pulls=pulls,
+        pull_origins=pull_origins,
+    )  # fmt: skip
     whole = merged([of_channels] if of_numbers is None else [of_numbers, of_channels])
     return replace(
         test,

@@ -109,6 +109,8 @@ class InstrumentErrors(ErrorSizes):
         Slip of the splices after their marks were read. [m]
     splices_slipped_by : float
         Slip of the splices by the end of the test, from steps in tension. [m]
+    drift_not_placed : float
+        Of the work of the drift of a cycle, for the part of the cycle in which it takes place. [1]
     test : str
         Name of the test.
     tension_instrument, position_instrument : str
@@ -123,6 +125,7 @@ class InstrumentErrors(ErrorSizes):
     diameter_readings: int = 0
     splice_slip: float = 0.0
     splices_slipped_by: float = 0.0
+    drift_not_placed: float = 0.0
     test: str = ""
     tension_instrument: str = "load cell"
     position_instrument: str = "crosshead"

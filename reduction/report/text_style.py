@@ -523,6 +523,7 @@ _LOOKS: dict[str, tuple[str, str]] = {
     "diameter": (_VERMILION, ""),
     "quasi_static_fit": (_SKY, ""),
     "pull_rate": (_SKY, "/"),
+    "drift_place": (_SKY, "x"),
     "temperature": (_VERMILION, "/"),
     "attached_mass": (_PURPLE, "/"),
     "linear_density": (_PURPLE, "x"),
@@ -541,6 +542,7 @@ FROM_READINGS = frozenset(
         "window",
         "quasi_static_fit",
         "pull_rate",
+        "drift_place",
         "gauge_length",
     }
 )
@@ -564,6 +566,7 @@ _MEANINGS = {
     "strain_gain": "error of the strain method itself",
     "quasi_static_fit": "fit of the slow pull that gives K_0",
     "pull_rate": "a slow pull that is too fast for the relaxation time of the loops",
+    "drift_place": "the part of a cycle in which the specimen creeps or relaxes",
     "temperature": "stiffness at the temperature of the test",
     "attached_mass": "inertia of the mass at a moving load cell",
     "linear_density": "inertia of the specimen itself",

@@ -226,6 +226,23 @@ def with_splice_slips(
     )
 
 
+def with_drift_not_placed(
+    test: ReducedTest, errors: Sequence[InstrumentErrors]
+) -> tuple[InstrumentErrors, ...]:
+    """Errors with the part of a cycle in which it drifts, for the means of a test.
+
+    A specimen drifts in the same part of the cycle in all of its tests.  Each cycle has this in its
+    own uncertainty.
+    """
+    if test.loops is None:
+        return tuple(errors)
+    shares = test.loops.drift_not_placed()
+    return tuple(
+        replace(one, drift_not_placed=float(share))
+        for one, share in zip(errors, shares, strict=True)
+    )
+
+
 def _slipped_length(test: ReducedTest, index: int) -> Floats:
     """Least length let out by splices at each cycle since their marks were read. [m].
 

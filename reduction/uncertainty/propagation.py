@@ -808,6 +808,7 @@ def loop_contributions(
     extremes, unless the wave ``has_corners`` at which its other channel is read.  The late signal
     is the force on the load cell, including the inertia that was subtracted.  Inertia is in phase
     with position and does no work over a cycle, so an error of its mass does not change the energy.
+    A drift does less or more work than an even one if it takes place at one of the turns.
     Splices that are longer on the way down widen the loop by the difference of strain, over the
     range of tension, and a load cell that reads less on the way down by the difference of tension,
     over the range of strain.
@@ -885,6 +886,15 @@ def loop_contributions(
         component, values = _with(
             component, values, Component("splice_friction", errors.specimen),
             _moved_by_friction(errors, model, loop),
+        )  # fmt: skip
+    if errors.drift_not_placed:
+        work = errors.drift_not_placed * (loop.closed_loop_energy - loop.hysteresis_energy)
+        component, values = _with(
+            component, values, Component("drift_place", errors.specimen),
+            {
+                "hysteresis_energy": work,
+                "loss_spring_constant": work / (np.pi * loop.strain_amplitude**2),
+            },
         )  # fmt: skip
     values["foot_strain"] = values["mean_strain"] - values["strain_amplitude"]
     loss_factor = loop.loss_spring_constant / loop.storage_spring_constant

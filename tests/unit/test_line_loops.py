@@ -6,10 +6,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from reduction.record.contributions import Contributions, InstrumentErrors
 from reduction.record.errors import DataError
 from reduction.stages.cycles.cycle_product import Cycles, Loops
 from reduction.stages.cycles.loops import close_loops
 from reduction.stages.moduli.secant_modulus import mean_frequency, summarise_amplitude
+from reduction.stages.strain.strain_model import StrainModel
 from reduction.stages.three_parameter_line.line_model import (
     _storage_and_loss,
     apparent_spring_constant,
@@ -21,6 +23,8 @@ from reduction.stages.three_parameter_line.loop_midline import (
     spring_of_wave,
     tension_above_midline,
 )
+from reduction.uncertainty.errors_of_cycles import errors_of_line
+from reduction.uncertainty.propagation import LoopQuantities, loop_contributions
 
 REST, SPRING, TIME, FREQUENCY = 1.2e4, 1.8e4, 2.0, 0.3
 LINE = {
@@ -147,17 +151,26 @@ def test_creep_may_take_place_anywhere_in_the_cycle(reading, at_a_turn):
     turn = time * FREQUENCY
     loops = loops_of(time, tension, strain + 4e-4 * (np.floor(turn) if at_a_turn else turn))
     line = identify_run(loops, **K0, reading=reading)
+    summary = summarise_amplitude(loops, area=[1e-4])
+    (share,) = loops.drift_not_placed()
+    model = StrainModel("line", "gauge-length", {"reference_position": 0.0, "gauge_length": 1.0})
+    of_loop = loop_contributions(
+        InstrumentErrors("line", drift_not_placed=share), model,
+        LoopQuantities(*(getattr(summary, name)[0] for name in LoopQuantities._fields)),
+        waveform="sinusoidal",
+    )  # fmt: skip
+    no_rest = Contributions((), {"quasi_static_spring_constant": np.empty((0,))})
+    of_line = errors_of_line(line, summary, 0, of_loop, no_rest)
     stored, lost = _storage_and_loss(frequency=FREQUENCY, **LINE)
-    for name, true in (
-        ("loss_spring_constant", lost),
-        ("dissipation_spring_constant", SPRING),
-        ("relaxation_time", TIME),
+    for found, of, name, true in (
+        (line, of_loop, "loss_spring_constant", lost),
+        (summary, of_loop, "loss_factor", lost / stored),
+        (line, of_line, "dissipation_spring_constant", SPRING),
+        (line, of_line, "relaxation_time", TIME),
     ):
-        error = getattr(line, name)[0] - true
+        error = getattr(found, name)[0] - true
         # all of it at one turn is the root of six: the end of a triangular distribution
-        assert abs(error) < 2.6 * line.random_uncertainty[name][0], name
-    factor = summarise_amplitude(loops, area=[1e-4])
-    assert abs(factor.loss_factor[0] - lost / stored) < 2.6 * factor.uncertainty["loss_factor"][0]
+        assert abs(error) < 2.6 * of.shared_standard_uncertainty(name), name
 
 
 def test_noise_of_many_smooth_cycles_is_no_kink():

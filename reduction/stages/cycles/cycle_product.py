@@ -164,8 +164,8 @@ class Loops:
     ) -> dict[str, Floats]:
         """Standard uncertainties common to the cycles, which a mean over them does not reduce.
 
-        A turn between two readings is there in all cycles, or nearly, and so is the part of a
-        cycle in which it drifts.  Shape (n_specimens,) each, over some of the cycles.
+        A turn between two readings is there in all cycles, or nearly.  Shape (n_specimens,) each,
+        over some of the cycles.
         ``turns_alike``, from `turns_alike`, is the correlation of the errors of tension and strain.
         """
 
@@ -185,12 +185,9 @@ class Loops:
                 [tension / mean("tension_amplitude"), strain / mean("strain_amplitude")]
             )
             apart = np.sqrt((shares**2).sum(axis=0) - 2 * turns_alike * shares.min(axis=0) ** 2)
-            # half of the possible error of a turn was added to the area: the truth is at either end
-            drift = mean("closed_loop_energy") - mean("hysteresis_energy")
-            area = np.hypot(energy, drift * self.drift_not_placed())
             # of the area, and of the square of the amplitude by which it is divided
             loss = np.hypot(
-                area / (np.pi * mean("strain_amplitude") ** 2),
+                energy / (np.pi * mean("strain_amplitude") ** 2),
                 2 * strain / mean("strain_amplitude") * mean("loss_spring_constant") / WITHIN_STEP,
             )
             storage = mean("storage_spring_constant")
@@ -202,7 +199,8 @@ class Loops:
                 "strain_amplitude": strain / WITHIN_STEP,
                 "apparent_spring_constant": apart * mean("apparent_spring_constant") / WITHIN_STEP,
                 "storage_spring_constant": apart * storage / WITHIN_STEP,
-                "hysteresis_energy": area,
+                # half of its possible error was added to the area: the truth is at either end
+                "hysteresis_energy": energy,
                 "loss_spring_constant": loss,
                 "loss_factor": np.hypot(loss / storage, apart * mean("loss_factor") / WITHIN_STEP),
             }

@@ -405,8 +405,8 @@ def summarise_amplitude(
     (`reduction.stages.moduli.local_regression._variance_of_a_cycle`), and `late_change` is the
     distance of the mean from the later cycles. Cycles with NaN are left out.  Errors
     common to all cycles are added: a turn missed between two samples in means, amplitudes, K_ap,
-    K', loss and loss factor, the place of the drift within its cycle in energy and loss, and in the
-    frequency the difference between the driven channel and the other one.
+    K', energy, loss and loss factor, and in the frequency the difference between the driven channel
+    and the other one.
 
     Examples
     --------

@@ -83,15 +83,12 @@ def relative_shared(loops: Loops, names: Sequence[str], *, break_in_cycles: int)
 
     Examples
     --------
-    A loop that drifts by a tenth of its energy, evenly or at a turn (triangular distribution):
+    Loops whose corners between two readings may miss a tenth of the energy:
 
     >>> one = {name: np.full((1, 3), 1.0) for name in Loops.__dataclass_fields__}
-    >>> turns = dict.fromkeys(
-    ...     ("tension_turn_missed", "strain_turn_missed", "energy_turn_missed"), np.zeros((1, 3)))
-    >>> loops = Loops(**one | turns | {"closed_loop_energy": np.full((1, 3), 1.1),
-    ...     "uncertainty": {}})
+    >>> loops = Loops(**one | {"energy_turn_missed": np.full((1, 3), 0.1), "uncertainty": {}})
     >>> print(relative_shared(loops, ["hysteresis_energy"], break_in_cycles=0).round(4))
-    [[0.0408]]
+    [[0.1]]
     """
     shared = loops.shared_by_cycles(slice(break_in_cycles, None))
     means, _ = relative_deviations(loops, names, break_in_cycles=break_in_cycles)
