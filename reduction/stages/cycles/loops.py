@@ -696,7 +696,8 @@ class _Drifts(NamedTuple):
     After a ramp, the channel that answers may drift more in a cycle than in those beside it
     (``of_neighbours``).  Where this drift is found (``is_own``), ``on_fall`` is its part on the way
     down, NaN elsewhere, ``in_phase`` the part of its transient in phase with the wave, and
-    ``of_ramp`` what it may add to the range.  ``may_miss`` is a drift that is not clear of noise.
+    ``of_ramp`` what it may add to the range.  ``may_miss`` is a drift that is not clear of noise,
+    or that no later cycle shows.
     """
 
     tension: Floats
@@ -745,6 +746,10 @@ def _drifts_of_cycles(
         name = "strain" if is_load else "force"
         change = abs(row[f"{name}_end_turn"][0] - row[f"{name}_begin"][0])
         may_miss[0] = np.nan_to_num(max(change - abs(own[0]), 0.0))
+    # the last cycle of a run has the drift of the one before, which may die away
+    follows = touching(cycles)
+    ends_run = np.flatnonzero(follows[1:] & follows[:-1] & ~np.append(follows[2:], False)) + 1
+    may_miss[ends_run] += np.abs(of_neighbours[ends_run - 1] - of_neighbours[ends_run - 2])
     # of the drift after a ramp, the fall has at most its part of the drift of this cycle, and at
     # least that part of the drift of the next one
     falls = 1 - rise_shares[int(is_load)]
