@@ -333,7 +333,7 @@ def _find_zero_strain(survey: Survey, located: Located, campaign: Campaign, plan
         position_is_length=is_length,
         length_at_slack=length_at_slack(layouts),
     )
-    if at_slack.position is None and plan.kind not in CYCLIC:
+    if not at_slack.is_logged and plan.kind not in CYCLIC:
         slack = located.standstills.slack_tension
         start = zero_at_start(located.position, located.tension, slack_tension=slack)
         at_slack = start or at_slack

@@ -455,15 +455,19 @@ def test_a_pull_that_breaks_above_the_rated_strength_is_no_mistake(tmp_path, n_a
     assert ("rated_break_strength" in result.tests[0].message) == (status == "check")
 
 
-def test_a_slow_log_begins_slack_with_fewer_readings_than_a_rest(tmp_path):
+@pytest.mark.parametrize(
+    ("begins", "datum"),
+    [(10.0, '"pin-to-pin"'), (-0.6, '"displacement", reference_length = "10 m"')],
+)
+def test_a_slow_log_begins_slack_with_fewer_readings_than_a_rest(tmp_path, begins, datum):
     time = np.arange(0.0, 240.0, 3.0)
-    place = 10 + np.clip(time - 8, 0, None) / 400  # three readings at slack, then 1 MN
-    load = 1e5 * (place - 10)
+    place = begins + np.clip(time - 8, 0, None) / 400  # three readings at slack, then 1 MN
+    load = 1e5 * (place - begins)
     log_of_loads(tmp_path / "pull.csv", time, load, position=place)
     layout = "\n".join([
         '[layouts.pins]', 'format = "delimited"', '[layouts.pins.channels]',
         'time = { column = "t_s", unit = "s" }',
-        'crosshead_position = { column = "x_m", unit = "m", datum = "pin-to-pin" }',
+        f'crosshead_position = {{ column = "x_m", unit = "m", datum = {datum} }}',
         'tension.1 = { column = "F_N", unit = "N" }',
     ])  # fmt: skip
     rope = '[specimens.R-3]\nkind = "rope"\ngauge_length = "10 m"\ndiameter = ["20 mm"]'
