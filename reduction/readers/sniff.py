@@ -110,13 +110,16 @@ def _is_time(text: str) -> bool:
     return is_clock or _DATE.fullmatch(text) is not None
 
 
-def _look_at_table(rows: Sequence[Sequence[str]], decimal: str) -> _TableShape | None:
+def _look_at_table(
+    rows: Sequence[Sequence[str]], decimal: str, *, has_labels: bool = False
+) -> _TableShape | None:
     """Header and data in rows of fields; None if they contain no table of numbers."""
     rows = _without_texts(rows)
-    counts = [sum(_is_number(text, decimal) or _is_time(text) for text in row) for row in rows]
+    counted = _without_labels(rows, decimal) if has_labels else rows
+    counts = [sum(_is_number(text, decimal) or _is_time(text) for text in row) for row in counted]
     data = [
         len(row) > 1 and 2 * count >= sum(map(bool, row)) > 0
-        for row, count in zip(rows, counts, strict=True)
+        for row, count in zip(counted, counts, strict=True)
     ]
     sizes = Counter(len(row) for row, is_data in zip(rows, data, strict=True) if is_data)
     if not sizes:
@@ -193,6 +196,22 @@ def _without_texts(rows: Sequence[Sequence[str]]) -> Sequence[Sequence[str]]:
     n_names = len(rows[head])
     below = [row[:-1] if len(row) == n_names and row[-1] else row for row in rows[head + 1 :]]
     return [*rows[: head + 1], *below]
+
+
+def _without_labels(rows: Sequence[Sequence[str]], decimal: str) -> Sequence[Sequence[str]]:
+    """Rows without the texts of columns that are numbers in less than half of them."""
+    n_fields = Counter(map(len, rows)).most_common(1)[0][0]
+    whole = [row for row in rows if len(row) == n_fields]
+    kept = [
+        2 * sum(_is_number(text, decimal) or _is_time(text) for text in column) >= len(whole)
+        for column in zip(*whole, strict=True)
+    ]
+    return [
+        [text if keep else "" for text, keep in zip(row, kept, strict=True)]
+        if len(row) == n_fields
+        else row
+        for row in rows
+    ]
 
 
 def _labelled_units(above: Sequence[Sequence[str]]) -> Sequence[str]:
@@ -346,14 +365,17 @@ def _best_table(lines: Sequence[str]) -> tuple[str, str, _TableShape] | None:
     found = _best_of(lines[:_FEW_LINES], _DELIMITERS)
     if found is not None and 2 * len(found[2].rows) > _FEW_LINES:
         return _best_of(lines, found[:1])
-    return _best_of(lines, _DELIMITERS)
+    # a data base exports names of specimen, material and cycle in every row
+    return _best_of(lines, _DELIMITERS) or _best_of(lines, _DELIMITERS[:-1], has_labels=True)
 
 
 _FEW_LINES = 1000
 
+_LABELLED = 50  # rows: fewer, with more texts than numbers, are a list of specimens
+
 
 def _best_of(
-    lines: Sequence[str], delimiters: Sequence[str]
+    lines: Sequence[str], delimiters: Sequence[str], *, has_labels: bool = False
 ) -> tuple[str, str, _TableShape] | None:
     """The best table for the given delimiters."""
     best, best_score = None, (0.0, 0.0, 0.0)
@@ -361,10 +383,13 @@ def _best_of(
         rows = _split(lines, delimiter)
         for decimal in ".,":
             is_apart = decimal != delimiter or any('"' in line for line in lines[-_RUN:])
-            table = _look_at_table(rows, decimal) if is_apart else None
-            if table is None:
+            table = _look_at_table(rows, decimal, has_labels=has_labels) if is_apart else None
+            if table is None or (has_labels and len(table.rows) < _LABELLED):
                 continue
-            fields = [text for row in table.rows for text in row if text]
+            counted = _without_labels(table.rows, decimal) if has_labels else table.rows
+            fields = [text for row in counted for text in row if text]
+            if has_labels and len(fields) < 2 * len(counted):
+                continue
             numbers = sum(_is_number(text, decimal) or _is_time(text) for text in fields)
             share = numbers / max(len(fields), 1)
             score = round(share, 2), round(math.log(max(numbers, 1)), 1), share

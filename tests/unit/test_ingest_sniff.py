@@ -680,3 +680,20 @@ def test_blanks_and_apostrophes_that_part_thousands_are_drafted_and_read(tmp_pat
     assert log.columns["tension.1"].max() == 3450
     with pytest.raises(LogError, match=r"Set thousands = "):
         read_log(path, filled({**settings, "thousands": ""}), name="x")
+
+
+def test_a_table_with_more_labels_than_numbers_is_found(tmp_path):
+    path = tmp_path / "fatigue.csv"
+    rows = [
+        f'"Cycle {i // 40 + 1}","CapPass",{i / 20:.2f},"Qualified",{np.sin(i / 6):.5f},'
+        f'{150 * np.sin(i / 6 + 0.1):.2f},"43-13","Alloy 617"'
+        for i in range(120)
+    ]  # synthetic
+    names = '"Cycle Label","State","Time Sec","Quality","Strain","Load kN","Sample","Alloy"'
+    path.write_text("\n".join([names, *rows]) + "\n", encoding="utf-8")
+    seen = columns(proposed(path))
+    assert seen["time"] == ("Time Sec", "s")
+    assert seen["tension.1"] == ("Load kN", "kN")
+    path.write_text("\n".join([names, *rows[:20]]) + "\n", encoding="utf-8")
+    with pytest.raises(LogError, match="no table of numbers"):  # a list of specimens
+        sniff_layout(path)
