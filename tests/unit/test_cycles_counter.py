@@ -233,3 +233,10 @@ def test_each_part_of_a_log_may_lack_a_cycle_at_both_of_its_ends(number, n_rever
     ends = np.arange(20).reshape(10, 2)
     found = counter_notes(wave, ends, ends + 1, np.array(number), n_reversals, 0.1)
     assert ("counter-differs" in [one.code for one in found]) is differs
+
+
+def test_a_count_that_changes_on_the_rise_begins_there():
+    phase = np.arange(80)
+    counter = 1 + phase // 40
+    first, last, *_ = counted(counter, np.sin(2 * np.pi * phase / 40))
+    assert (first.tolist(), last.tolist()) == ([0, 40], [40, 79])
