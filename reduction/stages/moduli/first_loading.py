@@ -31,6 +31,7 @@ from reduction.record.samples import (
     take_samples,
 )
 from reduction.record.settings import ModulusSettings
+from reduction.stages.cycles.loop_sense import finite_median
 from reduction.stages.moduli.least_squares import lag_one_inflation
 from reduction.stages.moduli.local_regression import (
     LocalFits,
@@ -43,6 +44,7 @@ from reduction.stages.moduli.tangent_modulus import pair_specimens
 from reduction.stages.moduli.tangent_window import (
     StrainGrid,
     bins_each_side,
+    roughness_of,
     round_number,
     window_blur,
 )
@@ -245,7 +247,8 @@ def _fit_rise(
         tension_reference=float(tension.mean()) if tension.size else 0.0,
     )
     fits = fit_windows(moments, minimum_count=minimum_count, is_alone=True)
-    inflation = _inflation(strain, tension, rise, fits, grid)
+    correlation = _inflation(strain, tension, rise, fits, grid)
+    inflation = correlation * _excess(fits, grid, correlation=correlation)
     return replace(
         fits,
         slope_variance=inflation * fits.slope_variance,
@@ -270,6 +273,18 @@ def _inflation(
 
 
 _FEWEST_CORRELATED = 100
+
+
+def _excess(fits: LocalFits, grid: StrainGrid, *, correlation: float) -> Floats:
+    """Factor on the variances of each piece, where its slopes scatter more than they explain.
+
+    Errors of the readings that last as long as a window, such as those of a screw or an encoder,
+    leave no residuals in it.
+    """
+    own = np.array([[finite_median(one)] for one in correlation * fits.slope_variance])
+    rough = roughness_of(fits.slope, grid.half_window) ** 2
+    is_known = np.isfinite(rough) & (own > 0)
+    return np.maximum(np.where(is_known, rough / np.where(is_known, own, 1.0), 1.0), 1.0)
 
 
 def first_loading_curves(

@@ -419,7 +419,7 @@ def _halved(grid: StrainGrid, spacing: float) -> list[int]:
     return halves
 
 
-def _roughness(slope: Floats, half_window: int) -> Floats:
+def roughness_of(slope: Floats, half_window: int) -> Floats:
     """Standard deviation of window slopes from their differences, the least of three orders.
 
     Infinite where no order has enough differences.
@@ -554,7 +554,7 @@ def adapt_window(
     >>> print((wide + change)[0, 9].round(2), missed[0, 5:11].round(2))
     2.8 [0.   0.04 0.21 0.66 0.66 0.66]
     """
-    rough_alone = [_roughness(*one) for one in zip(slope, half_windows, strict=True)]
+    rough_alone = [roughness_of(*one) for one in zip(slope, half_windows, strict=True)]
     # a wide window averages more than a narrow one: an excess of its differences is the curve
     least = np.minimum.accumulate(rough_alone[::-1])[::-1]
     roughness = np.where(np.isfinite(least), least, 0.0)
