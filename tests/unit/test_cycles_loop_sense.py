@@ -166,6 +166,16 @@ def test_ramps_give_out_work_by_a_delay_that_their_fundamental_may_not_show():
     assert note.numbers["cause"] == "driven"
 
 
+def test_the_phase_of_bent_elastic_loops_under_unequal_strokes_is_no_delay():
+    # 40 s up and 10 s down: the fundamental of an elastic curve is 0.2 rad late without any delay
+    loops = loops_of(-0.2)
+    energy = np.full_like(loops.hysteresis_energy, -2 * np.pi**2 * 0.5 * 0.001 * 180 * 0.2)
+    bent = replace(loops, hysteresis_energy=energy, closed_loop_energy=energy)
+    (note,) = notes(bent, lag=0.002)
+    assert note.numbers["delay"] == pytest.approx(0.001, rel=1e-3)
+    assert note.severity == "note"
+
+
 def test_less_than_a_sample_is_how_channels_are_read():
     (note,) = notes(loops_of(-0.02))
     assert note.numbers["cause"] == "sampling"
