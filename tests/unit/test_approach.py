@@ -297,6 +297,20 @@ def test_terms_are_known_to_what_the_shape_of_the_ramp_makes_of_them(bend):
     assert abs(off) < 2
 
 
+@pytest.mark.parametrize("settles", [0.01, -0.01])
+def test_terms_of_a_crosshead_that_settles_are_those_of_one_length(settles):
+    """1 % of the stroke within some 3 s, of a specimen that relaxes in 10 s."""
+    time = np.arange(0.0, 200.0, 0.05)
+    after = 1 - np.exp(-np.clip(time - 18, 0, None) / 3)
+    place = np.clip((time - 10) / 8, 0, 1) + settles * after
+    hold = hold_of(time, place, relaxed(time, place))
+    assert hold.prony_time == pytest.approx([10], rel=0.006)
+    assert hold.prony_tension == pytest.approx([40], rel=0.002)
+    assert np.all(abs(hold.prony_time - 10) < 2 * hold.prony_time_standard_uncertainty)
+    assert np.all(abs(hold.prony_tension - 40) < 2 * hold.prony_tension_standard_uncertainty)
+    assert np.all(hold.prony_tension_standard_uncertainty < 0.4)
+
+
 @pytest.mark.parametrize("slower", [2, 10])
 def test_a_ramp_of_two_rates_has_the_terms_of_a_step(slower):
     """The last part of the ramp leaves half, or less, of the term that a constant rate would."""

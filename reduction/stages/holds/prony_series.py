@@ -15,13 +15,13 @@ References
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reduction.record.arrays import as_positive, as_same_shape
+from reduction.record.arrays import as_finite, as_positive, as_same_shape
 from reduction.record.errors import DataError, FitError
 from reduction.record.measurement import Floats, read_only_arrays
 from reduction.stages.moduli.least_squares import SeparableFit, fit_separable, lag_one_inflation
@@ -258,6 +258,7 @@ def fit_prony(
     added: ArrayLike | None = None,
     maximum_terms: int = 3,
     weights: ArrayLike | None = None,
+    unsure: ArrayLike | None = None,
     known_to: float = 0.0,
 ) -> PronyFit:
     r"""Prony series of a relaxation with as many terms as the record supports.
@@ -278,6 +279,8 @@ def fit_prony(
         Largest number of terms tried. [1]
     weights : array_like, shape (n_samples,), optional
         Inverse relative variances. [1]
+    unsure : array_like, shape (n_samples,), optional
+        Change of the tensions for an error, common to all, of one standard uncertainty. [N]
     known_to : float, optional
         Standard uncertainty of tension that is not noise: the error left by a correction. [N]
 
@@ -387,7 +390,24 @@ def fit_prony(
             return _ramp_factor(times, ramp_duration=ramp_duration)
         return left_by_ramp(added, at_end, times, ramp_duration=ramp_duration)
 
-    return _reported(fits[n_terms], longest, left, "; ".join(texts))
+    found = _reported(fits[n_terms], longest, left, "; ".join(texts))
+    if unsure is None or not np.any(unsure):
+        return found
+    other = load + as_finite("unsure", unsure)
+    shifted = fit_separable(basis, other, starts=fits[n_terms].shape, weights=weight)
+    return _less_known(found, _reported(shifted, longest, left, ""))
+
+
+def _less_known(found: PronyFit, other: PronyFit) -> PronyFit:
+    """A series whose uncertainties include the difference from another one."""
+    wider = {
+        f"{name}_standard_uncertainty": np.hypot(
+            getattr(found, f"{name}_standard_uncertainty"),
+            getattr(found, name) - getattr(other, name),
+        )
+        for name in ("tension", "time", "long_time_tension")
+    }
+    return replace(found, **wider)
 
 
 def _reported(

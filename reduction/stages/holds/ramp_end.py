@@ -18,7 +18,6 @@ from math import sqrt
 import numpy as np
 
 from reduction.record.measurement import Floats
-from reduction.record.samples import empty_like, sample_blocks
 from reduction.stages.approach import NEAR_SHARE
 
 FEWEST_ON_LINE, MOST_ON_LINE = 3, 1 << 14
@@ -239,42 +238,40 @@ def level_at_end(
     )
 
 
-def at_length_of_ramp_end(
-    tension: Floats, motion: Floats, *, stiffness: float, lost_share: float
+def effect_of_motion(
+    elapsed: Floats, distance: Floats, share: Floats, *, stiffness: float
 ) -> Floats:
-    """Tension less the effect of a motion after the ramp.
+    """Tension that a motion after the ramp has added.
 
     Parameters
     ----------
-    tension : ndarray, shape (n_samples,)
-        Tension as read. [N]
-    motion : ndarray, shape (n_samples,)
+    elapsed : ndarray, shape (n_times,)
+        Time since the end of the ramp, increasing. [s]
+    distance : ndarray, shape (n_times,)
         Motion of the crosshead since the end of the ramp, without its noise. [m]
+    share : ndarray, shape (n_times,)
+        Fraction of the tension of the ramp that is left. [1]
     stiffness : float
         Stiffness at the end of the ramp. [N/m]
-    lost_share : float
-        Fraction of tension that relaxes in the hold. [1]
 
     Returns
     -------
-    tension : ndarray, shape (n_samples,)
-        Tension at the length of the end of the ramp. [N]
+    added : ndarray, shape (n_times,)
+        [N]
 
     Notes
     -----
-    First order: the tension added by the motion relaxes by up to the fraction that the ramp loses;
-    half of that is assumed.
+    First order: what each step of the motion adds relaxes as the tension of the ramp does.
 
     Examples
     --------
-    A hundredth of a stroke of 1 m that took 400 N, half of which relaxes:
+    A hundredth of a stroke of 1 m that took 400 N, half of which relaxes in the first second:
 
-    >>> print(at_length_of_ramp_end(
-    ...     np.array([203.0]), np.array([0.01]), stiffness=400.0, lost_share=0.5))
-    [200.]
+    >>> print(effect_of_motion(np.array([1.0, 2.0]), np.array([0.01, 0.01]),
+    ...                        np.array([0.5, 0.5]), stiffness=400.0))
+    [4. 2.]
     """
-    worth = stiffness * (1 - lost_share / 2)
-    corrected = empty_like(tension)
-    for part in sample_blocks(tension.size, tension, motion, corrected):
-        corrected[part] = tension[part] - worth * motion[part]
-    return corrected
+    since = elapsed[:, None] - elapsed
+    left = np.interp(since, [0.0, *elapsed], [1.0, *share], left=0.0)
+    added: Floats = stiffness * (left @ np.diff(distance, prepend=0.0))
+    return added

@@ -48,7 +48,7 @@ from reduction.stages.holds.prony_series import (
 )
 from reduction.stages.holds.ramp_end import (
     MOTION_KNOWN_TO,
-    at_length_of_ramp_end,
+    effect_of_motion,
     level_at_end,
 )
 from reduction.stages.holds.relaxation_numbers import (
@@ -309,8 +309,12 @@ _MOTION_WORTH = 0.005  # of the tension lost: less changes no number
 _MOTION_LARGE = 0.1  # of the tension lost: less is a machine that settles after its ramp
 
 
-def _at_one_length(hold: Hold, ends: _Ends) -> tuple[Hold, float]:
-    """The hold corrected to the length at the end of its ramp, and the uncertainty left. [N]."""
+def _at_one_length(hold: Hold, ends: _Ends) -> tuple[Hold, Floats, float]:
+    """The hold corrected to the length at the end of its ramp, and the uncertainty left.
+
+    The uncertainty of the correction at every sample, with one sign, and that of the position from
+    which the motion counts. [N].
+    """
     motion = hold.motion
     stiffness = np.nan if hold.ramp is None else hold.ramp.stiffness
     worth = stiffness * motion.greatest
@@ -318,15 +322,16 @@ def _at_one_length(hold: Hold, ends: _Ends) -> tuple[Hold, float]:
     of_begin = float(np.nan_to_num(abs(stiffness) * motion.known_to))
     loss = abs(ends.initial - ends.final)
     if not abs(worth) > _MOTION_WORTH * loss:
-        return hold, of_begin
-    distance = np.interp(hold.time, motion.time, motion.distance)
-    lost = min(max(ends.drop, 0.0), 1.0)
+        return hold, np.zeros_like(hold.tension), of_begin
     share = abs(worth) / loss if loss else np.inf
     found = note("hold-settles", motion=motion.greatest, worth=worth, share=share)
     # the intervals cover half of it
     hold.notes.append(replace(found, severity="note") if share < _MOTION_LARGE else found)
-    kept = at_length_of_ramp_end(hold.tension, distance, stiffness=stiffness, lost_share=lost)
-    return replace(hold, tension=kept), float(np.hypot(MOTION_KNOWN_TO * abs(worth), of_begin))
+    since = shifted(motion.time, hold.ramp_end_time)
+    left = np.interp(motion.time, hold.time, hold.tension) / ends.initial
+    added = effect_of_motion(since, motion.distance, left, stiffness=stiffness)
+    of_motion = np.interp(hold.time, motion.time, added)
+    return replace(hold, tension=hold.tension - of_motion), MOTION_KNOWN_TO * of_motion, of_begin
 
 
 def _step_reason(hold: Hold, ends: _Ends) -> Note | None:
@@ -504,7 +509,9 @@ def _rate(hold: Hold, ends: _Ends, *, known_to: float, of_zero: float) -> Rate |
     return Rate(-slope.value, spread, slope.elapsed_low, slope.elapsed_high)
 
 
-def _prony(hold: Hold, ends: _Ends, settings: HoldSettings, *, known_to: float) -> PronyFit | None:
+def _prony(
+    hold: Hold, ends: _Ends, settings: HoldSettings, *, of_motion: Floats, known_to: float
+) -> PronyFit | None:
     """Prony series, or None with a refusal."""
     if ends.drop < SIGNIFICANT * ends.drop_uncertainty:
         hold.refusals.append(
@@ -513,7 +520,9 @@ def _prony(hold: Hold, ends: _Ends, settings: HoldSettings, *, known_to: float) 
         return None
     since = shifted(hold.time, hold.ramp_end_time)
     later = int(np.searchsorted(since, 0.0, side="right"))
-    blocks = logarithmic_blocks(since[later:], hold.tension[later:])
+    blocks, unsure = (
+        logarithmic_blocks(since[later:], one[later:]) for one in (hold.tension, of_motion)
+    )
     length, added = 0.0, None
     if hold.ramp is not None:
         length, added = hold.ramp.length, hold.ramp.added(ends.initial)
@@ -525,6 +534,7 @@ def _prony(hold: Hold, ends: _Ends, settings: HoldSettings, *, known_to: float) 
             added=added,
             maximum_terms=settings.maximum_terms,
             weights=blocks.weight,
+            unsure=unsure.value,
             known_to=known_to,
         )
     except FitError as error:
@@ -610,10 +620,7 @@ def _with_motion(read: _Ends, kept: _Ends, unknown: float) -> _Ends:
 
 
 def _less_known(fit: PronyFit, unknown: float) -> PronyFit:
-    """A series widened by the uncertainty of a motion during the hold, in all its tensions.
-
-    The motion goes on within the times of the terms, so it is divided among them by their size.
-    """
+    """A series widened by an uncertainty of unknown course, divided among its terms by size."""
     share = fit.tension / fit.tension.sum()
     return replace(
         fit,
@@ -681,16 +688,17 @@ def _result(
         if kind == "creep":
             rate = _creep(hold)
         elif not reasons:
-            kept, of_motion = _at_one_length(hold, ends)
+            kept, correction_known_to, of_begin = _at_one_length(hold, ends)
+            of_motion = float(np.hypot(correction_known_to[-1], of_begin))
             of_zero = 0.0 if at_slack is None else at_slack.drift_within(hold.duration)
             unknown = float(np.hypot(of_motion, of_zero))
             ends = _with_motion(ends, ends if kept is hold else _hold_ends(kept), unknown)
             drop = Rate(ends.drop, ends.drop_uncertainty, np.nan, np.nan)
             rate = _rate(kept, ends, known_to=of_motion, of_zero=of_zero)
-            prony = _prony(kept, ends, settings, known_to=unknown)
+            prony = _prony(kept, ends, settings, of_motion=correction_known_to, known_to=unknown)
             if prony is not None:
                 modelled = _at_ramp_end(prony)
-                prony = _less_known(prony, unknown)
+                prony = _less_known(prony, float(np.hypot(of_begin, of_zero)))
     _describe(hold, rate, follows_hold=follows_hold)
     shown = rate or Rate(np.nan, np.nan, np.nan, np.nan)
     return HoldResult(
