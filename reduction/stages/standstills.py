@@ -294,7 +294,8 @@ def _still_runs(
     edges = np.flatnonzero(is_still[1:] != is_still[:-1])
     first, last = edges[::2], edges[1::2] - 1 + window - 1
     last[:-1] = np.minimum(last[:-1], first[1:] - 1)
-    return first, last
+    is_whole = last - first + 1 >= window  # others are pieces of a slow movement
+    return first[is_whole], last[is_whole]
 
 
 def _extremes_between(
@@ -892,8 +893,8 @@ _BESIDE = 0.25  # of an interval, read on both sides of it
 _HINGES = (1.0, 0.75, 0.5)  # of an interval: possible flat fractions if the channel stands there
 
 
-def _misfits(time: Floats, values: Floats, half: float) -> tuple[float, float]:
-    """Sums of squares about a parabola, and about the best level with ramps on both sides.
+def _misfits(time: Floats, values: Floats, half: float) -> list[float]:
+    """Sums of squares about a parabola, and about levels with ramps of several shapes.
 
     ``time`` is counted from the middle of an interval of twice ``half``.
     """
@@ -908,7 +909,7 @@ def _misfits(time: Floats, values: Floats, half: float) -> tuple[float, float]:
     for hinge in _HINGES:
         before, after = np.maximum(-clock - hinge, 0), np.maximum(clock - hinge, 0)
         levels += [about(before, after), about(before**2, after**2)]
-    return about(clock, clock**2), min(levels)
+    return [about(clock, clock**2), *levels]
 
 
 def _are_turns(
@@ -919,11 +920,11 @@ def _are_turns(
     Notes
     -----
     With noise in the channel, the turn of a slow sine stays within the tolerance as long as a
-    standstill might.  At a turn, and a quarter of the interval to either side, the channel is
-    a parabola; at a standstill it is a level left by straight or rounded ramps.  Where the
+    standstill might.  At a turn, and up to a quarter of the interval to either side, the channel
+    is a parabola; at a standstill it is a level left by straight or rounded ramps.  Where the
     mean squares differ by less than a factor of eight, those of all such intervals at the same
-    level decide; one that is more than twice as long as most, as a hold before the cycles, does
-    not count.
+    level decide, with ramps of one shape; one that is more than twice as long as most, as a hold
+    before the cycles, does not count.
 
     Examples
     --------
@@ -936,12 +937,18 @@ def _are_turns(
     >>> print(_are_turns(time, stand, first[:1] - 2, last[:1] + 2, tolerance=0.1))
     [False]
     """
-    misfits = np.full((2, first.size), np.nan)
+    misfits = np.full((1 + 2 * len(_HINGES), first.size), np.nan)
+    level = _interval_means(values, first, last)
     for index, (one, end) in enumerate(zip(first.tolist(), last.tolist(), strict=True)):
         beside = max(ceil(_BESIDE * (end - one)), 1)
         if one < beside or end + beside >= values.size:
             continue
-        part = slice(one - beside, end + beside + 1)
+        # farther away than that it is on its way, or already in another turn
+        before, after = (
+            max(int(_reach(values, edge[[index]], level[[index]], tolerance, step)[0]), 1)
+            for edge, step in ((first, -beside), (last, beside))
+        )
+        part = slice(one - before, end + after + 1)
         stride = max((part.stop - part.start) // _TURN_SAMPLES, 1)
         seconds, series = time[part][::stride], values[part][::stride]
         known = np.isfinite(series)
@@ -949,21 +956,20 @@ def _are_turns(
             continue
         middle, half = (time[one] + time[end]) / 2, (time[end] - time[one]) / 2
         # where the ramps begin is a fourth constant of a standstill, their shape half of one
-        free = known.sum() - np.array([3, 4.5])
+        free = known.sum() - np.r_[3, np.full(2 * len(_HINGES), 4.5)]
         of_both = np.array(_misfits(seconds[known] - middle, series[known], half))
         misfits[:, index] = np.maximum(of_both, _TINY) / free
-    ratio = np.log2(misfits[0] / misfits[1])
+    ratio = np.log2(misfits[0] / misfits[1:].min(axis=0))
     is_turn: Bools = ratio < 0
     unclear = np.flatnonzero(np.abs(ratio) < _UNCLEAR)  # judged with those like them
-    level = _interval_means(values, first[unclear], last[unclear])
     duration = time[last[unclear]] - time[first[unclear]]
     is_long = duration > 2 * np.median(duration) if unclear.size else duration > 0
-    by_level = np.lexsort((level, is_long))
-    is_next = (np.diff(level[by_level]) > tolerance) | np.diff(is_long[by_level])
+    by_level = np.lexsort((level[unclear], is_long))
+    is_next = (np.diff(level[unclear][by_level]) > tolerance) | np.diff(is_long[by_level])
     alike = np.empty_like(unclear)
     alike[by_level] = np.concatenate([[0], np.cumsum(is_next)])[: unclear.size]
-    parabolas, stands = (np.bincount(alike, weights=one[unclear]) for one in misfits)
-    is_turn[unclear] = (parabolas < stands)[alike]
+    parabola, *stands = (np.bincount(alike, weights=one[unclear]) for one in misfits)
+    is_turn[unclear] = (parabola < np.min(stands, axis=0))[alike]
     return is_turn
 
 

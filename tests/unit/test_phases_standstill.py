@@ -565,3 +565,28 @@ def test_a_hold_before_noisy_cycles_does_not_make_holds_of_their_valleys(second)
         stands = find_tension_stands(time, 0.1 + 0.1 * shape, [load], settings=PhaseSettings())
         found += int(((stands.start_time > 112) & (stands.end_time < time[-93])).sum())
     assert found <= 6  # of 90 turns
+
+
+def test_a_hold_between_fast_cycles_is_none_of_their_turns():
+    """Synthetic: 44 s at the mean of sines of 5 s; cycles lie within a quarter of it beside it."""
+    time, found = np.arange(0, 144, 0.25), 0
+    turn = np.where(time < 50, time, np.clip(time - 94, 0, None)) / 5
+    for seed in range(20):
+        noise = np.random.default_rng(seed).normal(0, 1.0, time.size)
+        load = 60 + 40 * np.sin(2 * np.pi * turn) + noise
+        stands = find_tension_stands(time, load / 100, [load], settings=PhaseSettings())
+        found += int(np.any((np.abs(stands.start_time - 50) < 1) & (stands.end_time > 93)))
+    assert found >= 19
+
+
+@pytest.mark.parametrize("noise", [0.003, 0.01])
+def test_straight_ramps_of_ten_minutes_in_noise_have_no_holds(noise):
+    """Synthetic: ten cycles of 20 to 100 N, a reading a second, with noise as a share of 100 N."""
+    time = np.arange(6000.0)
+    wave = 60 + 40 * np.interp(time / 600 % 1, [0, 0.5, 1], [-1, 1, -1])
+    found = 0
+    for seed in range(10):
+        load = wave + np.random.default_rng(seed).normal(0, 100 * noise, time.size)
+        stands = find_tension_stands(time, load / 100, [load], settings=PhaseSettings())
+        found += int(np.sum((stands.start_time > 300) & (stands.end_time < 5700)))
+    assert found <= 1
