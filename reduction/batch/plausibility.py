@@ -27,7 +27,7 @@ from reduction.prediction.hose_tension import predict_hose
 from reduction.quantities.units import Dimension, scale_to_si
 from reduction.readers.layout import Layout
 from reduction.record.errors import ReductionError, SettingsError
-from reduction.record.measurement import Floats, Specimen, SpliceMarks
+from reduction.record.measurement import Bools, Floats, Specimen, SpliceMarks
 from reduction.record.notes import Note, note
 from reduction.stages.plausible_bands import Bands, bands_of, readings_that_fit, words_of_ratio
 from reduction.stages.strain.strain_model import StrainModel, strain_by_model
@@ -544,7 +544,7 @@ def _of_pairs(
 ) -> Iterator[tuple[str, Note]]:
     """Find tests with the same load, and tests of one specimen with different stiffness.
 
-    Both tests of a pair, since nothing tells which of them is wrong.
+    Both tests of a pair, unless other specimens tell which of them is wrong.
     """
     read: dict[tuple[tuple[str, ...], ...], list[TestPlan]] = {}
     by_readings: dict[tuple[bytes, ...], list[TestPlan]] = {}
@@ -572,15 +572,17 @@ def _of_pairs(
         if survey.levels is not None and not survey.plan.failed and not survey.plan.step_place:
             for name in survey.plan.specimens:
                 by_specimen.setdefault(name, []).append(survey)
+    odd = list(_off_other_specimens(campaign, by_specimen, models))
+    yield from odd
     for name, several in by_specimen.items():
-        compared = several[:_MOST_COMPARED]
+        # a test that others show to be wrong would make those beside it look wrong
+        known = {test for test, one in odd if one.subject == name}
+        compared = [one for one in several if one.plan.id not in known][:_MOST_COMPARED]
         softens = campaign.specimens[name].kind in ("rubber tether", "elastomer")
         unlike = list(_of_stiffness(name, compared, models, softens=softens))
         yield from unlike
         if not unlike:
             yield from _off_the_others(name, compared, models, softens=softens)
-    if len(by_specimen) > _FEWEST_LIKE:
-        yield from _off_other_specimens(campaign, by_specimen, models)
 
 
 def _off_other_specimens(
@@ -595,11 +597,13 @@ def _off_other_specimens(
             continue
         make = made.kind, made.material, made.construction, made.condition
         rows = groups.setdefault(make, [])
-        for survey, strain, before in zip(several, *_strains(name, several, models), strict=True):
-            stress = survey.extremes.greatest_tension.get(name, np.nan) / made.area
-            # what was stretched further before may be softer
-            if strain > 0 and stress > 0 and before <= _GREATER * strain:
-                rows.append((survey, name, strain, stress / strain))
+        strain, before = _strains(name, several, models)
+        stress = _greatest_tension(name, several) / made.area
+        # what was stretched further before may be softer
+        is_first = before <= _GREATER * strain
+        is_first |= _loads_set(several) & (_before(several, stress) <= _GREATER * stress)
+        for place in np.flatnonzero((strain > 0) & (stress > 0) & is_first):
+            rows.append((several[place], name, strain[place], stress[place]))
     for rows in groups.values():
         if len({name for _, name, _, _ in rows}) <= _FEWEST_LIKE:
             continue
@@ -608,11 +612,14 @@ def _off_other_specimens(
             np.nan if survey.levels is None else survey.levels.frequency for survey, *_ in rows
         ])  # fmt: skip
         names = np.array([name for _, name, _, _ in rows])
-        strain, modulus = np.array([row[2:] for row in rows]).T
+        strain, stress = np.array([row[2:] for row in rows]).T
+        modulus = stress / strain
+        load_set = _loads_set([survey for survey, *_ in rows])
         for place, (survey, name, _, _) in enumerate(rows):
-            like = (names != name) & (kind == kind[place])
-            for values, limit in ((strain, _LIKE_STRAIN), (rate, _LIKE_RATE)):
-                like &= np.abs(np.log(values / values[place])) < np.log(limit)
+            like = _is_like(strain, strain[place], _LIKE_STRAIN)
+            like |= load_set & load_set[place] & _is_like(stress, stress[place], _LIKE_STRAIN)
+            like &= _is_like(rate, rate[place], _LIKE_RATE)
+            like &= (names != name) & (kind == kind[place])
             others = np.unique(names[like])
             ratio = modulus[place] / modulus[like]
             for far in (ratio > _JUMP, ratio < 1 / _JUMP):
@@ -632,9 +639,26 @@ def _strains(name: str, several: Sequence[Survey], models: Models) -> tuple[Floa
     strain = np.array([
         greatest_strain(one.extremes, name, models.get((one.plan.id, name))) for one in several
     ])  # fmt: skip
+    return strain, _before(several, strain)
+
+
+def _before(several: Sequence[Survey], values: Floats) -> Floats:
+    """Greatest value of the tests before each (0 without a known order)."""
     order = np.array([np.nan if one.plan.order is None else one.plan.order for one in several])
-    is_before = order < order[:, None]
-    return strain, np.where(is_before, np.nan_to_num(strain), 0.0).max(axis=1)
+    return np.where(order < order[:, None], np.nan_to_num(values), 0.0).max(axis=1)
+
+
+def _greatest_tension(name: str, several: Sequence[Survey]) -> Floats:
+    return np.array([one.extremes.greatest_tension.get(name, np.nan) for one in several])
+
+
+def _loads_set(several: Sequence[Survey]) -> Bools:
+    """Whether the machine went to set loads, so that the strain is what the specimen gave."""
+    return np.array([one.plan.control == "load" for one in several])
+
+
+def _is_like(values: Floats, value: float, limit: float) -> Bools:
+    return np.asarray(np.abs(np.log(values / value)) < np.log(limit))
 
 
 def _of_stiffness(
@@ -765,6 +789,8 @@ def _off_the_others(
         beyond = max(x.min() - strain[place], strain[place] - x.max())
         if np.ptp(x) > np.log(_SPREAD) and beyond < np.log(_BEYOND):
             slope, start = np.polyfit(x, y, 1)
+            if slope <= 0:  # the others contradict each other
+                continue
             away = tension[place] - (start + slope * strain[place])
             if not (is_alone and softened[place] and -np.log(_SOFTENED) < away < 0):
                 off[place] = away
@@ -783,7 +809,8 @@ def _stiffness_ratio(one: Survey, other: Survey, name: str, models: Models) -> t
     """Ratio of peak tension over peak strain, other test to one, and the limit for it.
 
     Rubber softens with previous stretch, and ropes stiffen with load and rate: the ratio is NaN for
-    tests of different stretch or frequency, and the limit is wider for a slow pull and cycles.
+    tests of different stretch and set load, or of different frequency.  The limit is wider for a
+    slow pull and cycles, and at a like load: bedding-in shortens the way to it.
     """
     values = []
     for survey in (one, other):
@@ -795,14 +822,18 @@ def _stiffness_ratio(one: Survey, other: Survey, name: str, models: Models) -> t
     nothing = np.nan, _JUMP
     if not (first > 0 and later > 0):
         return nothing
-    if not max(strain, other_strain) < _LIKE_STRAIN * min(strain, other_strain):
-        return nothing
+    is_at_strain = max(strain, other_strain) < _LIKE_STRAIN * min(strain, other_strain)
     kinds = {one.plan.kind, other.plan.kind}
-    if kinds == {"cyclic", "quasi-static"}:
+    if is_at_strain and kinds == {"cyclic", "quasi-static"}:
         return later / first, _JUMP_OF_KINDS
     if len(kinds) > 1 or not max(rate, other_rate) < _LIKE_RATE * min(rate, other_rate):
         return nothing
-    return later / first, _JUMP
+    if is_at_strain:
+        return later / first, _JUMP
+    tension, other_tension = _greatest_tension(name, (one, other))
+    if not _loads_set((one, other)).all() or not _is_like(tension, other_tension, _LIKE_STRAIN):
+        return nothing
+    return later / first, _JUMP_OF_KINDS
 
 
 def _off_plan(

@@ -2155,8 +2155,9 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "warning",
         lambda ratio, n_others, n_like, like: (
             f"it is {ratio:.3g} times as stiff as {n_others} of {n_like} other specimens of its"
-            f" kind{_is_like(like)}. Check the unit, gain and factor of its load, and its diameter;"
-            " if it is of another make, state its material, construction or condition"
+            f" kind{_is_like(like)}. Check the unit, gain and factor of its load, its diameter, and"
+            " whether the log is its own; if it is of another make, state its material,"
+            " construction or condition"
         ),
     ),
     "peak-off-others": (
@@ -2176,7 +2177,8 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "tension-behind-position": (
         "warning",
         "tension lags position by {delay:.2g} s, which no specimen causes: the load was logged"
-        " late, or through a filter. Loops and moduli are affected",
+        " late, or through a filter, or the columns of load and position are interchanged. Loops"
+        " and moduli are affected",
     ),
     "position-behind-tension": (
         "warning",

@@ -89,7 +89,7 @@ def test_a_log_that_was_exported_twice_is_told():
 def pulled(order, strain, tension, kind="cyclic"):
     """A test of one specimen that went so far; rubber by no law, numbers that are written down."""
     one = survey(f"T-{order}", digest=f"{order:064d}")
-    one.plan.kind, one.plan.order = kind, order
+    one.plan.kind, one.plan.order, one.plan.control = kind, order, "position"
     one.levels = SimpleNamespace(frequency=0.1)
     one.extremes = Extremes(
         is_stepwise=True, greatest_measured_strain={"b": strain}, greatest_tension={"b": tension}
@@ -112,7 +112,7 @@ def pulled(order, strain, tension, kind="cyclic"):
 )
 def test_rubber_that_was_stretched_further_before_may_be_softer(kind, last, told):
     campaign = SimpleNamespace(
-        layouts={"log": layout("Force")}, specimens={"b": SimpleNamespace(kind=kind)}
+        layouts={"log": layout("Force")}, specimens={"b": Specimen(name="b", kind=kind)}
     )
     virgin = [(1.25, 550.0), (1.5, 700.0), (1.75, 850.0), (2.0, 1050.0), (2.75, 2000.0)]
     tests = [pulled(order, *one) for order, one in enumerate([*virgin, last], start=1)]
@@ -209,7 +209,7 @@ def five_specimens(stiffness, *, material="rubber", kind="elastomer"):
     tests, specimens = {}, {}
     for place, one in enumerate((stiffness, 400.0, 450.0, 500.0, 550.0)):
         name = f"S-{place}"
-        plan = SimpleNamespace(id=f"T-{place}", kind="cyclic", order=1)
+        plan = SimpleNamespace(id=f"T-{place}", kind="cyclic", order=1, control="position")
         extremes = Extremes(
             greatest_tension={name: one}, greatest_measured_strain={name: 1.0}, is_stepwise=True
         )
@@ -241,3 +241,38 @@ def test_a_specimen_unlike_most_others_of_its_make_is_told(stiffness, material, 
 def test_hoses_of_another_angle_are_not_told():
     campaign, tests = five_specimens(460.0 * 4.448, kind="stretch hose")
     assert not list(_off_other_specimens(campaign, tests, {}))
+
+
+def test_a_log_of_another_rope_is_told_at_the_load_of_the_others_and_its_neighbours_are_not():
+    """Five ropes go to 12, 18 and 18 kN; one log of the last is that of a rope 2.6 times as stiff.
+
+    It ends at the load of the others, but at a strain that none of them has.
+    """
+    specimens, surveys = {}, []
+    for place in range(5):
+        name = f"rope-{place}"
+        specimens[name] = Specimen(name=name, kind="rope", diameter=(0.012,), material="nylon")
+        strains = (0.122, 0.164 / (2.6 if place == 4 else 1.0), 0.167)
+        for order, (load, strain) in enumerate(zip((12e3, 18e3, 18e3), strains, strict=True), 1):
+            plan = SimpleNamespace(
+                id=f"{name}-{order}", log=f"{name}-{order}", kind="cyclic", order=order,
+                control="load", specimens=(name,), failed=False, step_place=None,
+                step_range=None, files=((None, "log"),),
+            )  # fmt: skip
+            extremes = Extremes(
+                greatest_tension={name: load}, greatest_measured_strain={name: strain},
+                is_stepwise=True,
+            )  # fmt: skip
+            surveys.append(SimpleNamespace(
+                plan=plan, sources=(SimpleNamespace(sha256=plan.id),), extremes=extremes,
+                levels=SimpleNamespace(frequency=0.1),
+            ))  # fmt: skip
+    campaign = SimpleNamespace(specimens=specimens, layouts={"log": layout("Force")})
+    found = list(_of_pairs(campaign, surveys, {}))
+    assert [(test, one.code) for test, one in found] == [("rope-4-2", "stiffness-off-others")]
+    assert "4 of 4 other specimens" in str(found[0][1])
+    # without the others, nothing tells which of the two at one load is wrong
+    alone = list(_of_pairs(campaign, surveys[-3:], {}))
+    assert [(test, one.code) for test, one in alone] == [
+        ("rope-4-2", "stiffness-jumps"), ("rope-4-3", "stiffness-jumps"),
+    ]  # fmt: skip
