@@ -55,6 +55,7 @@ NIGHTLY_BUT = {
         "test_what_a_failed_test_did_is_not_known_and_is_said",
         "test_weights_are_in_the_history_and_have_one",
         "test_each_product_has_the_key_of_its_settings",
+        "test_a_warning_goes_with_the_other_test_that_caused_it",
     ),
     "cli/test_run_remote.py": (
         "test_without_the_option_nothing_is_fetched[words4-the source]",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -153,7 +153,7 @@ def _settings_json(
 class Basis:
     """Current inputs of a test's product; ``settings`` is all of them as JSON.
 
-    ``remarks`` are the open points about the test in the campaign.
+    ``remarks`` are the open points about the test in the campaign; other tests can cause them.
     """
 
     history: History | None
@@ -178,17 +178,18 @@ def basis_of(
     origins = () if of_run is None else origins_of(campaign, survey, past.surveys, past.models)
     names = [(survey.plan.id, specimen) for specimen in survey.plan.specimens]
     of_test = tuple(past.models[name] for name in names if name in past.models)
+    remarks = *history_remarks(survey, past, campaign), *(doubts or {}).get(survey.plan.id, ())
     return Basis(
         history=history,
         models=of_test,
         pulls=of_run,
         pull_origins=origins,
         settings=_settings_json(campaign, survey, of_test, history, of_run, origins),
-        remarks=(
-            *history_remarks(survey, past, campaign), *(doubts or {}).get(survey.plan.id, ()),
-        ),
-    )  # fmt: skip
+        remarks=tuple(replace(one, stage=_STAGE) for one in remarks),
+    )
 
+
+_STAGE = "campaign"
 
 NOT_REDUCED = "not reduced yet from logs and settings as they stand now"
 
@@ -213,8 +214,10 @@ def reusable_product(
         notes = read_notes(archive)
     except OSError:
         return None  # an unreadable archive is made again
-    # a missing remark means that a different test has failed since
-    return notes if {str(one) for one in remarks} <= {str(one) for one in notes} else None
+    # other tests have changed since: a remark is missing, or its cause is gone
+    now = {str(one) for one in remarks}
+    before = {str(one) for one in notes if one.stage == _STAGE}
+    return notes if before <= now <= {str(one) for one in notes} else None
 
 
 def outdated_runs(

@@ -157,7 +157,8 @@ class ReducedTest:
             replace(one, stage=stage) for stage, notes, _ in self._of_stages() for one in notes
         ]
         said = {str(one) for one in given}
-        given += [replace(one, stage="test") for one in self.notes if str(one) not in said]
+        own = [one for one in self.notes if str(one) not in said]
+        given += [replace(one, stage=one.stage or "test") for one in own]
         return by_severity({(one.stage, str(one)): one for one in given}.values())
 
     def all_steps(self) -> tuple[Step, ...]:

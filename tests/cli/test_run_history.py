@@ -200,6 +200,21 @@ def test_a_product_made_while_one_test_failed_does_not_stand_for_another(row, co
     assert any(note.startswith("earlier test B failed") for note in history(row, "C")[2])
 
 
+def test_a_warning_goes_with_the_other_test_that_caused_it(row_with_products, command):
+    row = row_with_products
+    product = row / "processed" / "row" / "B.nc"
+    before = product.read_bytes()
+    shutil.copy(row / "B.csv", row / "D.csv")
+    text = (row / "campaign.toml").read_text()
+    (row / "campaign.toml").write_text(text + '[tests.D]\nfile = "D.csv"\norder = 5\n')
+    twice = "its log is identical to that of test D"
+    assert twice in run(row, command)["B"]["message"]
+    assert twice in run(row, command)["B"]["message"]  # unchanged
+    (row / "campaign.toml").write_text(text)
+    assert twice not in run(row, command)["B"]["message"]
+    assert product.read_bytes() == before
+
+
 def test_a_setting_of_its_own_makes_a_product_anew_beside_a_failed_test(row_with_products, command):
     row = row_with_products
     break_log(row, "A.csv")
