@@ -938,14 +938,14 @@ def _are_turns(
     [False]
     """
     misfits = np.full((1 + 2 * len(_HINGES), first.size), np.nan)
-    level = _interval_means(values, first, last)
+    level, near = _interval_means(values, first, last), np.array([tolerance])
     for index, (one, end) in enumerate(zip(first.tolist(), last.tolist(), strict=True)):
         beside = max(ceil(_BESIDE * (end - one)), 1)
         if one < beside or end + beside >= values.size:
             continue
         # farther away than that it is on its way, or already in another turn
         before, after = (
-            max(int(_reach(values, edge[[index]], level[[index]], tolerance, step)[0]), 1)
+            max(int(_reach(values, edge[[index]], level[[index]], near, step)[0]), 1)
             for edge, step in ((first, -beside), (last, beside))
         )
         part = slice(one - before, end + after + 1)
