@@ -30,8 +30,6 @@ from reduction.record.samples import release_pages, take_samples
 
 _MOST_TURNS = 400  # for a mean over cycles
 
-_FEWEST_TURNS = 5
-
 _MOST_REACH = 600  # samples beside a turn
 
 _FARTHEST = 6.0  # standard deviations below a turn
@@ -116,7 +114,7 @@ def noise_in_extreme(
     Returns
     -------
     excess : float
-        To be subtracted from a peak and added to a valley; 0 for fewer than five turns. [any]
+        To be subtracted from a peak and added to a valley; 0 if all turns are near the ends. [any]
     fall : float
         Fall of the shape from its top to the next reading, on the steeper side; for a
         turn between two readings the mean shape is blunt, and the excess too great. [any]
@@ -141,7 +139,7 @@ def noise_in_extreme(
     """
     reach = min(reach, _MOST_REACH)
     inside = turn[(turn >= 2 * reach) & (turn < values.size - 2 * reach)]
-    if inside.size < _FEWEST_TURNS or reach < 1 or not noise > 0:
+    if not inside.size or reach < 1 or not noise > 0:
         return 0.0, 0.0
     some = inside[np.linspace(0, inside.size - 1, min(inside.size, _MOST_TURNS)).astype(int)]
     place = np.arange(-reach, reach + 1)
