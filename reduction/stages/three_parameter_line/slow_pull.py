@@ -471,10 +471,10 @@ def _curve_of_pull(blocks: _PullBlocks) -> _PulledCurve:
     Notes
     -----
     Its pieces are short where the curve bends, at the foot and near kinks, and long elsewhere.
-    A piece is halved as long as that changes the curve on it by more than noise does.  Then all
-    are halved once more, so that their misfit is small beside the effect of noise.  The misfit
-    of strain and slope is a fraction of the change by that last step: its square, less the
-    difference of the two curves due to noise, averaged over one piece to both sides.  The
+    A piece is halved as long as that, or quarters of it, change the curve on it by more than noise
+    does.  Then all are halved once more, so that their misfit is small beside the effect of noise.
+    The misfit of strain and slope is a fraction of the change by that last step: its square, less
+    the difference of the two curves due to noise, averaged over one piece to both sides.  The
     coefficients are on the finest knots, on which each choice of pieces is exact.
 
     Examples
@@ -505,12 +505,17 @@ def _curve_of_pull(blocks: _PullBlocks) -> _PulledCurve:
             finer = fit
             break
         finer = _fitted(finest, halves)
-        apart = finer.rows @ finer.inverse - fit.rows @ fit.inverse
-        noise = inflation * (apart**2 @ own**2) + least
-        square = (apart @ strain) ** 2
         inside = np.clip(np.searchsorted(breaks, number, side="right") - 1, 0, breaks.size - 2)
-        told, by_noise = (np.bincount(inside, one, breaks.size - 1) for one in (square, noise))
-        split = may & (told > _SPLIT * by_noise)
+        split = np.zeros(breaks.size - 1, dtype=bool)
+        # a knot in the middle of an S changes nothing, four pieces do
+        for one in (finer, _fitted(finest, _halved(halves, number)[0])):
+            apart = one.rows @ one.inverse - fit.rows @ fit.inverse
+            noise = inflation * (apart**2 @ own**2) + least
+            told, by_noise = (
+                np.bincount(inside, each, breaks.size - 1)
+                for each in ((apart @ strain) ** 2, noise)
+            )
+            split |= may & (told > _SPLIT * by_noise)
         if not split.any():
             break
         middle = (breaks[:-1] + breaks[1:]) // 2
