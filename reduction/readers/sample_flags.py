@@ -681,22 +681,27 @@ def _comes_from_afar(tension: Floats, runs: _Runs) -> Bools:
     return np.asarray(np.fmax(before, after) >= _SATURATED_STEPS * step)
 
 
+_SETTLING = 0.2  # of the fewest readings of a channel that is stuck
+
+
 def _find_stuck_position(position: Floats, tension: Floats, *, samples: int) -> Bools:
     """Where position is constant although tension rises, which a hold does not cause."""
     runs = _constant_runs(position, samples)
     if not runs.start.size:
         return runs.mask(position)
     rises = np.zeros(runs.start.size, dtype=bool)
-    middle = (runs.start + runs.stop) // 2
+    # a load that was logged late still rises when the crosshead has stopped
+    begin = runs.start + int(_SETTLING * samples)
+    middle = (begin + runs.stop) // 2
     for load in tension:
         noise, _ = _noise_of(load)
         low, high = finite_extremes(load)
         enough = max(_RISE_SHARE * (high - low), _RISE_NOISE * noise)
-        halves = (runs.start, middle), (middle, runs.stop - 1)
+        halves = (begin, middle), (middle, runs.stop - 1)
         most = [over_intervals(np.fmax, load, *half) for half in halves]
         least = [over_intervals(np.fmin, load, *half) for half in halves]
         rises |= most[1] - least[0] > enough
-        rises |= np.fmax(*most) - take_samples(load, runs.start) > enough
+        rises |= np.fmax(*most) - take_samples(load, begin) > enough
         rises |= take_samples(load, runs.stop - 1) - np.fmin(*least) > enough
     return runs.where(rises).mask(position)
 

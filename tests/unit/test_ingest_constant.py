@@ -211,6 +211,13 @@ def test_a_position_that_stands_still_while_the_load_cycles_is_stuck():
     assert loops(_find_stuck_position(position, load, samples=50)) == [(700, 1130)]
 
 
+def test_a_load_that_was_logged_late_makes_no_stuck_crosshead():
+    # an exact encoder, and a load that is the mean of the last five readings of a fast ramp
+    position = np.clip(np.arange(600.0) - 100, 0, 3)
+    load = np.convolve(10 * position, np.full(5, 0.2))[np.newaxis, :600]
+    assert not _find_stuck_position(position, load, samples=50).any()
+
+
 def test_relaxation_in_a_hold_does_not_make_position_stuck():
     time = np.arange(0, 3600, 1.0)
     load = (400 - 20 * np.log1p(time) + RANDOM.normal(0, 0.25, time.size))[np.newaxis]
