@@ -409,6 +409,21 @@ def test_the_local_slope_of_a_line_that_is_no_cubic_is_known_to_its_own_noise(
     assert np.sqrt(np.mean(np.square(size))) < 0.01
 
 
+@pytest.mark.parametrize("bend", [0.05, 0.2])
+def test_a_bend_that_is_odd_about_the_middle_of_the_pull_is_found(bend):
+    # one more knot in the middle adds an even function to a cubic: no part of a fifth power
+    at = np.array([600.0, 800.0, 1000.0, 1200.0, 1400.0]) / 1000 - 1
+    truth = 1e4 / (1 + bend * (5 * at**4 - 1))
+    place, random = np.linspace(-1, 1, 1000), np.random.default_rng(0)
+    strain, distance = 0.1 * (place + bend * (place**5 - place)), []
+    for _ in range(20):
+        noise = random.normal(0, [[6.0], [1e-4]], (2, 1000))
+        pull = fit_pull(np.arange(1000.0), strain + noise[1], 1000 * (place + 1) + noise[0])
+        found, spread = quasi_static_spring_constant(pull, 1000 * (at + 1))
+        distance.append((found - truth) / spread)
+    assert np.mean(np.abs(distance) < 1.96) > 0.9
+
+
 class TestRun:
     def test_the_spring_constant_is_that_at_the_mean_tension_after_the_break_in(self):
         pull = fit_pull(*rising())
