@@ -289,6 +289,8 @@ def _texts(folder: Path, logs: list[_Log], marks: list[str], refused: list[str])
         "# stepwise",
         *([_KIND.rstrip()] if any(log.sniffed.kind for log in logs) else []),
         'control = "position"  # or load',
+        '# waveform = "sinusoidal"  # or other; triangular if not stated. check compares it with',
+        "# the logs",
     ]
     if not marks:
         lines.append(_NO_MARKS)

@@ -91,6 +91,13 @@ def test_the_draft_has_room_for_the_settings_of_one_test(folder):
     assert document["campaign"]["tests"] == "tests.csv" and "T-1" in document["tests"]
 
 
+def test_the_draft_names_the_waveform_that_is_taken_where_none_is_stated(folder):
+    assert (
+        '# waveform = "sinusoidal"  # or other; triangular if'
+        in starter_campaign(folder)["campaign.toml"]
+    )
+
+
 def test_two_files_of_one_name_have_two_ids(folder):
     (folder / "T-1.txt").write_text(LOG)
     names = [row["id"] for row in rows(starter_campaign(folder))]
