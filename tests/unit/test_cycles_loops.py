@@ -1126,6 +1126,41 @@ def test_creep_that_dies_away_is_in_the_interval_of_the_last_cycle(lasts):
     assert np.abs(error[-1]) < 2 * loops.uncertainty["hysteresis_energy"][0, -1]
 
 
+@pytest.mark.parametrize("control", ["load", "position"])
+@pytest.mark.parametrize("lasts", [8.0, 80.0])  # cycles
+def test_a_drift_left_in_phase_with_a_sine_is_in_the_interval_of_each_cycle(control, lasts):
+    # 47.3 readings per cycle: a cycle has one reading more or less than its period
+    turn = np.arange(474) / 47.3
+    wave, loss = -np.cos(2 * np.pi * turn), 0.07 * np.sin(2 * np.pi * turn)
+    drift = 0.03 * lasts * -np.expm1(-turn / lasts)
+    noise = np.random.default_rng(1).normal(0, 1e-5, (2, turn.size))
+    tension = 1000 + STORAGE * AMPLITUDE * (wave + noise[0])
+    strain = 1 + AMPLITUDE * (wave - loss + drift + noise[1])
+    answers = "strain_amplitude"
+    if control == "position":
+        strain, tension = (
+            1 + AMPLITUDE * (wave + noise[1]),
+            1000 + STORAGE * AMPLITUDE * (wave + loss - drift + noise[0]),
+        )
+        answers = "tension_amplitude"
+    ends = np.rint(np.arange(11) * 47.3).astype(int)
+    first, last = ends[:-1], ends[1:]
+    half = np.rint((np.arange(10) + 0.5) * 47.3).astype(int)
+    cycles = Cycles(
+        first, last, np.column_stack([first, half]), np.column_stack([half, last]),
+        np.ones((10, 2)), np.zeros(turn.size, np.int32), np.zeros(turn.size, np.int8),
+        np.zeros(turn.size, bool), 0.1,
+    )  # fmt: skip
+    loops = close_loops(
+        turn, tension[None], strain[None], cycles, waveform="sinusoidal", control=control
+    )
+    scale = AMPLITUDE if control == "load" else STORAGE * AMPLITUDE
+    error = getattr(loops, answers)[0] - scale * np.hypot(1, 0.07)
+    # they were up to 200 standard uncertainties off
+    assert (np.abs(error) < 3.5 * loops.uncertainty[answers][0]).all()
+    assert (loops.uncertainty[answers][0, 3:-1] < 4e-4 * scale).all()
+
+
 @pytest.mark.parametrize("per_cycle", [20, 50])
 def test_an_extreme_is_uncertain_by_what_samples_miss_of_a_turn(per_cycle):
     # the middle one of three cycles: its turns lie anywhere between two samples

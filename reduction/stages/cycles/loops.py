@@ -1016,6 +1016,17 @@ def _quantities_of_cycles(
         if waveform == "sinusoidal":
             u_extreme = np.hypot(noise, _missed_turn(amplitude, n_samples))
             u_half, u_strain = np.sqrt(2 / n_samples) * noise, np.sqrt(2 / n_samples) * strain_noise
+            # readings that span a little more or less than a period, and a drift that changes
+            # within it, leave some of the drift in phase with the wave
+            drift, own = (
+                (drifts.strain, strain_amplitude) if is_load else (drifts.tension, amplitude)
+            )
+            left = np.hypot(drift / (np.sqrt(12) * n_samples), _change_beside(drift) / 2 / np.pi**2)
+            if is_load:
+                u_strain = np.hypot(u_strain, left)
+            else:
+                u_half = np.hypot(u_half, left)
+            u_over_time = np.hypot(u_over_time, apparent * left / own)
             storage, loss = over_time, lost_over_time
             u_storage = u_loss = u_apparent = u_over_time
         else:
@@ -1142,6 +1153,18 @@ def _mean_and_amplitude(
     amplitude = np.where(is_whole | follows, amplitude, of_one_valley)
     amplitude = np.where(np.isfinite(on_fall), np.abs(top - end + on_fall) / 2, amplitude)
     return (top + foot) / 2, np.where(np.isnan(drift), np.nan, amplitude)
+
+
+def _change_beside(values: Floats) -> Floats:
+    """Greater change of each value to its neighbours.
+
+    Examples
+    --------
+    >>> _change_beside(np.array([3.0, 1.0, 0.5]))
+    array([2. , 2. , 0.5])
+    """
+    steps = np.abs(np.diff(values))
+    return np.fmax(np.append(0.0, steps), np.append(steps, 0.0))
 
 
 def _missed_turn(amplitude: Floats | float, n_samples: Floats) -> Floats:
