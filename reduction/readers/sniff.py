@@ -94,6 +94,8 @@ class _TableShape:
     units: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
     """Fields of some data rows."""
+    above: tuple[str, ...]
+    """Lines above the names."""
 
 
 def _is_number(text: str, decimal: str) -> bool:
@@ -162,6 +164,7 @@ def _look_at_table(
             for row, is_data in zip(rows[start : start + _ROWS], data[start:], strict=False)
             if is_data
         ),
+        above=tuple(" ".join(filter(None, rows[i])) for i in above if i != name_row)[:_HEADER],
     )
 
 
@@ -582,7 +585,9 @@ def _look_at_sheet(path: Path, sheet: str | None, watch: Watch) -> _SeenTable:
         remarks.append(f"sure: the table begins below row {top}")
     settings["has_name_row"] = table.name_row is not None
     settings["has_unit_row"] = table.unit_row is not None
-    return _SeenTable("spreadsheet", _seen_columns(table, "."), settings, tuple(remarks))
+    return _SeenTable(
+        "spreadsheet", _seen_columns(table, "."), settings, tuple(remarks), preamble=table.above
+    )
 
 
 def _seen(table: ColumnTable) -> list[SeenColumn]:

@@ -5,6 +5,7 @@ Sheets are given by name or by number from 1; rows count as in the sheet.
 
 from __future__ import annotations
 
+import io
 import math
 import re
 import struct
@@ -215,7 +216,7 @@ def _exact_columns(
     """Columns cell by cell; `LogError` at the first cell not a number or missing mark."""
     with _parsed(path, f"sheet {sheet + 1} cannot be read"):
         rows = (
-            python_calamine.CalamineWorkbook.from_path(path)
+            python_calamine.CalamineWorkbook.from_filelike(io.BytesIO(path.read_bytes()))
             .get_sheet_by_index(sheet)
             .to_python(skip_empty_area=False)[first:]
         )
@@ -307,7 +308,8 @@ def open_workbook(path: Path, watch: Watch) -> fastexcel.ExcelReader:
         "the file is not a spreadsheet that can be read",
         needed="an .xlsx, .xls or .ods workbook without a password",
     ):
-        return fastexcel.read_excel(path)
+        # by its contents: from a path, a workbook with the ending of another kind is refused
+        return fastexcel.read_excel(path.read_bytes())
 
 
 def _check_integrity(path: Path, watch: Watch) -> None:

@@ -697,3 +697,10 @@ def test_a_table_with_more_labels_than_numbers_is_found(tmp_path):
     path.write_text("\n".join([names, *rows[:20]]) + "\n", encoding="utf-8")
     with pytest.raises(LogError, match="no table of numbers"):  # a list of specimens
         sniff_layout(path)
+
+
+def test_lines_above_the_table_of_a_workbook_are_quoted(tmp_path):
+    rows = [["Report"], ["Width (mm)", 5.96], ["Test Speed (mm/min)", 10.0], []]
+    rows += [["Extension (mm)", "Force (N)"], *([i / 10, 2.0 * i] for i in range(30))]  # synthetic
+    path = write_xlsx(tmp_path / "log.xlsx", {"data": rows})
+    assert sniff_layout(path).preamble == ("Report", "Width (mm) 5.96", "Test Speed (mm/min) 10")

@@ -288,7 +288,7 @@ def test_a_sheet_that_cannot_be_read_cell_by_cell_is_an_error(tmp_path, monkeypa
     def fail(path):
         raise python_calamine.CalamineError("no such cell")
 
-    monkeypatch.setattr("python_calamine.CalamineWorkbook.from_path", fail)
+    monkeypatch.setattr("python_calamine.CalamineWorkbook.from_filelike", fail)
     with pytest.raises(LogError, match="sheet 1 cannot be read; found no such cell"):
         read(tmp_path, [*HEAD, [0.0, "x"]], missing=["x"])
 
@@ -323,6 +323,11 @@ def test_the_zwick_workbook_is_read_sheet_by_sheet():
     # the machine stopped each test at a force of 3 N
     assert {name: round(force, -1) for name, force in last.items()} == dict.fromkeys(last, 3000)
     assert next(iter(last)) == "cotton-1"
+
+
+def test_a_workbook_is_known_by_its_contents(tmp_path):
+    rows = [["time", "load"], *([i / 10, 2.0 * i] for i in range(5))]
+    assert read(tmp_path, rows, name="log.xls").n_rows_read == 5
 
 
 @needs_measured_logs
