@@ -16,7 +16,7 @@ from reduction.readers.layout import CLOCK, Channel, Layout
 from reduction.readers.raw_log import RawLog
 from reduction.readers.sample_flags import find_spikes, flag_record
 from reduction.record.errors import DataError, SettingsError
-from reduction.record.measurement import Floats, Integers, LoadTrain, Record
+from reduction.record.measurement import Bools, Floats, Integers, LoadTrain, Record
 from reduction.record.notes import Note, note
 from reduction.record.samples import (
     empty_like,
@@ -24,6 +24,7 @@ from reduction.record.samples import (
     join_columns,
     readings_between,
     sample_blocks,
+    take_samples,
     zeros_like,
 )
 from reduction.record.settings import QualitySettings
@@ -589,8 +590,9 @@ def _check_channels(layout: Layout, test_id: str, n_specimens: int) -> dict[str,
             f"test '{test_id}': its layout has no crosshead_position channel",
             found=", ".join(layout.channels),
             needed="crosshead_position",
-            hint="Add it to the layout. Where `reduction init` found no column for it, the comments"
-            " of the draft say why: a table of the extremes of each cycle has none.",
+            hint="Add it to the layout; of a log with strain alone, the column of strain with the"
+            " gauge length as factor. Where `reduction init` found no column, the comments of the"
+            " draft say why: a table of the extremes of each cycle has none.",
         )
     counts = {}
     for kind in _OF_SPECIMENS:
@@ -822,6 +824,8 @@ def _datum_notes(record: Record, piece: _Piece) -> tuple[Note, ...]:
         away = position[part] - zero
         passes.append(part.start + np.flatnonzero(away[:-1] * away[1:] <= 0))
     before = np.concatenate(passes)
+    before = before[before + 2 < position.size]
+    before = before[~(_drops_out(position, before) | _drops_out(position, before + 1))]
     if not before.size:
         return tuple(_never_zero(record, zero, stated))
     begin, span = position[before], position[before] - position[before + 1]
@@ -843,6 +847,17 @@ def _datum_notes(record: Record, piece: _Piece) -> tuple[Note, ...]:
             notes.append(note(code, stated=stated, specimen=name, found=float(found[0])))
     return tuple(notes)
 
+
+def _drops_out(position: Floats, at: Integers) -> Bools:
+    """Whether a reading lies beyond both beside it, by more than these differ from the next."""
+    places = np.clip(at + np.arange(-2, 3)[:, None], 0, position.size - 1)
+    earlier, before, here, after, later = take_samples(position, places)
+    usual = np.abs(before - earlier) + np.abs(later - after)
+    least = np.minimum(np.abs(before - here), np.abs(after - here))
+    return np.asarray(((before - here) * (after - here) > 0) & (least > _DROP * usual))
+
+
+_DROP = 3.0
 
 _NO_SET = 0.2  # of a length: no rope or rubber is left longer by a fifth
 

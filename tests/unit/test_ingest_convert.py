@@ -138,6 +138,15 @@ def test_a_reference_length_read_at_another_tension_is_noted():
     )
 
 
+@pytest.mark.parametrize("place", [4, -1])
+def test_a_drop_out_to_zero_does_not_show_the_load_at_displacement_zero(place):
+    stretch = {"crosshead_position": POSITION - 18, "tension.1": 50 + LOAD}
+    stretch["crosshead_position"][place] = 0.0
+    slack = channels(crosshead_position={"datum": "displacement", "reference_length": "12 ft"})
+    notes = convert((log(stretch | {"tension.2": 50 + LOAD}), layout(slack))).notes
+    assert not [one for one in notes if one.code.startswith("reference-length")]
+
+
 def test_a_damper_that_pulls_and_pushes_at_displacement_zero_is_not_under_preload():
     phase = TIME * 2 * np.pi / 7 + 0.3
     stroke = {"crosshead_position": np.sin(phase), "tension.1": 30 * np.cos(phase)}
