@@ -335,7 +335,9 @@ def _find_zero_strain(survey: Survey, located: Located, campaign: Campaign, plan
     )
     if not at_slack.is_logged and plan.kind not in CYCLIC:
         slack = located.standstills.slack_tension
-        start = zero_at_start(located.position, located.tension, slack_tension=slack)
+        start = zero_at_start(
+            located.position, located.tension, slack_tension=slack, stated=at_slack.position
+        )
         at_slack = start or at_slack
     for name, tension in zip(plan.specimens, located.tension, strict=True):
         reference = campaign.specimens[name].reference_tension or tension_of_layout

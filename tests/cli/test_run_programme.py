@@ -456,12 +456,16 @@ def test_a_pull_that_breaks_above_the_rated_strength_is_no_mistake(tmp_path, n_a
 
 
 @pytest.mark.parametrize(
-    ("begins", "datum"),
-    [(10.0, '"pin-to-pin"'), (-0.6, '"displacement", reference_length = "10 m"')],
+    ("begins", "datum", "waits"),
+    [
+        (10.0, '"pin-to-pin"', 8),
+        (-0.6, '"displacement", reference_length = "10 m"', 8),
+        (0.6, '"displacement", reference_length = "10 m"', 0),
+    ],
 )
-def test_a_slow_log_begins_slack_with_fewer_readings_than_a_rest(tmp_path, begins, datum):
+def test_a_slow_log_begins_slack_with_fewer_readings_than_a_rest(tmp_path, begins, datum, waits):
     time = np.arange(0.0, 240.0, 3.0)
-    place = begins + np.clip(time - 8, 0, None) / 400  # three readings at slack, then 1 MN
+    place = begins + np.clip(time - waits, 0, None) / 400  # up to three at slack, then 1 MN
     load = 1e5 * (place - begins)
     log_of_loads(tmp_path / "pull.csv", time, load, position=place)
     layout = "\n".join([

@@ -195,3 +195,17 @@ def test_errors_that_last_as_long_as_a_window_are_in_the_uncertainty():
     known = np.isfinite(off)
     assert known.sum() > 180
     assert np.sqrt(np.mean(off[known] ** 2)) < 1.5
+
+
+def test_few_readings_have_the_scatter_of_those_around_them():
+    """A stiff start with much scatter, many readings, and windows of five readings at last."""
+    noise = np.random.default_rng(5)
+    parts = (0.0, 0.01, 1500), (0.01, 0.06, 300), (0.06, 0.1, 80)
+    strain = np.concatenate([np.linspace(*part)[1:] for part in parts])
+    load = np.where(strain < 0.01, 1e6 * strain, 1e4 + 4e4 * (strain - 0.01))
+    load += noise.normal(0, np.where(strain < 0.01, 400.0, 20.0))
+    curves = first_loading_curves(strain[None], load[None], area=[1.0], settings=SETTINGS)
+    later = (curves.strain_bin > 0.07) & (curves.strain_bin < 0.09)
+    off = curves.tangent_modulus[0, 0, later] - 4e4
+    spread = curves.tangent_modulus_standard_uncertainty[0, 0, later]
+    assert 0.5 < np.sqrt(np.mean((off / spread) ** 2)) < 1.5

@@ -580,12 +580,16 @@ def _variance_near(squares: Floats, freedom: Floats, *, n_window: int) -> Floats
     half = n_window * ceil(_ALONE / float(np.median(usual))) // 2
     sums = np.cumsum(np.pad([np.maximum(squares, 0.0), freedom], ((0, 0), (0, 0), (1, 0))), axis=-1)
     n_bins = freedom.shape[-1]
-    low = np.clip(np.arange(n_bins) - half, 0, max(n_bins - 2 * half - 1, 0))
-    high = np.minimum(low + 2 * half + 1, n_bins)
-    total, free = sums[..., high] - sums[..., low]
-    # neighbouring windows share their samples
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.where(free >= _ALONE * n_window, total / free, np.nan)
+    found = np.full(freedom.shape, np.nan)
+    while np.isnan(found).any() and half < n_bins:  # wider where readings are few
+        low = np.clip(np.arange(n_bins) - half, 0, max(n_bins - 2 * half - 1, 0))
+        high = np.minimum(low + 2 * half + 1, n_bins)
+        total, free = sums[..., high] - sums[..., low]
+        # neighbouring windows share their samples
+        is_enough = np.isnan(found) & (free >= _ALONE * n_window)
+        found[is_enough] = total[is_enough] / free[is_enough]
+        half *= 2
+    return found
 
 
 def fit_windows(moments: BranchMoments, *, minimum_count: int, is_alone: bool = False) -> LocalFits:

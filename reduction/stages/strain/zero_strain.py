@@ -77,11 +77,14 @@ def zero_at_slack(
     return ZeroStrain(length_at_slack if position_is_length else 0.0)
 
 
-def zero_at_start(position: Floats, tension: Floats, *, slack_tension: float) -> ZeroStrain | None:
+def zero_at_start(
+    position: Floats, tension: Floats, *, slack_tension: float, stated: float | None = None
+) -> ZeroStrain | None:
     """Level of the first three readings of a log that begins slack with too few for a rest.
 
-    None if they do not stand.  ``tension`` has the shape (n_specimens, n_samples).  It is uncertain
-    by the noise of one reading, since a slow ramp may begin among them.
+    None if they do not stand, unless the first is beyond the ``stated`` length at slack: the
+    specimen was still slack there.  ``tension`` has the shape (n_specimens, n_samples).  The level
+    is uncertain by the noise of one reading, since a slow ramp may begin among them.
 
     Examples
     --------
@@ -91,14 +94,20 @@ def zero_at_start(position: Floats, tension: Floats, *, slack_tension: float) ->
     >>> print(zero_at_start(place, 1e4 * (place[None] - 7), slack_tension=200.0).position)
     7.0
     >>> late = place[2:]
-    >>> print(zero_at_start(late, 1e4 * (late[None] - 7), slack_tension=200.0))
+    >>> found = (late, 1e4 * (late[None] - 7))
+    >>> print(zero_at_start(*found, slack_tension=200.0))
     None
+    >>> print(zero_at_start(*found, slack_tension=200.0, stated=6.9).position)
+    7.0
     """
     first = position[: _FEWEST - 1]  # four are a rest
     noise = noise_range(position)
     # of the noise alone, one range of three readings in a hundred is wider
-    stands = np.ptp(first) <= noise / 3
-    if not (stands and (tension[:, : first.size] <= slack_tension).all()):
+    if not np.ptp(first) <= noise / 3:
+        if stated is None or not first[0] > stated + noise:
+            return None
+        first = first[:1]
+    if not (tension[:, : first.size] <= slack_tension).all():
         return None
     spread = np.hypot(step_of_codes(position) / 12**0.5, estimate_noise(position)[0])
     return ZeroStrain(float(np.median(first)), float(spread), is_logged=True)
