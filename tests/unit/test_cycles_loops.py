@@ -2634,3 +2634,20 @@ def test_a_rounded_turn_without_its_readings_is_on_a_chord_and_not_on_tangents()
     gap[37:44] = np.nan
     bridged, _ = bridge_gaps(gap, np.array([0]), np.array([80]))
     assert bridged.max() == pytest.approx(wave[36])
+
+
+def test_slow_cycles_of_a_sweep_have_their_extremes_where_they_are():
+    """A damper, whose force is greatest in mid-stroke, at three cycles of seven frequencies."""
+    steps = np.repeat([0.25, 0.35, 0.5, 0.7, 1.0, 1.4, 2.0], 3)
+    time = np.arange(0, (1 / steps).sum(), 0.01)
+    number = np.interp(time, np.append(0, np.cumsum(1 / steps)), np.arange(steps.size + 1))
+    rate = steps[np.minimum(number.astype(int), steps.size - 1)]
+    strain = -0.1 * np.cos(2 * np.pi * number)
+    tension = 500 * rate**0.3 * np.sin(2 * np.pi * number)
+    stands = find_standstills(time, strain, tension[None], settings=PhaseSettings())
+    cycles = find_cycles(
+        time, strain, tension[None], stands, settings=CycleSettings(waveform="other")
+    )
+    loops = close_loops(time, tension[None], strain[None], cycles, waveform="other")
+    assert time[cycles.last[1]] < 9  # the second of the slowest cycles
+    assert loops.tension_amplitude[0, 1] == pytest.approx(500 * 0.25**0.3, rel=1e-3)

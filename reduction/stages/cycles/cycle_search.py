@@ -181,8 +181,8 @@ def label_phases(
 
 
 _HINT = (
-    "Check cycles.control, cycles.band, phases.minimum_duration (a longer pause at a turn is a hold)"
-    " and the layout, or state the kind of the test "
+    "Check cycles.control, cycles.band, phases.minimum_duration (a longer pause at a turn is a"
+    " hold) and the layout, or state the kind of the test "
     "(relaxation, creep, quasi-static, tensile)."
 )
 

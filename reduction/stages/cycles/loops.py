@@ -1213,7 +1213,7 @@ def _measure(
     branches: tuple[Integers, Integers],
     waveform: Waveform,
     control: Control,
-    reach: tuple[int, int],
+    reach: tuple[Integers, Integers],
     turn: Turn,
     ways: tuple[int, int],
     alone: bool,
@@ -1558,7 +1558,7 @@ def close_loops(
         of_reading = partial(noise_beside_sine, readings=per_cycle) if is_coarse else reading_noise
     noises = [(of_reading(force), of_reading(stretch)) for force, stretch in
               zip(tension, strain, strict=True)]  # fmt: skip
-    branches = np.median(cycles.branch_last - cycles.branch_first, axis=0)
+    branches = cycles.branch_last - cycles.branch_first
     ways = [(way_of_series(force, cycles), way_of_series(stretch, cycles)) for force, stretch in
             zip(tension, strain, strict=True)]  # fmt: skip
     answer = int(control == "load")
@@ -1569,7 +1569,9 @@ def close_loops(
     # on a plateau the driven channel turns anywhere, the other one at its beginning
     share = 1.0 if waveform == "other" else _REACH_OF_TURN
     # creep after a fast stroke turns well within the slow one
-    on_rise, on_fall = (max(int(share * one), 1) for one in branches)
+    usual = np.median(branches, axis=0)
+    # a slow cycle of a sweep of frequency is searched as far as it is long
+    reach = np.maximum(share * np.maximum(branches, usual), 1).astype(np.int64).T
     # the middles of rise and fall, at least a sample apart and away from either end
     middles = (cycles.branch_first + cycles.branch_last).T // 2
     middles[0] = np.clip(middles[0], cycles.first + 1, cycles.last - 2)
@@ -1587,7 +1589,7 @@ def close_loops(
             measured[index, :, block] = _measure(
                 time[low:high], force[low:high], stretch[low:high], basis, middles[:, block] - low,
                 (cycles.branch_first[block] - low, cycles.branch_last[block] - low),
-                waveform, control, (on_rise, on_fall), turns[index], ways[index],
+                waveform, control, (reach[0, block], reach[1, block]), turns[index], ways[index],
                 is_alone(cycles, time.size),
             )  # fmt: skip
 
@@ -1623,7 +1625,8 @@ def close_loops(
         else:
             levels = _levels_at_turns(
                 measured[index], both, cycles, readings,
-                turn=turns[index], ways=ways[index], answer=answer, reach=max(on_rise, on_fall),
+                turn=turns[index], ways=ways[index], answer=answer,
+                reach=max(int(share * usual.max()), 1),
                 noise_of_driven=noises[index][1 - answer], may_dwell=waveform == "other",
             )  # fmt: skip
             integrate_block = partial(

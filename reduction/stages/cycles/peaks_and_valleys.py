@@ -45,7 +45,7 @@ def peaks_and_valleys(
     branch_last: Integers,
     *,
     ends: tuple[Integers, Integers],
-    reach: tuple[int, int],
+    reach: tuple[Integers, Integers],
     turn: Turn,
     way: int,
     moved: Floats,
@@ -115,7 +115,7 @@ class _Turns(NamedTuple):
     peak: Integers
     end: Integers
     after_peak: Integers
-    reach: tuple[int, int]
+    reach: tuple[Integers, Integers]
 
 
 def _at_sharp_turns(
