@@ -245,9 +245,9 @@ def parts_of_cycles(
     loops = without_backward_loops(loops)
     if is_open:
         loops = without_loss(loops)
-    # both channels have the corner of a ramp, separated by the stated lag
+    # both channels have the turn of the machine, separated by the stated lag
     alike = np.zeros(len(specimens))
-    if settings.cycles.waveform == "triangular" and np.any(lag):
+    if settings.cycles.waveform != "sinusoidal" and np.any(lag):
         late = np.array(lag)
         known = loops.frequency[loops.frequency > 0]
         both = turns_alike(

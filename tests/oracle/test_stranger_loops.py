@@ -110,3 +110,49 @@ def test_the_advice_on_a_reversed_channel_gives_the_truth(tmp_path):
         for name in JUDGED[1:]:
             stated = float(found[f"test_{name}_standard_uncertainty"][0])
             assert abs(float(found[f"test_{name}"][0]) - piece[name]) <= WITHIN * stated, name
+
+
+def test_what_both_channels_of_a_smooth_wave_miss_at_its_turns_is_not_in_the_stiffness(tmp_path):
+    """20.3 readings in a cycle of a skewed sine; a specimen of 800 N and 1 m."""
+    time = np.arange(0, 24.36, 0.1)
+    phase = 2 * np.pi * time / 2.03
+    strain = 0.2 + 0.1 * np.sin(phase + 0.4 * np.sin(phase))
+    noise = np.random.default_rng(5).normal(0, 1, (2, time.size))
+    log = np.column_stack([time, strain + 1e-5 * noise[0], 800 * strain + 0.05 * noise[1]])
+    np.savetxt(
+        tmp_path / "D-1.csv",
+        log,
+        fmt="%.6f",
+        delimiter=",",
+        header="# synthetic\nt,x,F",
+        comments="",
+    )
+    (tmp_path / "campaign.toml").write_text("""
+[campaign]
+id = "smooth"
+title = "synthetic skewed sine"
+synthetic = true
+[specimens.piece]
+kind = "other"
+gauge_length = "1 m"
+[layouts.log]
+format = "delimited"
+comment = "#"
+[layouts.log.channels]
+time = { column = "t", unit = "s" }
+crosshead_position = { column = "x", unit = "m", datum = "displacement", reference_length = "1 m" }
+tension.1 = { column = "F", unit = "N" }
+[uncertainty]
+lag = "2 ms"
+[tests.D-1]
+layout = "log"
+specimens = ["piece"]
+file = "D-1.csv"
+waveform = "other"
+""")
+    reduction("run", tmp_path / "campaign.toml", cwd=tmp_path)
+    (archive,) = (tmp_path / "processed").glob("*/D-1.nc")
+    with xr.open_dataset(archive, group="cycles") as found:
+        stated = float(found.test_apparent_spring_constant_standard_uncertainty[0])
+        assert abs(float(found.test_apparent_spring_constant[0]) - 800) < 3 * stated
+        assert stated < 0.01 * 800
