@@ -5,13 +5,16 @@ import pytest
 from refusals import refusals
 
 from reduction.record.errors import DataError, FitError
+from reduction.record.settings import HoldSettings, PhaseSettings
 from reduction.stages.holds.prony_series import (
     _exponentials,
     _ramp_factor,
     fit_prony,
     prony_tension,
 )
+from reduction.stages.holds.relaxation_and_creep import reduce_holds
 from reduction.stages.holds.relaxation_numbers import logarithmic_blocks
+from reduction.stages.standstills import find_standstills
 
 RAMP = 4.0
 TERMS = {
@@ -37,8 +40,9 @@ def hold(n_terms, *, duration=600.0, step=0.1, noise=0.3, seed=0):
 def fit(elapsed, series, **options):
     blocks = logarithmic_blocks(elapsed, series)
     return fit_prony(
-        blocks.elapsed, blocks.value, weights=blocks.weight, ramp_duration=RAMP, **options
-    )
+        blocks.elapsed, blocks.value, weights=blocks.weight, ramp_duration=RAMP,
+        time_variance=blocks.time_variance, **options,
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize("n_terms", [1, 2, 3])
@@ -202,3 +206,32 @@ REFUSED = {
 
 
 test_refusals = refusals(REFUSED)
+
+
+@pytest.mark.parametrize("noise", [1e-5, 1e-3])
+def test_terms_of_a_quiet_log_that_is_slow_beside_its_ramp(noise):
+    """Synthetic: a ramp of 2 s read each half second, noise as a share of the tension lost."""
+    off = []
+    for seed in range(16):
+        rng = np.random.default_rng(seed)
+        time = np.arange(0, 800, 0.5) + rng.uniform(0, 0.5)
+        size, times = rng.uniform(30, 80, 2), np.array([4.0, 60.0]) * rng.uniform(0.8, 1.25, 2)
+        since = time - 22
+        after = prony_tension(
+            np.maximum(since, 0), tension=size, relaxation_time=times, long_time_tension=300.0,
+            ramp_duration=2.0,
+        )  # fmt: skip
+        ramp = np.clip(since + 2, 0, 2)[:, None]
+        during = 150 * ramp[:, 0] + (1 - np.exp(-ramp / times)) @ (size * times / 2)
+        load = np.where(since > 0, after, during)
+        load += rng.normal(0, noise * size.sum(), time.size)
+        place = ramp[:, 0] / 2
+        stands = find_standstills(time, place, [load], settings=PhaseSettings(), is_held=True)
+        found = reduce_holds(
+            time, place, [load], [place], stands, specimens=("synthetic",), settings=HoldSettings()
+        )[-1]
+        off += [
+            (found.prony_tension - size) / found.prony_tension_standard_uncertainty,
+            (found.prony_time - times) / found.prony_time_standard_uncertainty,
+        ]
+    assert np.sqrt(np.mean(np.square(off))) < 1.3

@@ -141,6 +141,7 @@ def _find_ramp(
     centre = end - before
     spread = max(0.0, square - before**2)
     ended, end_uncertainty = ramp_end_time(seconds, place, band=band)
+    begins = -ramp_end_time(-seconds[::-1], place[::-1], band=band)[0]
     on_ramp = int(np.searchsorted(seconds, ended))
     return _Ramp(
         start_time=float(seconds[0]),
@@ -149,11 +150,11 @@ def _find_ramp(
         duration=min(end - float(seconds[0]), float(np.sqrt(12 * spread))),
         stiffness=_upper_slope(place, load),
         end_uncertainty=end_uncertainty,
-        # a chord across the corner at the end would lie below it
+        # a chord across the corner at either end would miss it
         tension=np.interp(
             np.linspace(seconds[0], ended, _TIMES_OF_RAMP),
-            np.append(seconds[:on_ramp], ended),
-            np.append(load[:on_ramp], np.nan),
+            np.concatenate([seconds[:1], [begins], seconds[1:on_ramp], [ended]]),
+            np.concatenate([load[:1], load[:1], load[1:on_ramp], [np.nan]]),
         )
         if adds is load
         else _EMPTY,

@@ -164,7 +164,8 @@ term would be the corner of the ramp, not the specimen. [1]"""
 LARGEST_SHARE = 0.5
 """Relative uncertainty of a term, or of its time, beyond which there is no series. [1]"""
 
-BLOCK_ERROR = 2e-4
+LEAST_MISFIT = 2e-4
+"""Misfit below which a series is not judged, as a share of the range of tension. [1]"""
 
 LARGEST_LOG = 50.0
 
@@ -259,6 +260,7 @@ def fit_prony(
     maximum_terms: int = 3,
     weights: ArrayLike | None = None,
     unsure: ArrayLike | None = None,
+    time_variance: ArrayLike = 0.0,
     known_to: float = 0.0,
 ) -> PronyFit:
     r"""Prony series of a relaxation with as many terms as the record supports.
@@ -281,6 +283,9 @@ def fit_prony(
         Inverse relative variances. [1]
     unsure : array_like, shape (n_samples,), optional
         Change of the tensions for an error, common to all, of one standard uncertainty. [N]
+    time_variance : array_like, shape (n_samples,), optional
+        Variance of the times whose mean a sample is: the mean of an exponential exceeds that at
+        the mean time. [s2]
     known_to : float, optional
         Standard uncertainty of tension that is not noise: the error left by a correction. [N]
 
@@ -303,7 +308,7 @@ def fit_prony(
     :math:`n' \ln(S/n) + p \ln n'`, where :math:`n' = n (1 - r_1)/(1 + r_1)` is the number of
     independent samples, with :math:`r_1` the correlation of neighbouring residuals in
     the fit in which it is least; :math:`S/n` is at least 2e-4 of the range of
-    tension, squared, which is the error of block means, and at least ``known_to``
+    tension, squared, since no specimen is a series to better than that, and at least ``known_to``
     squared.  A fit is excluded if a term is negative, a time is more than twice the record or
     not resolved at its start, or a term or its time is uncertain by more than half.  No series
     is reported if an excluded one has a criterion lower by more than 10, for then the
@@ -330,13 +335,15 @@ def fit_prony(
     shortest = max(0.5 * float(np.median(np.diff(time[:8]))), SHORTEST_SHARE * ramp_duration)
     longest = float(time[-1])
     grid = np.geomspace(shortest, LONGEST_TIME * longest, GRID_TIMES)
+    own = np.broadcast_to(time_variance, time.shape)[:, None]
 
     def basis(log_times: Floats) -> tuple[Floats, Floats]:
         # A search that strays stays finite.
         times = np.exp(np.minimum(np.maximum(log_times, -LARGEST_LOG), LARGEST_LOG))[:, None, :]
-        decay = _exponentials(time, times)
+        decay, of_mean = _exponentials(time, times), own / times**2
         level = np.ones((len(log_times), time.size, 1))
-        return np.concatenate([level, decay], axis=2), decay * (time[:, None] / times)
+        slopes = decay * (time[:, None] / times * (1 + of_mean / 2) - of_mean)
+        return np.concatenate([level, decay * (1 + of_mean / 2)], axis=2), slopes
 
     fits: dict[int, SeparableFit] = {}
     refused: list[str] = []
@@ -356,7 +363,7 @@ def fit_prony(
         default=1.0,
     )
     independent = time.size / inflation
-    floor = max((BLOCK_ERROR * float(np.ptp(load))) ** 2, known_to**2, np.finfo(float).tiny)
+    floor = max((LEAST_MISFIT * float(np.ptp(load))) ** 2, known_to**2, np.finfo(float).tiny)
     scores: dict[int, float] = {}
     supported: list[int] = []
     for n_terms, fit in sorted(fits.items()):

@@ -535,6 +535,7 @@ def _prony(
             maximum_terms=settings.maximum_terms,
             weights=blocks.weight,
             unsure=unsure.value,
+            time_variance=blocks.time_variance,
             known_to=known_to,
         )
     except FitError as error:
