@@ -816,22 +816,23 @@ def _stays_slow(
     approach = find_approach(time, values, begin=begin, first=first, last=last, noise_range=noise)
     if approach is None:
         return False
-    if time[last] - time[approach.end] < _LASTS * approach.stroke / approach.rate:
-        return False
     held = values[approach.end : last + 1]
-    low, high = finite_extremes(held)
-    if hunts:
-        return high - low <= _HUNTED_SHARE * approach.stroke
-    if not high - low <= NEAR_SHARE * approach.stroke + noise:
-        return False
     step = median_step(time)
     length = max(ceil(noise / (2 * SLOW_SHARE * approach.rate * step)), 1)
-    least, greatest = _block_extremes(held, length)
-    if least.size < 2:
-        return True
-    spread = np.maximum(greatest[1:], greatest[:-1]) - np.minimum(least[1:], least[:-1])
-    is_slow = spread <= 2 * SLOW_SHARE * approach.rate * length * step + noise
-    return bool(is_slow[int(np.argmax(is_slow)) :].all()) and bool(is_slow.any())
+    if not hunts:
+        least, greatest = _block_extremes(held, length)
+        if least.size > 1:
+            spread = np.maximum(greatest[1:], greatest[:-1]) - np.minimum(least[1:], least[:-1])
+            slow = np.flatnonzero(spread <= 2 * SLOW_SHARE * approach.rate * length * step + noise)
+            if slow.size == 0 or slow[-1] - slow[0] >= slow.size:
+                return False
+            held = held[: (int(slow[-1]) + 2) * length]  # the departure may be within the tolerance
+    lasts = time[approach.end + held.size - 1] - time[approach.end]
+    if lasts < _LASTS * approach.stroke / approach.rate:
+        return False
+    low, high = finite_extremes(held)
+    share, own = (_HUNTED_SHARE, 0.0) if hunts else (NEAR_SHARE, noise)
+    return high - low <= share * approach.stroke + own
 
 
 _WINDOW, _WIDER = 64, 3.0  # samples; range of normal noise in a record over that in a window

@@ -590,3 +590,21 @@ def test_straight_ramps_of_ten_minutes_in_noise_have_no_holds(noise):
         stands = find_tension_stands(time, load / 100, [load], settings=PhaseSettings())
         found += int(np.sum((stands.start_time > 300) & (stands.end_time < 5700)))
     assert found <= 1
+
+
+@pytest.mark.parametrize("interval", [0.1, 0.5])
+def test_a_drift_of_a_hold_does_not_part_it_where_the_next_ramp_leaves(interval):
+    """Synthetic: three steps of 1 m in 20 s, each held for 1,000 s with a drift of 5 mm."""
+    time = np.arange(0, 3080, interval)
+    knots = [0, 20]
+    place = [0.0, 0.0]
+    for step in range(3):
+        knots += [knots[-1] + 20, knots[-1] + 1020]
+        place += [1.005 * step + 1, 1.005 * (step + 1)]
+    position = np.interp(time, knots, place)
+    position += np.random.default_rng(2).normal(0, 1e-5, time.size)
+    found = find_standstills(
+        time, position, [100 * position], settings=PhaseSettings(), is_held=True
+    )
+    assert found.start_time == pytest.approx([0, 40, 1060, 2080], abs=2 * interval)
+    assert found.end_time == pytest.approx([20, 1040, 2060, 3080], abs=2 * interval)
