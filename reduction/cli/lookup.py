@@ -318,8 +318,9 @@ def _numbers(name: str, text: str, line: LineSource) -> Floats:
         )
     except SettingsError as error:
         raise SettingsError(
-            f"--{name.replace('_', '-')}: {error.problem}", found=error.found, needed=error.needed
-        ) from error
+            f"--{name.replace('_', '-')}: {error.problem}", found=error.found, needed=error.needed,
+            hint=error.hint,
+        ) from error  # fmt: skip
 
 
 def list_sources(source: str, search: Mapping[str, Any], *, output: CommandOutput) -> None:

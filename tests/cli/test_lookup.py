@@ -316,6 +316,10 @@ def test_what_there_is(command):
             "--frequency: unit 'lbf'",
         ),
         (
+            (NYLON, "--quantity", "quasi_static_spring_constant", "--mean-tension", "0.6 tonnes"), 2,
+            'in tonnes in "tf"',
+        ),
+        (
             (
                 NYLON, "--quantity", "relaxation_time", "--frequency", "2 Hz", "--mean-tension",
                 "21 %RBS", "--tension-amplitude", "8.5 %RBS",
