@@ -26,6 +26,7 @@ from reduction.prediction.hose_product import HoseDesign
 from reduction.prediction.hose_tension import predict_hose
 from reduction.quantities.units import Dimension, scale_to_si
 from reduction.readers.layout import Layout
+from reduction.record.arrays import MAD_TO_DEVIATION
 from reduction.record.errors import ReductionError, SettingsError
 from reduction.record.measurement import Bools, Floats, Specimen, SpliceMarks
 from reduction.record.notes import Note, note
@@ -71,6 +72,10 @@ _GREATER = 1.05  # ratio of stretch before a test to that in the test
 _MOST_COMPARED = 40  # tests of one specimen
 
 _FEWEST_LIKE = 3  # other specimens of the same kind
+
+# a batch: so many others at one strain or load, after as many tests; how far one may lie off their
+# median, in their scatter and at least. Of sound ones at most 0.3 % do at a scatter of 10 %
+_FEWEST_OF_BATCH, _ONE_LEVEL, _OF_SCATTER, _LEAST_OFF = 7, 1.05, 8.0, 1.25
 
 _FEWEST_COPIED = 3  # rows of marks: fewer can be equal by chance
 
@@ -578,6 +583,8 @@ def _of_pairs(
         # a test that others show to be wrong would make those beside it look wrong
         known = {test for test, one in odd if one.subject == name}
         compared = [one for one in several if one.plan.id not in known][:_MOST_COMPARED]
+        if not compared:
+            continue
         softens = campaign.specimens[name].kind in ("rubber tether", "elastomer")
         unlike = list(_of_stiffness(name, compared, models, softens=softens))
         yield from unlike
@@ -589,7 +596,7 @@ def _off_other_specimens(
     campaign: Campaign, by_specimen: Mapping[str, Sequence[Survey]], models: Models
 ) -> Iterator[tuple[str, Note]]:
     """Find tests whose modulus differs from that of most other specimens of the same kind."""
-    groups: dict[tuple[str, ...], list[tuple[Survey, str, float, float]]] = {}
+    groups: dict[tuple[str, ...], list[tuple[Survey, str, float, float, int]]] = {}
     for name, several in by_specimen.items():
         made = campaign.specimens[name]
         # a hose is as stiff as its cords and their angle make it
@@ -602,27 +609,39 @@ def _off_other_specimens(
         # what was stretched further before may be softer
         is_first = before <= _GREATER * strain
         is_first |= _loads_set(several) & (_before(several, stress) <= _GREATER * stress)
+        n_before = _are_before(several).sum(axis=1)
         for place in np.flatnonzero((strain > 0) & (stress > 0) & is_first):
-            rows.append((several[place], name, strain[place], stress[place]))
+            rows.append((several[place], name, strain[place], stress[place], n_before[place]))
     for rows in groups.values():
-        if len({name for _, name, _, _ in rows}) <= _FEWEST_LIKE:
+        if len({name for _, name, *_ in rows}) <= _FEWEST_LIKE:
             continue
-        kind = np.array([survey.plan.kind for survey, _, _, _ in rows])
+        kind = np.array([survey.plan.kind for survey, *_ in rows])
         rate = np.array([
             np.nan if survey.levels is None else survey.levels.frequency for survey, *_ in rows
         ])  # fmt: skip
-        names = np.array([name for _, name, _, _ in rows])
-        strain, stress = np.array([row[2:] for row in rows]).T
+        names = np.array([name for _, name, *_ in rows])
+        strain, stress, n_before = np.array([row[2:] for row in rows]).T
         modulus = stress / strain
         load_set = _loads_set([survey for survey, *_ in rows])
-        for place, (survey, name, _, _) in enumerate(rows):
-            like = _is_like(strain, strain[place], _LIKE_STRAIN)
-            like |= load_set & load_set[place] & _is_like(stress, stress[place], _LIKE_STRAIN)
-            like &= _is_like(rate, rate[place], _LIKE_RATE)
-            like &= (names != name) & (kind == kind[place])
+        for place, (survey, name, *_) in enumerate(rows):
+            apart, of_stress, of_rate = (
+                np.abs(np.log(values / values[place])) for values in (strain, stress, rate)
+            )
+            by_load = load_set & load_set[place]
+            apart[by_load] = np.minimum(apart, of_stress)[by_load]
+            ones = (names != name) & (kind == kind[place])
+            like = ones & (apart < np.log(_LIKE_STRAIN)) & (of_rate < np.log(_LIKE_RATE))
+            batch = ones & (np.maximum(apart, of_rate) < np.log(_ONE_LEVEL))
+            batch &= n_before == n_before[place]
+            limit = _JUMP
+            if np.unique(names[batch]).size >= _FEWEST_OF_BATCH:
+                size = np.log(modulus[batch])
+                scatter = MAD_TO_DEVIATION * np.median(np.abs(size - np.median(size)))
+                limit = float(np.clip(np.exp(_OF_SCATTER * scatter), _LEAST_OFF, _JUMP))
+                like = batch
             others = np.unique(names[like])
             ratio = modulus[place] / modulus[like]
-            for far in (ratio > _JUMP, ratio < 1 / _JUMP):
+            for far in (ratio > limit, ratio < 1 / limit):
                 unlike = np.setdiff1d(others, names[like][~far])
                 if others.size >= _FEWEST_LIKE and 3 * unlike.size > 2 * others.size:
                     seen = dict.fromkeys(words_of_ratio(one) for one in np.sort(ratio[far]))
@@ -644,8 +663,13 @@ def _strains(name: str, several: Sequence[Survey], models: Models) -> tuple[Floa
 
 def _before(several: Sequence[Survey], values: Floats) -> Floats:
     """Greatest value of the tests before each (0 without a known order)."""
+    return np.where(_are_before(several), np.nan_to_num(values), 0.0).max(axis=1)
+
+
+def _are_before(several: Sequence[Survey]) -> Bools:
+    """Whether a test (column) was made before another (row)."""
     order = np.array([np.nan if one.plan.order is None else one.plan.order for one in several])
-    return np.where(order < order[:, None], np.nan_to_num(values), 0.0).max(axis=1)
+    return order < order[:, None]
 
 
 def _greatest_tension(name: str, several: Sequence[Survey]) -> Floats:

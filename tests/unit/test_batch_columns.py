@@ -220,6 +220,21 @@ def five_specimens(stiffness, *, material="rubber", kind="elastomer"):
     return SimpleNamespace(specimens=specimens), tests
 
 
+def pulled_to(name, order, load, strain):
+    """A cyclic test between set loads."""
+    plan = SimpleNamespace(
+        id=f"{name}-{order}", log=f"{name}-{order}", kind="cyclic", order=order, control="load",
+        specimens=(name,), failed=False, step_place=None, step_range=None, files=((None, "log"),),
+    )  # fmt: skip
+    extremes = Extremes(
+        greatest_tension={name: load}, greatest_measured_strain={name: strain}, is_stepwise=True
+    )
+    return SimpleNamespace(
+        plan=plan, sources=(SimpleNamespace(sha256=plan.id),), extremes=extremes,
+        levels=SimpleNamespace(frequency=0.1),
+    )  # fmt: skip
+
+
 @pytest.mark.parametrize(
     ("stiffness", "material", "n_notes"),
     [
@@ -238,6 +253,28 @@ def test_a_specimen_unlike_most_others_of_its_make_is_told(stiffness, material, 
         assert "4 of 4 other specimens" in str(one) and unit in str(one)
 
 
+@pytest.mark.parametrize(
+    ("scatter", "share", "n_notes"),
+    [
+        (0.03, (10 / 12) ** 2, 2),  # 10 mm rope as 12 mm
+        (0.03, 0.85, 0),
+        (0.10, (10 / 12) ** 2, 0),  # within eight times the scatter of the others
+    ],
+)
+def test_one_of_a_batch_is_judged_by_the_scatter_of_the_others(scatter, share, n_notes):
+    sizes = np.append(share, 1 + scatter * np.array([-1, 0.3, 1, -0.5, 1.2, -1.1, 0.1]))
+    specimens, surveys = {}, []
+    for place, size in enumerate(sizes):
+        name = f"rope-{place}"
+        specimens[name] = Specimen(name=name, kind="rope", diameter=(0.012,))
+        for order, load in ((1, 12e3), (2, 18e3)):
+            surveys.append(pulled_to(name, order, load, 1e-5 * load / size))
+    campaign = SimpleNamespace(specimens=specimens, layouts={"log": layout("Force")})
+    found = list(_of_pairs(campaign, surveys, {}))
+    told = [("rope-0-1", "stiffness-off-others"), ("rope-0-2", "stiffness-off-others")]
+    assert [(test, one.code) for test, one in found] == told[:n_notes]
+
+
 def test_hoses_of_another_angle_are_not_told():
     campaign, tests = five_specimens(460.0 * 4.448, kind="stretch hose")
     assert not list(_off_other_specimens(campaign, tests, {}))
@@ -254,19 +291,7 @@ def test_a_log_of_another_rope_is_told_at_the_load_of_the_others_and_its_neighbo
         specimens[name] = Specimen(name=name, kind="rope", diameter=(0.012,), material="nylon")
         strains = (0.122, 0.164 / (2.6 if place == 4 else 1.0), 0.167)
         for order, (load, strain) in enumerate(zip((12e3, 18e3, 18e3), strains, strict=True), 1):
-            plan = SimpleNamespace(
-                id=f"{name}-{order}", log=f"{name}-{order}", kind="cyclic", order=order,
-                control="load", specimens=(name,), failed=False, step_place=None,
-                step_range=None, files=((None, "log"),),
-            )  # fmt: skip
-            extremes = Extremes(
-                greatest_tension={name: load}, greatest_measured_strain={name: strain},
-                is_stepwise=True,
-            )  # fmt: skip
-            surveys.append(SimpleNamespace(
-                plan=plan, sources=(SimpleNamespace(sha256=plan.id),), extremes=extremes,
-                levels=SimpleNamespace(frequency=0.1),
-            ))  # fmt: skip
+            surveys.append(pulled_to(name, order, load, strain))
     campaign = SimpleNamespace(specimens=specimens, layouts={"log": layout("Force")})
     found = list(_of_pairs(campaign, surveys, {}))
     assert [(test, one.code) for test, one in found] == [("rope-4-2", "stiffness-off-others")]
