@@ -716,7 +716,8 @@ def _table(
     ]
     is_weaker = np.isfinite(line.tensile_strength)
     # rope makers and rules state stiffness relative to break strength
-    is_share = is_levels and found.unit == "N" and np.isfinite(line.rated_break_strength)
+    is_share = found.unit == "N" and found.quantity != "branch_tension" and not line.strength_of
+    is_share = is_share and np.isfinite(line.rated_break_strength)
     table = table_of(
         *heads, f"value\n[{unit}]", *(("value\n[MBL]",) if is_share else ()),
         *(head for head, _, _ in intervals),

@@ -459,9 +459,10 @@ def test_no_number_of_a_table_is_cut(command, level):
     answer = json.loads(command(*asked, "--json").stdout)
     lines = [re.split(r"\s{2,}", line.strip()) for line in text.splitlines()]
     (heads,) = [line for line in lines if "value [N]" in line]
-    place = heads.index("value [N]")
-    rows = [line for line in lines if len(line) == len(heads) and line is not heads]
-    assert len(rows) == len(answer["value"])
+    place, below = heads.index("value [N]"), lines.index(heads) + 1
+    rows = lines[below : below + len(answer["value"])]
+    shares = heads.index("value [MBL]"), answer["value_over_strength"]
+    assert [float(row[shares[0]]) for row in rows] == pytest.approx(shares[1], rel=5e-3)
     for row, value, low, high in zip(
         rows, answer["value"], *answer["surface_interval"], strict=True
     ):
