@@ -330,6 +330,7 @@ def _find_zero_strain(survey: Survey, located: Located, campaign: Campaign, plan
     at_slack = zero_at_slack(
         located.standstills,
         located.position,
+        located.tension,
         position_is_length=is_length,
         length_at_slack=length_at_slack(layouts),
     )

@@ -525,6 +525,12 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         " {gauge:.4g} m, near which the specimen starts to carry load: it hangs slack and bent at"
         " the rest, and strain is zero at the gauge length",
     ),
+    "zero-behind-load": (
+        "warning",
+        "strain is zero at a slack rest that the log has only after the specimen was loaded: what"
+        " it had lengthened by then is missing from its strains. Log a rest before the test, or"
+        " state a displacement from slack, or reference_tension",
+    ),
     "strain-from-tension": (
         "note",
         "strain is zero at the reference tension of {tension:.4g} N, for which the gauge length is"

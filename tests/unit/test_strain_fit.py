@@ -12,7 +12,12 @@ from reduction.record.errors import DataError, FitError
 from reduction.record.measurement import Specimen, SpliceMarks
 from reduction.record.settings import PhaseSettings, StrainSettings
 from reduction.stages.standstills import Standstills, find_standstills
-from reduction.stages.strain.strain_fit import PooledMarks, fit_strain_model, fit_to_marks
+from reduction.stages.strain.strain_fit import (
+    PooledMarks,
+    _without_marks,
+    fit_strain_model,
+    fit_to_marks,
+)
 from reduction.stages.strain.strain_model import (
     StrainModel,
     strain_by_model,
@@ -273,17 +278,38 @@ def rests(positions, is_rest):
     )  # fmt: skip
 
 
+LOAD = np.zeros((1, 32))
+
+
 def test_zero_strain_is_at_the_first_rest():
     stands = rests([0.5, 0.1, 0.2], [False, True, True])
     place = np.array([0.5, 0.1, 0.2, *np.arange(1.0, 30.0)])
-    assert zero_at_slack(stands, place, position_is_length=True).position == 0.1
+    assert zero_at_slack(stands, place, LOAD, position_is_length=True).position == 0.1
+
+
+@pytest.mark.parametrize(
+    ("rest", "stated", "zero", "said"),
+    [(0.13, 0.1, 0.1, False), (0.05, 0.1, 0.05, True), (0.13, None, 0.13, True)],
+)
+def test_a_rest_behind_the_loading_is_zero_strain_only_without_a_shorter_statement(
+    rest, stated, zero, said
+):
+    # cycled from the first reading on, and let slack at the end with a set
+    place = np.array([0.5, 0.7, rest, *np.full(29, rest)])
+    load = np.array([[300.0, 500.0, *np.zeros(30)]])
+    stands = rests([0.5, 0.7, rest], [False, False, True])
+    found = zero_at_slack(stands, place, load, position_is_length=True, length_at_slack=stated)
+    assert found.position == zero
+    specimen = Specimen("rope", gauge_length=0.1)
+    codes = [one.code for one in _without_marks(specimen, "gauge-length", found, None).notes]
+    assert ("zero-behind-load" in codes) is said
 
 
 def test_zero_strain_of_a_coarse_position_is_uncertain_by_a_code():
     stands = dataclasses.replace(rests([0.1], [True]), last=np.array([99]))
     # a position in steps of a millimetre stands anywhere within one: half of it over root three
     coarse = np.round(np.clip(0.0003 * np.arange(1000.0) - 0.03, 0, None), 3) + 0.1
-    zero = zero_at_slack(stands, coarse, position_is_length=True)
+    zero = zero_at_slack(stands, coarse, np.zeros((1, 1000)), position_is_length=True)
     assert zero.position == pytest.approx(0.1)
     assert zero.standard_uncertainty == pytest.approx(0.5e-3 / np.sqrt(3), rel=0.05)
 
@@ -307,16 +333,18 @@ def test_zero_strain_is_that_of_a_rest_without_the_slow_ramp_after_it():
     place = 3 + 0.009 * np.clip(time - 8, 0, None)
     place += np.random.default_rng(2).normal(0, 2e-3, time.size)
     stands = find_standstills(time, place, [100 * (place - 3)], settings=PhaseSettings())
-    zero = zero_at_slack(stands, place, position_is_length=True)
+    zero = zero_at_slack(stands, place, 100 * (place[None] - 3), position_is_length=True)
     assert zero.position == pytest.approx(3, abs=2 * 2e-3 / np.sqrt(23))
 
 
 def test_without_a_rest_only_a_displacement_has_a_zero():
     stands = rests([0.5], [False])
-    assert zero_at_slack(stands, np.arange(9.0), position_is_length=False).position == 0.0
-    assert zero_at_slack(stands, np.arange(9.0), position_is_length=True).position is None
+    assert zero_at_slack(stands, np.arange(9.0), LOAD, position_is_length=False).position == 0.0
+    assert zero_at_slack(stands, np.arange(9.0), LOAD, position_is_length=True).position is None
     # the length at displacement zero, read at slack, is that of zero strain
-    stated = zero_at_slack(stands, np.arange(9.0), position_is_length=True, length_at_slack=1.5)
+    stated = zero_at_slack(
+        stands, np.arange(9.0), LOAD, position_is_length=True, length_at_slack=1.5
+    )
     assert stated.position == 1.5
 
 

@@ -869,6 +869,8 @@ def _without_marks(
         notes.append(note("gauge-length-from-reference", specimen.name, length=gauge))
     if zero.bent_at is not None:
         notes.append(note("bent-at-rest", specimen.name, length=zero.bent_at, gauge=gauge))
+    if zero.is_behind_load:
+        notes.append(note("zero-behind-load", specimen.name))
     if zero.reference_tension:
         notes.append(note("strain-from-tension", specimen.name, tension=zero.reference_tension))
         notes += _on_stated_zero(specimen.name, zero, gauge)

@@ -29,6 +29,8 @@ from reduction.stages.standstills import (
 # of the reference tension, on either side of it: there the curve of a rope is straight
 _BAND = 0.2
 
+_LOADED = 0.5  # of the greatest tension: a log begins with less before its first rest
+
 _FEWEST = 4  # samples in the band, for a line and its residual
 
 
@@ -41,6 +43,7 @@ class ZeroStrain:
     ``is_logged`` whether it is a position of the log itself, ``reference_tension`` [N] the
     tension there, zero at slack, and ``stated_position`` [m] that of the layout for this tension.
     ``bent_at`` [m] is the first rest of a specimen that is longer than this rest, and hangs bent.
+    ``is_behind_load`` says that the specimen was loaded before it rested there.
     """
 
     position: float | None = None
@@ -50,31 +53,45 @@ class ZeroStrain:
     reference_tension: float = 0.0
     stated_position: float | None = None
     bent_at: float | None = None
+    is_behind_load: bool = False
 
 
 def zero_at_slack(
     standstills: Standstills,
     position: Floats,
+    tension: Floats,
     *,
     position_is_length: bool,
     length_at_slack: float | None = None,
 ) -> ZeroStrain:
     """Position of the first rest, else that at which the layout states that the specimen is slack.
 
-    A position that is written in coarse codes is uncertain by one of them.
+    A position that is written in coarse codes is uncertain by one of them.  ``tension`` has the
+    shape (n_specimens, n_samples): at a rest behind the loading a specimen is longer than before
+    it, so the stated position counts unless the rest is shorter.
 
     Examples
     --------
     >>> none = np.empty(0)
     >>> no_rest = Standstills(none, none, none, none, none, np.empty((1, 0)), none > 0, 0.01, 5.0)
-    >>> print(zero_at_slack(no_rest, np.arange(9.0), position_is_length=False).position)
+    >>> place, load = np.arange(9.0), np.ones((1, 9))
+    >>> print(zero_at_slack(no_rest, place, load, position_is_length=False).position)
     0.0
     """
     rests = np.flatnonzero(standstills.is_rest)
-    if rests.size:
-        level = level_of_standstill(position, standstills, int(rests[0]))
-        return ZeroStrain(level, step_of_codes(position) / float(np.sqrt(12)), is_logged=True)
-    return ZeroStrain(length_at_slack if position_is_length else 0.0)
+    stated = ZeroStrain(length_at_slack if position_is_length else 0.0)
+    if not rests.size:
+        return stated
+    level = level_of_standstill(position, standstills, int(rests[0]))
+    first = int(standstills.first[rests[0]])
+    is_behind_load = any(
+        finite_extremes(load[:first])[1] > _LOADED * finite_extremes(load)[1] for load in tension
+    )
+    if is_behind_load and stated.position is not None:
+        if level > stated.position - standstills.position_tolerance:
+            return stated
+    spread = step_of_codes(position) / float(np.sqrt(12))
+    return ZeroStrain(level, spread, is_logged=True, is_behind_load=is_behind_load)
 
 
 def zero_at_start(
