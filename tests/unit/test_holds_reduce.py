@@ -643,6 +643,24 @@ def test_readings_of_the_next_ramp_are_not_in_the_hold(onward):
     assert not hold.refusals and not hold.notes
 
 
+@pytest.mark.parametrize("noise", [0.0, 0.002])
+def test_readings_of_the_next_ramp_are_not_in_a_hold_at_constant_tension(noise):
+    # noise of the load hides the first 2.5 s of a ramp, in which the crosshead moves by 0.1 m
+    time = np.arange(0.0, 240.0, STEP)
+    leaves = np.clip(time - 120, 0, None)
+    error = np.random.default_rng(3).normal(0, [[noise], [10]], (2, time.size))
+    place = np.clip(time / 2, 0, 5) + 0.01 * np.log1p(np.clip(time - 10, 0, None))
+    place += 0.04 * leaves + error[0]
+    tension = np.clip(40 * time, 0, 400) + 16 * leaves + error[1]
+    stand = replace(standstills(time, [(10.0, 122.5)], [tension]), tension_tolerance=120.0)
+    (hold,) = reduce_holds(
+        time, place, [tension], [place], stand,
+        specimens=("new",), settings=HoldSettings(), kind="creep",
+    )  # fmt: skip
+    assert abs(hold.hold_final_tension - 400) < 3 * hold.hold_final_tension_standard_uncertainty
+    assert hold.hold_duration == pytest.approx(110, abs=0.5)
+
+
 def test_a_fall_that_lasts_longer_than_a_ramp_sets_out_is_of_the_hold():
     time = np.arange(0.0, 130.0, STEP)
     tension = np.interp(time, [0, 10, 110, 130], [0, 400, 390, 350])

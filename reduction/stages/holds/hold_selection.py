@@ -488,8 +488,8 @@ def select_hold(
     seconds, place, load, stretch = select_samples(
         _is_finite_and_later(*held[:3]).__getitem__, *held
     )
-    if standstills.tension_tolerance is None and last + 1 < time.size:
-        n_held = _before_way_out(seconds, load)
+    if last + 1 < time.size:
+        n_held = _before_way_out(seconds, load if standstills.tension_tolerance is None else place)
         last -= seconds.size - n_held
         seconds, place, load, stretch = (one[:n_held] for one in (seconds, place, load, stretch))
     ramp = _ramp_before(*(one[begin : first + 1] for one in (time, moved, answer)), band=band)
@@ -533,10 +533,10 @@ def select_hold(
     )
 
 
-def _before_way_out(time: Floats, tension: Floats) -> int:
-    """How many samples of a hold come before the tension leaves with the crosshead.
+def _before_way_out(time: Floats, answer: Floats) -> int:
+    """How many samples of a hold come before the answering channel leaves with the held one.
 
-    Noise of the position hides the start of the next ramp.  Where the last reading deviates by
+    Noise of the held channel hides the start of the next ramp.  Where the last reading deviates by
     more than the noise from the line over the logarithm of time through those before, the hold ends
     with the last reading that is within the noise, or on the other side.  A longer deviation is the
     specimen's own.
@@ -554,11 +554,12 @@ def _before_way_out(time: Floats, tension: Floats) -> int:
     begin = time.size - on_line - tested
     if begin <= 0:
         return time.size
-    clock, series = np.log(time[begin:] - time[0]), tension[begin:]
+    clock, series = np.log(time[begin:] - time[0]), answer[begin:]
     line = np.polyfit(clock[:on_line], series[:on_line], 1)
     off = series - np.polyval(line, clock)
-    noise = max(float(np.std(off[:on_line])), _noise_of(series[:on_line]))
-    if not abs(off[-1]) > max(_LEAVES * noise, _ROUNDED * abs(series[0])):
+    own = float(np.std(off[:on_line])), _noise_of(series[:on_line])
+    noise = max(*own, _ROUNDED * abs(series[0]))
+    if not abs(off[-1]) > _LEAVES * noise:
         return time.size
     back = off[: -tested - 1 : -1] * np.sign(off[-1]) <= noise
     return time.size - int(np.argmax(back))
