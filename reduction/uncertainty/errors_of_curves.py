@@ -60,7 +60,7 @@ def strain_rates(
     frequency, amplitude = summary.frequency[index], summary.strain_amplitude[index]
     if not (frequency > 0 and amplitude > 0):
         return np.zeros((2, 2, test.curves.strain_bin.size))
-    if cycles.waveform == "other" and test.strain is not None:
+    if cycles.waveform == "other" and test.record is not None and test.strain is not None:
         rates = _logged_rates(
             test.record.time, test.strain[index], test.cycles.branch, test.curves.strain_bin
         )
