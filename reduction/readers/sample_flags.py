@@ -1257,6 +1257,8 @@ def _lone_steps(record: Record, settings: QualitySettings) -> list[Note]:
         told = take_samples(flags, step) | take_samples(flags, step + 1)
         told |= take_samples(of_time, step + 1)
         step = step[(told & _TOLD_OTHERWISE) == 0]
+        if index:
+            step = _without_friction(step, values, position[0])
         if step.size:
             first = int(step[0])
             low, high = values[first : first + 2].tolist()
@@ -1268,6 +1270,33 @@ def _lone_steps(record: Record, settings: QualitySettings) -> list[Note]:
 
     run_blocks(look, range(len(channels)))
     return [one for one in notes if one]
+
+
+def _without_friction(step: Integers, tension: Floats, position: Floats) -> Integers:
+    """Steps of tension without those of friction, which turn with the motion, at both of its turns.
+
+    Examples
+    --------
+    A spring beside friction, which turns at samples 20, 40 and 60, and a step of the load:
+
+    >>> place = np.arange(81)
+    >>> length = np.abs((place / 20) % 2 - 1)
+    >>> load = length + np.sign(np.diff(length, append=1.0)) + np.where(place > 50, 3, 0)
+    >>> _without_friction(np.array([19, 39, 50, 59]), load, length)
+    array([50])
+    """
+    change = take_samples(tension, step + 1) - take_samples(tension, step)
+    turns = np.zeros(step.size, dtype=bool)
+    for reach in (_NEIGHBOURS, 4 * _NEIGHBOURS):
+        ends = (step - reach, step, step + 1 + reach)
+        before, at, after = (
+            take_samples(position, np.clip(one, 0, position.size - 1)) for one in ends
+        )
+        turns |= ((at - before) * (after - at) < 0) & ((after - at) * change > 0)
+    # at one turn alone it may be a slip at the greatest load
+    both = change[turns].size and change[turns].min() < 0 < change[turns].max()
+    # the log may end beside a turn
+    return step[~turns & (step < tension.size - 1 - _NEIGHBOURS)] if both else step
 
 
 def _no_length(position: Floats, flags: _Flags) -> Bools:

@@ -31,6 +31,24 @@ def notes(*, tension=TENSION, position=POSITION, time=TIME, specimens=("new",)):
     return tuple(map(str, flag_record(record, settings=QualitySettings()).notes))
 
 
+@pytest.mark.parametrize("at", [None, 1234])
+@pytest.mark.parametrize("is_sine", [False, True])
+@pytest.mark.parametrize("until", [1860, 1903])  # between two turns, beside one
+def test_friction_that_turns_with_the_motion_is_no_step(at, is_sine, until):
+    wave = (
+        5 - 5 * np.sin(np.pi * (TIME + 0.03) / 10) if is_sine else np.abs((TIME + 0.03) % 20 - 10)
+    )
+    tension = 200 + 10 * wave + 15 * np.sign(np.diff(wave, append=wave[-1]))
+    tension += RANDOM.normal(0, TENSION_NOISE, TIME.size)
+    if at is not None:
+        tension[at:] += 60
+    position = 6.0 + 0.1 * wave + RANDOM.normal(0, POSITION_NOISE / 10, TIME.size)
+    found = notes(tension=tension[:until], position=position[:until], time=TIME[:until])
+    steps_of = [one for one in found if "steps from" in one]
+    assert len(steps_of) == (at is not None)
+    assert all(f"between sample {at} " in one and "more such" not in one for one in steps_of)
+
+
 @pytest.mark.parametrize("place", [1, 50, 100, 777, 1500, 1998])
 @pytest.mark.parametrize("size", [-60.0, 9.0, 400.0])
 def test_a_step_that_stays_is_found_at_its_sample(place, size):
