@@ -859,9 +859,9 @@ def _without_marks(
             "which the log rises",
             hint=None
             if gauge is None
-            else "If gauge_length was read where the log begins, under load, state"
-            f" reference_tension in [specimens.{specimen.name}], a little above the first reading"
-            " of the load",
+            else "If the specimen is slack where the log begins, state the load there as zero of"
+            " its channel. If gauge_length was read there under load, state reference_tension in"
+            f" [specimens.{specimen.name}], a little above the first reading of the load",
         )
     spread = specimen.gauge_length_standard_uncertainty
     notes = [note("gauge-length-exact")] if spread is None else []
