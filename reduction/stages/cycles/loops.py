@@ -1164,7 +1164,7 @@ def _change_beside(values: Floats) -> Floats:
     array([2. , 2. , 0.5])
     """
     steps = np.abs(np.diff(values))
-    return np.fmax(np.append(0.0, steps), np.append(steps, 0.0))
+    return np.asarray(np.fmax(np.append(0.0, steps), np.append(steps, 0.0)))
 
 
 def _missed_turn(amplitude: Floats | float, n_samples: Floats) -> Floats:
