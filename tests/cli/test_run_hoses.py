@@ -419,7 +419,8 @@ def test_the_stretch_of_a_hose_that_grows_with_its_cycles_is_a_rate_per_decade(c
     load += np.interp(time, [40, 50], [0, 1100])
     grid = np.linspace(0, 1.2, 2000)
     strain = np.interp(load, Truth().tension(grid) / LBF, grid)
-    strain += growth * np.log10(np.maximum(phase, 1))
+    # in the middle of its first cycle a hose has made one cycle: the slope is over their numbers
+    strain += growth * np.log10(np.maximum(phase + 0.5, 1))
     rows = [
         time,
         96 * (1 + strain) + rng.normal(0, 0.01, time.size),

@@ -242,7 +242,7 @@ def test_a_worker_of_jobs_that_is_killed_ends_the_run_with_words_and_what_was_ma
     os.killpg(process.pid, signal.SIGCONT)
     _, errors = process.communicate(timeout=60)
     assert process.returncode == 1
-    assert "a worker process died; found it at work on one of T" in errors
+    assert "a worker process died; found it working on one of T" in errors
     assert "The usual cause is too little memory" in errors and "Traceback" not in errors
     made = products(tmp_path)
     assert done <= archives(tmp_path)
