@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from reduction.record.settings import HoldSettings
-from reduction.stages.holds.hold_selection import Hold, _Ramp
+from reduction.record.settings import HoldSettings, PhaseSettings
+from reduction.stages.holds.hold_selection import Hold, _Ramp, _ramp_leads_to
 from reduction.stages.holds.prony_series import prony_tension
 from reduction.stages.holds.ramp_end import level_at_end
 from reduction.stages.holds.relaxation_and_creep import (
@@ -18,7 +18,7 @@ from reduction.stages.holds.relaxation_and_creep import (
 )
 from reduction.stages.holds.relaxation_numbers import value_at_times
 from reduction.stages.load_at_slack import LoadAtSlack
-from reduction.stages.standstills import Standstills
+from reduction.stages.standstills import Standstills, find_tension_stands
 
 STEP = 0.1
 TERMS = {"tension": np.array([40.0, 35.0]), "relaxation_time": np.array([5.0, 60.0])}
@@ -850,3 +850,36 @@ def test_a_log_that_peaks_above_the_found_start_is_refused():
     for peaks in ({"logged_peak": 450.0}, {"earlier_peak": 450.0}):
         (reason,) = reasons(replace(hold(), **peaks))
         assert reason.startswith("the log peaks at 450 N")
+
+
+def test_creep_of_a_hold_with_few_readings_before_a_ramp_with_many():
+    """Synthetic: readings at even steps of log time in the hold, each 50 ms in the ramp after it."""
+    hold = 50 + np.r_[np.arange(0, 0.5, 0.05), np.geomspace(0.5, 799, 150)]
+    time = np.r_[np.arange(0, 50, 0.05), hold, np.arange(850, 1000, 0.05)]
+    load = np.interp(time, [0, 20, 50, 850, 1000], [0, 0, 300, 300, 0])
+    off = []
+    for seed in range(8):
+        rng = np.random.default_rng(seed)
+        creep = 0.02 * np.log10(1 + np.clip(time - 50, 0, None))
+        strain = load / 300 * (1 + creep) + rng.normal(0, 2e-4, time.size)
+        tension = load + rng.normal(0, 1.0, time.size)
+        stands = find_tension_stands(
+            time, strain, [tension], settings=PhaseSettings(), is_held=True
+        )
+        found = reduce_holds(
+            time, strain, [tension], [strain], stands, specimens=("synthetic",),
+            settings=HoldSettings(), kind="creep",
+        )[0]  # fmt: skip
+        assert found.hold_start_time + found.hold_duration == pytest.approx(849, abs=1.2)
+        off.append(found.rate_per_decade / 0.02 - 1)
+    # 0.02 per decade after the end of a ramp; counted from its centre it is a little more
+    assert np.abs(off).max() < 0.1
+
+
+def test_a_position_that_steps_back_at_the_end_of_a_ramp_leads_nowhere():
+    time = np.array([0.0, 1.0, 2.0, 3.0])
+    there = _ramp_leads_to(
+        time, np.array([0.0, 1.0, 2.0, 1.0]), np.array([0.0, 10.0, 20.0, 11.0]),
+        _Ramp(-0.5, 3.5, 1.5, 3.0, 10.0), held_at=1.0, noise=(0.01, 0.1),
+    )  # fmt: skip
+    assert np.isnan(there).all()

@@ -489,7 +489,7 @@ def select_hold(
         _is_finite_and_later(*held[:3]).__getitem__, *held
     )
     if last + 1 < time.size:
-        n_held = _before_way_out(seconds, load if standstills.tension_tolerance is None else place)
+        n_held = _before_way_out(seconds, place if moved is tension else load)
         last -= seconds.size - n_held
         seconds, place, load, stretch = (one[:n_held] for one in (seconds, place, load, stretch))
     ramp = _ramp_before(*(one[begin : first + 1] for one in (time, moved, answer)), band=band)
@@ -534,12 +534,12 @@ def select_hold(
 
 
 def _before_way_out(time: Floats, answer: Floats) -> int:
-    """How many samples of a hold come before the answering channel leaves with the held one.
+    """How many samples of a hold come before the specimen answers to the next ramp.
 
-    Noise of the held channel hides the start of the next ramp.  Where the last reading deviates by
-    more than the noise from the line over the logarithm of time through those before, the hold ends
-    with the last reading that is within the noise, or on the other side.  A longer deviation is the
-    specimen's own.
+    Noise of the channel that is held hides the start of that ramp.  Where the last reading of the
+    other one deviates by more than the noise from the line over the logarithm of time through those
+    before, the hold ends with the last reading that is within the noise, or on the other side.  A
+    deviation for longer than a twentieth of the hold is the specimen's own.
 
     Examples
     --------
@@ -550,7 +550,8 @@ def _before_way_out(time: Floats, answer: Floats) -> int:
     198
     """
     on_line = min(max(time.size // 5, _FEWEST_ON_LINE), _MOST_ON_LINE)
-    tested = on_line // 4
+    before = np.searchsorted(time, time[-1] - _WAY_OUT * (time[-1] - time[0]))
+    tested = max(time.size - int(before), FEWEST_STEPS)
     begin = time.size - on_line - tested
     if begin <= 0:
         return time.size
@@ -561,9 +562,11 @@ def _before_way_out(time: Floats, answer: Floats) -> int:
     noise = max(*own, _ROUNDED * abs(series[0]))
     if not abs(off[-1]) > _LEAVES * noise:
         return time.size
-    back = off[: -tested - 1 : -1] * np.sign(off[-1]) <= noise
+    back = off[: -tested - 1 : -1] * np.sign(off[-1]) <= _LEAVES / 2 * noise
     return time.size - int(np.argmax(back))
 
+
+_WAY_OUT = 0.05  # of the time of a hold
 
 _FEWEST_ON_LINE, _MOST_ON_LINE = 32, 1 << 14
 
@@ -591,12 +594,12 @@ def _ramp_leads_to(
     if known.size < _FEWEST_ON_RAMP:
         return float("nan"), float("nan")
     load, place = tension[known[-_FEWEST_ON_RAMP:]], position[known[-_FEWEST_ON_RAMP:]]
-    # readings no farther apart than their noise cannot be extrapolated
+    # readings no farther apart than their noise, or not on the way, cannot be extrapolated
     of_position, of_tension = noise
-    if not np.abs(np.diff(place)).min() > SIGNIFICANT * of_position:
+    ahead = held_at - place[-1]
+    if not (np.diff(place) * np.sign(ahead)).min() > SIGNIFICANT * of_position:
         return float("nan"), float("nan")
     earlier, slope = np.diff(load) / np.diff(place)
-    ahead = held_at - place[-1]
     # where the curvature exceeds noise, the line lies below the curve
     bend = (slope - earlier) / (place[-1] - place[0])
     rough = max(of_tension, reading_noise(tension[begin:end]))  # steps of a converter show here
