@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from itertools import combinations
+from itertools import combinations, repeat
 
 import numpy as np
 
@@ -609,9 +609,10 @@ def _off_other_specimens(
         # what was stretched further before may be softer
         is_first = before <= _GREATER * strain
         is_first |= _loads_set(several) & (_before(several, stress) <= _GREATER * stress)
-        n_before = _are_before(several).sum(axis=1)
-        for place in np.flatnonzero((strain > 0) & (stress > 0) & is_first):
-            rows.append((several[place], name, strain[place], stress[place], n_before[place]))
+        n_before = _are_before(several).sum(axis=1).tolist()
+        for row in zip(several, repeat(name), strain, stress, n_before, is_first, strict=False):
+            if row[2] > 0 and row[3] > 0 and row[5]:
+                rows.append(row[:5])
     for rows in groups.values():
         if len({name for _, name, *_ in rows}) <= _FEWEST_LIKE:
             continue
@@ -663,7 +664,7 @@ def _strains(name: str, several: Sequence[Survey], models: Models) -> tuple[Floa
 
 def _before(several: Sequence[Survey], values: Floats) -> Floats:
     """Greatest value of the tests before each (0 without a known order)."""
-    return np.where(_are_before(several), np.nan_to_num(values), 0.0).max(axis=1)
+    return np.asarray(np.where(_are_before(several), np.nan_to_num(values), 0.0).max(axis=1))
 
 
 def _are_before(several: Sequence[Survey]) -> Bools:
@@ -679,10 +680,6 @@ def _greatest_tension(name: str, several: Sequence[Survey]) -> Floats:
 def _loads_set(several: Sequence[Survey]) -> Bools:
     """Whether the machine went to set loads, so that the strain is what the specimen gave."""
     return np.array([one.plan.control == "load" for one in several])
-
-
-def _is_like(values: Floats, value: float, limit: float) -> Bools:
-    return np.asarray(np.abs(np.log(values / value)) < np.log(limit))
 
 
 def _of_stiffness(
@@ -854,8 +851,8 @@ def _stiffness_ratio(one: Survey, other: Survey, name: str, models: Models) -> t
         return nothing
     if is_at_strain:
         return later / first, _JUMP
-    tension, other_tension = _greatest_tension(name, (one, other))
-    if not _loads_set((one, other)).all() or not _is_like(tension, other_tension, _LIKE_STRAIN):
+    loads = _greatest_tension(name, (one, other))
+    if not _loads_set((one, other)).all() or loads.max() > _LIKE_STRAIN * loads.min():
         return nothing
     return later / first, _JUMP_OF_KINDS
 
