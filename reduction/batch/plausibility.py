@@ -13,6 +13,7 @@ from dataclasses import replace
 from itertools import combinations, repeat
 
 import numpy as np
+from numpy.typing import NDArray
 
 from reduction.batch.survey import Survey
 from reduction.batch.test_history import Models
@@ -76,6 +77,8 @@ _FEWEST_LIKE = 3  # other specimens of the same kind
 # a batch: so many others at one strain or load, after as many tests; how far one may lie off their
 # median, in their scatter and at least. Of sound ones at most 0.3 % do at a scatter of 10 %
 _FEWEST_OF_BATCH, _ONE_LEVEL, _OF_SCATTER, _LEAST_OFF = 7, 1.05, 8.0, 1.25
+
+_LEAST_OFF_OWN, _MOST_OWN = 1.1, 5  # the same beside other tests of its own; how many of these
 
 _FEWEST_COPIED = 3  # rows of marks: fewer can be equal by chance
 
@@ -624,6 +627,8 @@ def _off_other_specimens(
         strain, stress, n_before = np.array([row[2:] for row in rows]).T
         modulus = stress / strain
         load_set = _loads_set([survey for survey, *_ in rows])
+        told: set[int] = set()
+        at_level = np.zeros((len(rows), len(rows)), dtype=bool)
         for place, (survey, name, *_) in enumerate(rows):
             apart, of_stress, of_rate = (
                 np.abs(np.log(values / values[place])) for values in (strain, stress, rate)
@@ -634,17 +639,16 @@ def _off_other_specimens(
             like = ones & (apart < np.log(_LIKE_STRAIN)) & (of_rate < np.log(_LIKE_RATE))
             batch = ones & (np.maximum(apart, of_rate) < np.log(_ONE_LEVEL))
             batch &= n_before == n_before[place]
-            limit = _JUMP
+            at_level[place], limit = batch, _JUMP
             if np.unique(names[batch]).size >= _FEWEST_OF_BATCH:
-                size = np.log(modulus[batch])
-                scatter = MAD_TO_DEVIATION * np.median(np.abs(size - np.median(size)))
-                limit = float(np.clip(np.exp(_OF_SCATTER * scatter), _LEAST_OFF, _JUMP))
+                limit = min(np.exp(_most_off(np.log(modulus[batch]), _LEAST_OFF)), _JUMP)
                 like = batch
             others = np.unique(names[like])
             ratio = modulus[place] / modulus[like]
             for far in (ratio > limit, ratio < 1 / limit):
                 unlike = np.setdiff1d(others, names[like][~far])
                 if others.size >= _FEWEST_LIKE and 3 * unlike.size > 2 * others.size:
+                    told.add(place)
                     seen = dict.fromkeys(words_of_ratio(one) for one in np.sort(ratio[far]))
                     words = [one for one in seen if one and "second" not in one]  # not of time
                     yield survey.plan.id, note(
@@ -652,6 +656,44 @@ def _off_other_specimens(
                         n_others=int(unlike.size), n_like=int(others.size),
                         like=", ".join(words),
                     )  # fmt: skip
+        for place, ratio, n_others in _off_own_tests(names, np.log(modulus), at_level, told):
+            survey, name, *_ = rows[place]
+            off = note("stiffness-off-own-tests", name, ratio=ratio, n_others=n_others)
+            yield survey.plan.id, off
+
+
+def _off_own_tests(
+    names: NDArray[np.str_], size: Floats, at_level: Bools, told: set[int]
+) -> Iterator[tuple[int, float, int]]:
+    """Find tests whose ratio to the other tests of the specimen is not that of the others.
+
+    Specimens of a batch scatter more than the ratio of one specimen at two levels does.
+    ``at_level`` has, for each test, those of other specimens at its level.
+    """
+    for place in sorted(set(range(size.size)) - told):
+        own = [one for one in np.flatnonzero(names == names[place]).tolist() if one != place]
+        away: list[float] = []
+        n_others = 0
+        for one in [one for one in own if one not in told][:_MOST_OWN]:
+            both = np.intersect1d(names[at_level[place]], names[at_level[one]])
+            if both.size >= _FEWEST_OF_BATCH:
+                of_others = np.array([
+                    size[at_level[place] & (names == other)].mean()
+                    - size[at_level[one] & (names == other)].mean()
+                    for other in both
+                ])  # fmt: skip
+                off = float(size[place] - size[one] - np.median(of_others))
+                away.append(off if abs(off) > _most_off(of_others, _LEAST_OFF_OWN) else 0.0)
+                n_others = both.size
+        far = [one for one in away if one]
+        if 2 * len(far) > len(away):
+            yield place, float(np.exp(np.median(far))), n_others
+
+
+def _most_off(size: Floats, least: float) -> float:
+    """How far a logarithm may lie off the median of others."""
+    scatter = MAD_TO_DEVIATION * np.median(np.abs(size - np.median(size)))
+    return float(max(_OF_SCATTER * scatter, np.log(least)))
 
 
 def _strains(name: str, several: Sequence[Survey], models: Models) -> tuple[Floats, Floats]:

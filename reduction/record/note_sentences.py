@@ -2166,6 +2166,12 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             " construction or condition"
         ),
     ),
+    "stiffness-off-own-tests": (
+        "warning",
+        "relative to its other tests it is {ratio:.3g} times as stiff as {n_others} other specimens"
+        " of its kind are relative to theirs. Check the gain and factor of load and position, and"
+        " whether the log is its own",
+    ),
     "peak-off-others": (
         "warning",
         lambda ratio, like: (
@@ -2274,7 +2280,8 @@ CAUSES = (
     "tape-off-crosshead", "marks-alike", "splices-unlike", "loops-run-backward",
     "extensometer-against-stroke", "extensometer-unlike-others", "gauge-against-length",
     "modulus-outside-band", "strength-outside-band", "tension-above-strength", "stiffness-jumps",
-    "stiffness-off-others", "peak-off-others", "run-off-plan", "mean-tension-ramps",
+    "stiffness-off-others", "stiffness-off-own-tests", "peak-off-others", "run-off-plan",
+    "mean-tension-ramps",
     "cord-stress-outside-band",
     "cords-do-not-fit", "hose-rubber-outside-band", "wrap-angle-outside-band",
     "dead-length-large", "two-designs-of-one", "hose-length-not-tested", "static-at-frequency",

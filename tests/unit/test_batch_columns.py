@@ -275,6 +275,26 @@ def test_one_of_a_batch_is_judged_by_the_scatter_of_the_others(scatter, share, n
     assert [(test, one.code) for test, one in found] == told[:n_notes]
 
 
+@pytest.mark.parametrize(("gain", "told"), [(1.15, ["rope-3-2"]), (1.05, [])])
+def test_one_test_of_a_batch_is_judged_by_the_ratio_to_the_other_tests_of_its_specimen(gain, told):
+    """The ropes scatter by 10 %, the ratio of two tests of one rope by 0.5 %."""
+    generator = np.random.default_rng(1)
+    specimens, surveys = {}, []
+    for place, size in enumerate(np.linspace(0.85, 1.15, 9)):
+        name = f"rope-{place}"
+        specimens[name] = Specimen(name=name, kind="rope", diameter=(0.012,))
+        for order, load in ((1, 12e3), (2, 18e3), (3, 24e3)):
+            is_wrong = (place, order) == (3, 2)
+            strain = 1e-5 * load / size * generator.normal(1, 0.005) * (gain if is_wrong else 1)
+            surveys.append(pulled_to(name, order, load, strain))
+    campaign = SimpleNamespace(specimens=specimens, layouts={"log": layout("Force")})
+    found = list(_of_pairs(campaign, surveys, {}))
+    assert [(test, one.code) for test, one in found] == [
+        (test, "stiffness-off-own-tests") for test in told
+    ]
+    assert all(one.numbers["ratio"] == pytest.approx(1 / gain, rel=0.02) for _, one in found)
+
+
 def test_hoses_of_another_angle_are_not_told():
     campaign, tests = five_specimens(460.0 * 4.448, kind="stretch hose")
     assert not list(_off_other_specimens(campaign, tests, {}))
