@@ -1259,7 +1259,10 @@ def _lone_steps(record: Record, settings: QualitySettings) -> list[Note]:
         step = step[(told & _TOLD_OTHERWISE) == 0]
         if index:
             step = _without_friction(step, values, position[0])
-        if step.size:
+        if step.size and step[0] == values.size - 2:  # nothing shows that it lasts
+            low, high = values[-2:].tolist()
+            notes[index] = note("last-reading-off", channel=name, low=low, high=high, unit=unit)
+        elif step.size:
             first = int(step[0])
             low, high = values[first : first + 2].tolist()
             notes[index] = note(

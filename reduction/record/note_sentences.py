@@ -258,6 +258,11 @@ _OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             )
         ),
     ),
+    "last-reading-off": (
+        "note",
+        "the last reading of {channel} is {high:.4g} {unit}, the one before it {low:.4g} {unit}. If"
+        " the log was cut off inside its last row, remove this row",
+    ),
     "load-steps": (
         "warning",
         lambda channel, low, high, sample, time: (

@@ -232,7 +232,7 @@ MADE_BY = {
         [OTHER, areas('width = "10 mm"\nthickness = "0.03 mm"'), answer("gauge_length", "15 mm"),
          answer("reference_length", "15 mm"), TENSILE],
         peak("machine-exports/example2.csv", 1, 1e3, delimiter="\t", skip_header=2),
-        ("channel-steps",),  # it broke, and the load is 0 in the last row
+        ("last-reading-off",),  # it broke, and the load is 0 in the last row
     ),
     "MTS 793, German": OwnLog(
         "machine-exports/example4.csv", "example4",
@@ -265,6 +265,9 @@ MADE_BY = {
          (r'(control = "position".*)', r"\1" + '\nwaveform = "other"')],
         growing,
         ("channel-steps",),  # the load is 0 in the last row, and the position is not
+        loops("damper-hysteresis/ganey_damper/xyTestData.csv", 0, 1, 0.0254, 4448.2216152605,
+              delimiter=","),
+        ("last-reading-off",),  # the load is 0 in the last row, and the position is not
     ),
     "timber panel, two columns": OwnLog(
         "damper-hysteresis/clt_SPC1/SPC1.csv", "SPC1",
@@ -305,7 +308,7 @@ def panel(tree):
 
 BANDS = ("modulus-outside-band", "strain-above-band", "strength-outside-band", "density-outside-band",
          "position-behind-tension", "load-zero-drifts", "load-zero-wrong", "load-negative",
-         "load-falls-with-stretch", "channel-steps", "strain-below-zero")  # fmt: skip
+         "load-falls-with-stretch", "channel-steps", "last-reading-off", "strain-below-zero")  # fmt: skip
 
 
 QUICK = ("Zwick, German", "MTS 793, German", "Instron 5569, stress and strain")

@@ -140,6 +140,14 @@ def test_the_note_says_channel_values_sample_and_time():
     assert "while tension does not" in note
 
 
+def test_one_reading_at_the_end_is_no_step_that_stays():
+    """`14920.5`, cut off after its fourth digit."""
+    tension = TENSION.copy()
+    tension[-1] /= 10
+    (note,) = notes(tension=np.array([tension]), specimens=("a",))
+    assert note.startswith(f"the last reading of tension of 'a' is {tension[-1]:.4g} N, the one")
+
+
 @pytest.mark.parametrize("fault", ["gap", "missing", "stuck", "drop-out"])
 def test_what_a_flag_has_told_is_not_told_twice(fault):
     tension, time = TENSION.copy(), TIME.copy()
