@@ -264,9 +264,6 @@ MADE_BY = {
          channel("tension.1", 'tension.1 = { column = 2, unit = "kip" }'),
          (r'(control = "position".*)', r"\1" + '\nwaveform = "other"')],
         growing,
-        ("channel-steps",),  # the load is 0 in the last row, and the position is not
-        loops("damper-hysteresis/ganey_damper/xyTestData.csv", 0, 1, 0.0254, 4448.2216152605,
-              delimiter=","),
         ("last-reading-off",),  # the load is 0 in the last row, and the position is not
     ),
     "timber panel, two columns": OwnLog(
