@@ -99,9 +99,9 @@ def zero_at_start(
 ) -> ZeroStrain | None:
     """Level of the first three readings of a log that begins slack with too few for a rest.
 
-    None if they do not stand, unless the first is beyond the ``stated`` length at slack: the
-    specimen was still slack there.  ``tension`` has the shape (n_specimens, n_samples).  The level
-    is uncertain by the noise of one reading, since a slow ramp may begin among them.
+    None if they do not stand, unless the first is beyond the ``stated`` length at slack and the
+    specimen still slack there.  ``tension`` has the shape (n_specimens, n_samples).  The level is
+    uncertain by the noise of one reading, since a slow ramp may begin among them.
 
     Examples
     --------
@@ -116,6 +116,11 @@ def zero_at_start(
     None
     >>> print(zero_at_start(*found, slack_tension=200.0, stated=6.9).position)
     7.0
+
+    A log that begins on the way from there:
+
+    >>> print(zero_at_start(late, 1e4 * (late[None] - 6.99), slack_tension=200.0, stated=6.99))
+    None
     """
     first = position[: _FEWEST - 1]  # four are a rest
     noise = noise_range(position)
@@ -123,11 +128,19 @@ def zero_at_start(
     if not np.ptp(first) <= noise / 3:
         if stated is None or not first[0] > stated + noise:
             return None
+        beyond = 2 * first[0] - stated
+        twice = first_sample(lambda part: position[part] >= beyond, 0, position.size, position)
+        # a log that begins on the way has as much load there as it gains in the same stretch
+        if twice is not None and (tension[:, 0] > _STILL_SLACK * tension[:, twice]).any():
+            return None
         first = first[:1]
     if not (tension[:, : first.size] <= slack_tension).all():
         return None
     spread = np.hypot(step_of_codes(position) / 12**0.5, estimate_noise(position)[0])
     return ZeroStrain(float(np.median(first)), float(spread), is_logged=True)
+
+
+_STILL_SLACK = 0.1  # of the load at twice the displacement; a cubic curve has an eighth
 
 
 def zero_of_bent(
