@@ -883,3 +883,27 @@ def test_a_position_that_steps_back_at_the_end_of_a_ramp_leads_nowhere():
         _Ramp(-0.5, 3.5, 1.5, 3.0, 10.0), held_at=1.0, noise=(0.01, 0.1),
     )  # fmt: skip
     assert np.isnan(there).all()
+
+
+@pytest.mark.parametrize("drift", [0.006, -0.006, 0.0])
+def test_creep_is_that_at_constant_tension_where_the_tension_drifts(drift):
+    """Synthetic: 2 % of strain per decade; the tension drifts by 0.6 % of itself, or hunts."""
+    time = np.arange(0, 4000.0)
+    share = np.clip((time - 50) / 3950, 0, 1)
+    moves = drift * share if drift else 0.003 * np.sin(share * 60) * share
+    tension = np.interp(time, [0, 40, 50], [0, 0, 1000]) * (1 + moves)
+
+    def since(seconds):  # integral of a logarithmic creep
+        seconds = np.clip(seconds, 0, None)
+        return ((seconds + 0.01) * np.log1p(seconds / 0.01) - seconds) / np.log(10)
+
+    strain = tension / 1000 + 0.02 * (since(time - 40) - since(time - 50)) / 10
+    strain += np.random.default_rng(1).normal(0, 1e-5, time.size)
+    stands = find_tension_stands(time, strain, [tension], settings=PhaseSettings(), is_held=True)
+    found = reduce_holds(
+        time, strain, [tension], [strain], stands, specimens=("synthetic",),
+        settings=HoldSettings(), kind="creep",
+    )[-1]  # fmt: skip
+    off = found.rate_per_decade - 0.02
+    assert abs(off) < 2 * found.rate_per_decade_standard_uncertainty
+    assert abs(off) < 0.02 * 0.02

@@ -473,10 +473,10 @@ def select_hold(
     first, last = int(standstills.first[index]), int(standstills.last[index])
     # the first samples of the standstill before may lie below it, where a ramp ended between two
     begin = int(standstills.first[index - 1] + standstills.last[index - 1]) // 2 if index else 0
-    # under load control the machine moves the tension, and the length responds
+    # under load control the machine moves the tension, and the strain responds
     moved, answer, band = position, tension, standstills.position_tolerance
     if standstills.tension_tolerance is not None:
-        moved, answer, band = tension, position, standstills.tension_tolerance
+        moved, answer, band = tension, strain, standstills.tension_tolerance
     else:  # the edge of a standstill is where noise hides the rest of the approach
         after = int(standstills.last[index - 1]) + 1 if index else 0
         approach = find_approach(

@@ -138,7 +138,7 @@ def _hold_ends(hold: Hold) -> _Ends:
     if hold.ramp is not None:
         # falling tension is uncertain through the time, rising tension through the position
         u_initial = float(np.hypot(u_initial, first.slope * hold.ramp.end_uncertainty))
-        if np.isfinite(hold.ramp.stiffness):
+        if np.isfinite(hold.ramp.stiffness) and not hold.on_tension:
             u_initial = float(
                 np.hypot(u_initial, hold.ramp.stiffness * reading_noise(hold.position))
             )
@@ -571,7 +571,7 @@ def _creep(hold: Hold) -> Rate | None:
         lambda part: (since[part] > 0) & np.isfinite(strain[part]), since, strain, hold.tension
     )
     try:
-        return creep_rate(*series, ramp_duration=hold.ramp_duration)
+        return creep_rate(*series, ramp_duration=hold.ramp_duration, compliance=hold.ramp.stiffness)
     except DataError as error:
         hold.refusals.append(note("no-rate", reason=error.problem))
         return None

@@ -11,7 +11,7 @@ References
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -29,6 +29,7 @@ from reduction.record.samples import (
     step_of_codes,
 )
 from reduction.stages.cycles.reading_noise import reading_noise
+from reduction.stages.holds.ramp_end import MOTION_KNOWN_TO
 from reduction.stages.moduli.least_squares import lag_one_inflation
 from reduction.stages.moduli.splice_slip import sample_noise
 
@@ -325,13 +326,22 @@ def _tension_variation(time: ArrayLike, tension: ArrayLike, *, settled: float = 
 
 
 def creep_rate(
-    time: ArrayLike, strain: ArrayLike, tension: ArrayLike, *, ramp_duration: float
+    time: ArrayLike,
+    strain: ArrayLike,
+    tension: ArrayLike,
+    *,
+    ramp_duration: float,
+    compliance: float = float("nan"),
 ) -> Rate:
     """Strain gained per decade of time at constant tension.
 
     Notes
     -----
     A specimen held at constant length by a moving tension does not creep; it relaxes.
+
+    Where strain follows a tension that hunts or drifts, so that strain less tension times the
+    ``compliance`` of the ramp [1/N] lies closer to a line, its rate is given.  The correction is
+    known to half of itself either way.
 
     Examples
     --------
@@ -349,4 +359,13 @@ def creep_rate(
             f"tension is not constant: it deviates by {100 * variation:.1f} % from its mean",
             needed=f"{100 * TENSION_TOLERANCE:.0f} % or less",
         )
-    return rate_per_decade(logarithmic_blocks(seconds, stretch), ramp_duration=ramp_duration)
+    blocks = logarithmic_blocks(seconds, stretch)
+    rate = rate_per_decade(blocks, ramp_duration=ramp_duration)
+    if not np.isfinite(compliance):
+        return rate
+    less = blocks.value - compliance * logarithmic_blocks(seconds, load).value
+    steady = rate_per_decade(replace(blocks, value=less), ramp_duration=ramp_duration)
+    if steady.standard_uncertainty > rate.standard_uncertainty:
+        return rate
+    left = MOTION_KNOWN_TO * abs(steady.value - rate.value)
+    return replace(steady, standard_uncertainty=float(np.hypot(steady.standard_uncertainty, left)))
