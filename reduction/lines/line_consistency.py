@@ -54,6 +54,8 @@ K_AP, ENERGY, K_0, K_1, TIME, DASHPOT = (
 
 SOLVED = (K_1, TIME)
 
+_NORMAL = 1.96
+
 _OF_ALL_COEFFICIENTS = 0.05
 """Share of correct columns in which one coefficient is called wrong. [1]"""
 
@@ -99,6 +101,12 @@ class ConsistentValues:
     def is_impossible(self) -> Bools:
         """K_ap above the sum of K_0 and K_1 of the surfaces."""
         return np.asarray(self.excess > 0)
+
+    @property
+    def is_contradicted(self) -> Bools:
+        """The same by more than its 95 % half width; by any amount if that is unknown."""
+        half = _NORMAL * np.nan_to_num(self.excess_uncertainty)
+        return np.asarray(self.excess > half)
 
     def is_apart(self, name: str) -> Bools:
         """Whether K_1 or tau of its surface is outside the interval about the solution."""
@@ -386,7 +394,7 @@ def consistency_warnings(
 ) -> tuple[str, ...]:
     """Warnings about a value of a line whose columns are inconsistent.
 
-    Points where the printed numbers are impossible, and columns that are wrong by z.
+    Points where the printed numbers contradict each other, and columns that are wrong by z.
     """
     if quantity not in (K_AP, K_1, TIME, DASHPOT) or not (line.slow_pulls and is_of_loads(levels)):
         return ()
@@ -396,12 +404,12 @@ def consistency_warnings(
         return tuple(text for name in asked for text in _of_surfaces(values, name))
     refits = refitted_surfaces(line)
     found: list[str] = []
-    is_impossible = False
+    is_contradicted = False
     if quantity != TIME:
         found = [*_of_points(consistent_values(line, **levels))]
-        is_impossible = bool(found)
+        is_contradicted = bool(found)
     asked = {DASHPOT: SOLVED, K_1: (K_1,), TIME: (TIME,)}.get(quantity, ())
-    for name in asked or ((K_1,) if is_impossible else ()):
+    for name in asked or ((K_1,) if is_contradicted else ()):
         found += column_warnings(line, name, refits)
     return tuple(found)
 
@@ -430,10 +438,10 @@ def _of_surfaces(values: tuple[ConsistentValues, ...], name: str) -> tuple[str, 
 
 
 def _of_points(values: tuple[ConsistentValues, ...]) -> tuple[str, ...]:
-    """Worst of the points that are impossible for every slow pull."""
-    if not values or not np.all([one.is_impossible for one in values], axis=0).any():
+    """Worst of the points that are contradicted for every slow pull."""
+    if not values or not np.all([one.is_contradicted for one in values], axis=0).any():
         return ()
-    everywhere = np.all([one.is_impossible for one in values], axis=0)
+    everywhere = np.all([one.is_contradicted for one in values], axis=0)
     least = np.where(everywhere, np.min([one.excess for one in values], axis=0), -np.inf)
     worst = int(np.argmax(least))
 

@@ -275,6 +275,14 @@ def test_a_look_up_warns_at_the_point_and_not_where_the_numbers_hold():
     assert look_up(line, TAU, **at).warnings == ()
 
 
+def test_what_the_scatter_of_the_surfaces_explains_is_no_warning():
+    """K_ap is 154,380 N and K_0 + K_1 is 149,550 or 148,500 N: 1.0 and 1.2 standard errors."""
+    line = published_sources()["nylon-double-braid-0.5in-new"]
+    at = {"frequency": 0.1, "mean_tension": 1300 * LBF, "tension_amplitude": 400 * LBF}
+    assert all(one.is_impossible for one in consistent_values(line, **at))
+    assert look_up(line, K_AP, **at).warnings == ()
+
+
 def test_a_surface_without_a_scatter_gives_no_number_of_standard_errors():
     # K_1 of the 1 1/4 in line; the warning had "nan standard errors lower"
     line = published_sources()["nylon-double-braid-1.25in-new"]

@@ -121,8 +121,9 @@ function warningsOf(line, found, at) {
     return distinct([...told, ...names.flatMap((name) => apartWarning(values, name))]);
   }
   const values = quantity === TIME ? [] : consistentValues(line, at);
-  const isImpossible = values.length > 0 && values.every((one) => one.excess > 0);
-  if (isImpossible) {
+  // by more than the 95 % half width; by any amount if that is unknown
+  const isContradicted = values.length > 0 && values.every((one) => one.excess > 1.96 * (one.uncertainty || 0));
+  if (isContradicted) {
     const force = (number) => `${plainNumber(number, 4)} N`;
     const sums = values.map((one) => `${force(one.rest + one.printed[SPRING])} (${one.of}; `
       + `z ${(one.excess / one.uncertainty).toFixed(1)})`).join(" or ");
@@ -131,7 +132,7 @@ function warningsOf(line, found, at) {
       + `need a K_1 of ${values.map((one) => force(one.spring)).join(" or ")}, printed is `
       + `${force(values[0].printed[SPRING])}`);
   }
-  const asked = { [DASHPOT]: [SPRING, TIME], [SPRING]: [SPRING], [TIME]: [TIME] }[quantity] ?? (isImpossible ? [SPRING] : []);
+  const asked = { [DASHPOT]: [SPRING, TIME], [SPRING]: [SPRING], [TIME]: [TIME] }[quantity] ?? (isContradicted ? [SPRING] : []);
   return distinct([...told, ...asked.flatMap((name) => columns[name] ?? [])]);
 }
 
