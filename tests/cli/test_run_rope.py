@@ -171,7 +171,9 @@ def test_own_surfaces_stand_beside_the_k_1_and_tau_of_their_k_ap_and_h(run, trut
     levels = ("--frequency", "0.3 Hz", "--mean-tension", "21 %RBS", "--tension-amplitude")
     ask = ("lookup", run.processed, "--line", "nylon", "--quantity", "K_1", *levels, "8.5 %RBS")
     found = json.loads(command(*ask, "--json").stdout)
-    assert found["warnings"] == []
+    # R05 goes to zero tension in each cycle, as the README of the campaign says
+    (warning,) = found["warnings"]
+    assert "R05: the spring-dashpot model does not apply to 13 of 13 loops" in warning
     (one,) = found["consistent"]
     centre = truth.loc[(truth.filter(like="x_") == 0).all(axis=1)].iloc[0]
     for name, unit in (("dissipation_spring_constant", LBF), ("relaxation_time", 1.0)):
