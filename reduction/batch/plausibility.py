@@ -13,7 +13,6 @@ from dataclasses import replace
 from itertools import combinations, repeat
 
 import numpy as np
-from numpy.typing import NDArray
 
 from reduction.batch.survey import Survey
 from reduction.batch.test_history import Models
@@ -29,7 +28,7 @@ from reduction.quantities.units import Dimension, scale_to_si
 from reduction.readers.layout import Layout
 from reduction.record.arrays import MAD_TO_DEVIATION
 from reduction.record.errors import ReductionError, SettingsError
-from reduction.record.measurement import Bools, Floats, Specimen, SpliceMarks
+from reduction.record.measurement import Bools, Floats, Integers, Specimen, SpliceMarks
 from reduction.record.notes import Note, note
 from reduction.stages.plausible_bands import Bands, bands_of, readings_that_fit, words_of_ratio
 from reduction.stages.strain.strain_model import StrainModel, strain_by_model
@@ -624,11 +623,12 @@ def _off_other_specimens(
             np.nan if survey.levels is None else survey.levels.frequency for survey, *_ in rows
         ])  # fmt: skip
         names = np.array([name for _, name, *_ in rows])
+        known, specimen = np.unique(names, return_inverse=True)
         strain, stress, n_before = np.array([row[2:] for row in rows]).T
         modulus = stress / strain
         load_set = _loads_set([survey for survey, *_ in rows])
+        size, of_others = np.log(modulus), np.full((len(rows), known.size), np.nan)
         told: set[int] = set()
-        at_level = np.zeros((len(rows), len(rows)), dtype=bool)
         for place, (survey, name, *_) in enumerate(rows):
             apart, of_stress, of_rate = (
                 np.abs(np.log(values / values[place])) for values in (strain, stress, rate)
@@ -639,9 +639,12 @@ def _off_other_specimens(
             like = ones & (apart < np.log(_LIKE_STRAIN)) & (of_rate < np.log(_LIKE_RATE))
             batch = ones & (np.maximum(apart, of_rate) < np.log(_ONE_LEVEL))
             batch &= n_before == n_before[place]
-            at_level[place], limit = batch, _JUMP
-            if np.unique(names[batch]).size >= _FEWEST_OF_BATCH:
-                limit = min(np.exp(_most_off(np.log(modulus[batch]), _LEAST_OFF)), _JUMP)
+            count = np.bincount(specimen[batch], minlength=known.size)
+            total = np.bincount(specimen[batch], size[batch], minlength=known.size)
+            np.divide(total, count, out=of_others[place], where=count > 0)
+            limit = _JUMP
+            if np.count_nonzero(count) >= _FEWEST_OF_BATCH:
+                limit = min(np.exp(_most_off(size[batch], _LEAST_OFF)), _JUMP)
                 like = batch
             others = np.unique(names[like])
             ratio = modulus[place] / modulus[like]
@@ -656,35 +659,31 @@ def _off_other_specimens(
                         n_others=int(unlike.size), n_like=int(others.size),
                         like=", ".join(words),
                     )  # fmt: skip
-        for place, ratio, n_others in _off_own_tests(names, np.log(modulus), at_level, told):
+        for place, ratio, n_others in _off_own_tests(specimen, size, of_others, told):
             survey, name, *_ = rows[place]
             off = note("stiffness-off-own-tests", name, ratio=ratio, n_others=n_others)
             yield survey.plan.id, off
 
 
 def _off_own_tests(
-    names: NDArray[np.str_], size: Floats, at_level: Bools, told: set[int]
+    specimen: Integers, size: Floats, of_others: Floats, told: set[int]
 ) -> Iterator[tuple[int, float, int]]:
     """Find tests whose ratio to the other tests of the specimen is not that of the others.
 
     Specimens of a batch scatter more than the ratio of one specimen at two levels does.
-    ``at_level`` has, for each test, those of other specimens at its level.
+    ``of_others`` has, for each test, the mean of each other specimen at its level, or NaN.
     """
     for place in sorted(set(range(size.size)) - told):
-        own = [one for one in np.flatnonzero(names == names[place]).tolist() if one != place]
+        own = set(np.flatnonzero(specimen == specimen[place]).tolist()) - told - {place}
         away: list[float] = []
         n_others = 0
-        for one in [one for one in own if one not in told][:_MOST_OWN]:
-            both = np.intersect1d(names[at_level[place]], names[at_level[one]])
-            if both.size >= _FEWEST_OF_BATCH:
-                of_others = np.array([
-                    size[at_level[place] & (names == other)].mean()
-                    - size[at_level[one] & (names == other)].mean()
-                    for other in both
-                ])  # fmt: skip
-                off = float(size[place] - size[one] - np.median(of_others))
-                away.append(off if abs(off) > _most_off(of_others, _LEAST_OFF_OWN) else 0.0)
-                n_others = both.size
+        for one in sorted(own)[:_MOST_OWN]:
+            usual = of_others[place] - of_others[one]
+            usual = usual[np.isfinite(usual)]
+            if usual.size >= _FEWEST_OF_BATCH:
+                off = float(size[place] - size[one] - np.median(usual))
+                away.append(off if abs(off) > _most_off(usual, _LEAST_OFF_OWN) else 0.0)
+                n_others = usual.size
         far = [one for one in away if one]
         if 2 * len(far) > len(away):
             yield place, float(np.exp(np.median(far))), n_others
