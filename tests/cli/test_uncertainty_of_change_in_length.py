@@ -232,5 +232,7 @@ def test_the_page_and_the_table_show_what_is_shared(tmp_path):
 
 def test_without_stated_instruments_nothing_is_shared(tmp_path):
     found = reduced(tmp_path / "bare", stated="")
-    assert "uncertainty_source" not in found
+    # the part of a cycle in which the rope drifts is shared by its tests, and changes none of these
+    for name in ("property_stiffness", "property_strain"):
+        assert not np.nan_to_num(found[f"{name}_uncertainty_contribution"]).any()
     assert np.isfinite(found["property_stiffness_standard_uncertainty"].values).any()
