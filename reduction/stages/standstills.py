@@ -944,9 +944,9 @@ def _are_turns(
         beside = max(ceil(_BESIDE * (end - one)), 1)
         if one < beside or end + beside >= values.size:
             continue
-        # farther away than that it is on its way, or already in another turn
+        # beyond the first reading on its way it may already be in another turn
         before, after = (
-            max(int(_reach(values, edge[[index]], level[[index]], near, step)[0]), 1)
+            min(int(_reach(values, edge[[index]], level[[index]], near, step)[0]) + 1, beside)
             for edge, step in ((first, -beside), (last, beside))
         )
         part = slice(one - before, end + after + 1)

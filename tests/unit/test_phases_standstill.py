@@ -608,3 +608,17 @@ def test_a_drift_of_a_hold_does_not_part_it_where_the_next_ramp_leaves(interval)
     )
     assert found.start_time == pytest.approx([0, 40, 1060, 2080], abs=2 * interval)
     assert found.end_time == pytest.approx([20, 1040, 2060, 3080], abs=2 * interval)
+
+
+@pytest.mark.parametrize("missing", [0.1, 0.4])
+def test_holds_between_fast_ramps_stand_where_readings_are_missing(missing):
+    """Synthetic: dwells of 22 s after ramps of 80 mm in 5 s, noise of 0.01 mm."""
+    time, found = np.arange(0, 275, 0.5), 0
+    knots = np.cumsum(np.r_[0, np.tile([5.0, 22.0], 10), 5])
+    place = np.r_[0.02, np.repeat(np.tile([0.1, 0.02], 5), 2), 0.1]
+    for seed in range(10):
+        random = np.random.default_rng(seed)
+        position = np.interp(time, knots, place) + random.normal(0, 1e-5, time.size)
+        position[random.random(time.size) < missing] = np.nan
+        found += find(time, position, 1e3 * position[None]).start_time.size
+    assert found == 100
