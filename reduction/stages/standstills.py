@@ -174,12 +174,14 @@ def estimate_noise(values: ArrayLike, time: Floats | None = None) -> tuple[float
         for order in _ORDERS
         if order < rows.shape[1]
     )
-    if time is not None and rows.shape[1] > 2:
-        about_chords = _noise_about_chords(np.asarray(values, dtype=np.float64), time)
-        noise = about_chords if about_chords < noise / 2 else noise
     steps = np.diff(rows, axis=1).ravel()
     steps = steps[steps != 0]
     size = np.abs(steps)
+    if time is not None and rows.shape[1] > 2:
+        about_chords = _noise_about_chords(np.asarray(values, dtype=np.float64), time)
+        # readings of one code lie on their chord
+        about_chords = max(about_chords, size.min(initial=np.inf) / sqrt(12))
+        noise = about_chords if about_chords < noise / 2 else noise
     undone = np.abs(steps[1:] + steps[:-1]) < 0.05 * size[1:]
     is_least = size < _ONE_CODE * size.min(initial=np.inf)
     for compared in (np.ones_like(undone), is_least[1:] & is_least[:-1]):

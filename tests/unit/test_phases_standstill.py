@@ -622,3 +622,15 @@ def test_holds_between_fast_ramps_stand_where_readings_are_missing(missing):
         position[random.random(time.size) < missing] = np.nan
         found += find(time, position, 1e3 * position[None]).start_time.size
     assert found == 100
+
+
+def test_a_coarse_encoder_with_missing_readings_is_not_without_noise():
+    """Synthetic: steps of 0.1 mm, noise of 0.02 mm, ramps of 0.8 mm/s; readings on one code."""
+    time = np.arange(0, 520, 0.1)
+    random = np.random.default_rng(0)
+    knots = [0, 100, 120, 220, 240, 340, 360, 460]
+    position = np.interp(time, knots, [0.02, 0.1, 0.1, 0.02, 0.02, 0.1, 0.1, 0.02])
+    position = np.round((position + random.normal(0, 2e-5, time.size)) / 1e-4) * 1e-4
+    position[random.random(time.size) < 0.4] = np.nan
+    found = find(time, position, 1e3 * position[None])
+    assert found.start_time == pytest.approx([100, 220, 340, 460], abs=1)
