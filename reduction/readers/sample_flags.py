@@ -1258,7 +1258,7 @@ def _lone_steps(record: Record, settings: QualitySettings) -> list[Note]:
         told |= take_samples(of_time, step + 1)
         step = step[(told & _TOLD_OTHERWISE) == 0]
         if index:
-            step = _without_friction(step, values, position[0])
+            step = _without_friction(step, values, position[0], noise=noise[0])
         if step.size and step[0] == values.size - 2:  # nothing shows that it lasts
             low, high = values[-2:].tolist()
             notes[index] = note("last-reading-off", channel=name, low=low, high=high, unit=unit)
@@ -1275,7 +1275,9 @@ def _lone_steps(record: Record, settings: QualitySettings) -> list[Note]:
     return [one for one in notes if one]
 
 
-def _without_friction(step: Integers, tension: Floats, position: Floats) -> Integers:
+def _without_friction(
+    step: Integers, tension: Floats, position: Floats, *, noise: float
+) -> Integers:
     """Steps of tension without those of friction, which turn with the motion, at both of its turns.
 
     Examples
@@ -1285,7 +1287,7 @@ def _without_friction(step: Integers, tension: Floats, position: Floats) -> Inte
     >>> place = np.arange(81)
     >>> length = np.abs((place / 20) % 2 - 1)
     >>> load = length + np.sign(np.diff(length, append=1.0)) + np.where(place > 50, 3, 0)
-    >>> _without_friction(np.array([19, 39, 50, 59]), load, length)
+    >>> _without_friction(np.array([19, 39, 50, 59]), load, length, noise=0.0)
     array([50])
     """
     change = take_samples(tension, step + 1) - take_samples(tension, step)
@@ -1295,11 +1297,15 @@ def _without_friction(step: Integers, tension: Floats, position: Floats) -> Inte
         before, at, after = (
             take_samples(position, np.clip(one, 0, position.size - 1)) for one in ends
         )
-        turns |= ((at - before) * (after - at) < 0) & ((after - at) * change > 0)
+        told = np.minimum(np.abs(at - before), np.abs(after - at)) > _TURN_TOLD * noise
+        turns |= told & ((at - before) * (after - at) < 0) & ((after - at) * change > 0)
     # at one turn alone it may be a slip at the greatest load
     both = change[turns].size and change[turns].min() < 0 < change[turns].max()
     # the log may end beside a turn
     return step[~turns & (step < tension.size - 1 - _NEIGHBOURS)] if both else step
+
+
+_TURN_TOLD = 4.0  # standard deviations: where the crosshead stands, noise turns too
 
 
 def _no_length(position: Floats, flags: _Flags) -> Bools:

@@ -140,6 +140,19 @@ def test_the_note_says_channel_values_sample_and_time():
     assert "while tension does not" in note
 
 
+def test_noise_of_a_crosshead_that_stands_is_no_turn_of_friction():
+    """Dwells after a drag: with some of these jerks taken for friction, the rest looked few."""
+    knots = np.cumsum(np.r_[0, np.tile([3.0, 10.0], 16)])
+    place = np.r_[0, np.repeat(np.tile([0.05, 0.0], 8), 2)]
+    time = np.arange(0, knots[-1], 0.1)
+    moved = np.interp(time, knots, place)
+    drag = 30 * np.sign(np.round(np.gradient(moved, time), 6))
+    tension = 400 + 2000 * moved + drag + RANDOM.normal(0, TENSION_NOISE, time.size)
+    position = 1 + moved + RANDOM.normal(0, 2e-5, time.size)
+    (found,) = notes(tension=tension[None], position=position, time=time, specimens=("a",))
+    assert "So many are not slips" in found
+
+
 def test_one_reading_at_the_end_is_no_step_that_stays():
     """`14920.5`, cut off after its fourth digit."""
     tension = TENSION.copy()
