@@ -340,6 +340,8 @@ def _find_zero_strain(survey: Survey, located: Located, campaign: Campaign, plan
             located.position, located.tension, slack_tension=slack, stated=at_slack.position
         )
         at_slack = start or at_slack
+        if located.standstills.is_rest.any():  # shows how far the specimen is slack
+            at_slack = replace(at_slack, stated_position=None)
     for name, tension in zip(plan.specimens, located.tension, strict=True):
         reference = campaign.specimens[name].reference_tension or tension_of_layout
         if not reference:

@@ -536,6 +536,12 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         " it had lengthened by then is missing from its strains. Log a rest before the test, or"
         " state a displacement from slack, or reference_tension",
     ),
+    "slack-beyond-zero": (
+        "warning",
+        "the log begins {beyond:.4g} m beyond the stated length at slack, with hardly any load;"
+        " strain is zero there ({strain:.2%} from the stated length). If the specimen is slack up"
+        " to there, state this reading as zero of the position; if not, state reference_tension",
+    ),
     "strain-from-tension": (
         "note",
         "strain is zero at the reference tension of {tension:.4g} N, for which the gauge length is"
@@ -2293,7 +2299,8 @@ CAUSES = (
     "hose-not-of-design", "hose-unlike-design",
     "target-strain-missed", "lower-target-missed", "density-outside-band",
     "strain-above-band",
-    "extensometer-off-at-slack", "reference-tension-elsewhere", "length-jumps",
+    "extensometer-off-at-slack", "reference-tension-elsewhere", "slack-beyond-zero",
+    "length-jumps",
     "slipped-in-earlier-step", "strain-below-zero",
     "zero-moves-at-stop", "wave-not-periodic", "wave-changes", "tension-hums", "tension-late",
     "tension-filtered", "tension-behind-position",

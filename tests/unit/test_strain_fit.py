@@ -329,6 +329,25 @@ def test_a_slow_ramp_among_the_first_readings_is_in_the_interval_of_their_zero(r
     assert np.sqrt(np.mean(np.square(off))) < 2.5
 
 
+def test_noise_of_one_reading_does_not_make_a_log_slack_that_begins_on_its_way():
+    moved, zeros = np.linspace(0.015, 0.1, 200), []
+    for seed in range(50):
+        noise = np.random.default_rng(seed).normal(0, 2.0, moved.size)
+        load = 1000 * (moved / 0.1) ** 3 + noise  # an eighth, twice as far
+        zeros.append(zero_at_start(moved, load[None], slack_tension=20.0, stated=0.0))
+    assert zeros == [None] * 50
+
+
+@pytest.mark.parametrize(("begins", "said"), [(0.02, True), (0.0004, False)])
+def test_a_zero_of_strain_beyond_the_stated_length_at_slack_is_told(begins, said):
+    moved = np.linspace(begins, 0.1, 200)
+    zero = zero_at_start(moved, 1e4 * (moved - begins)[None], slack_tension=20.0, stated=0.0)
+    assert zero.position == begins
+    specimen = Specimen("rope", gauge_length=1.0)
+    codes = [one.code for one in _without_marks(specimen, "gauge-length", zero, None).notes]
+    assert ("slack-beyond-zero" in codes) is said
+
+
 def test_zero_strain_is_that_of_a_rest_without_the_slow_ramp_after_it():
     # noise hides the first two seconds of a ramp of 9 mm a second
     time = np.arange(0.0, 180.0, 0.35)

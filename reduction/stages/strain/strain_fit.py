@@ -873,7 +873,7 @@ def _without_marks(
         notes.append(note("zero-behind-load", specimen.name))
     if zero.reference_tension:
         notes.append(note("strain-from-tension", specimen.name, tension=zero.reference_tension))
-        notes += _on_stated_zero(specimen.name, zero, gauge)
+    notes += _on_stated_zero(specimen.name, zero, gauge)
     return StrainModel(
         specimen.name,
         "gauge-length",
@@ -886,11 +886,14 @@ def _without_marks(
 
 
 def _on_stated_zero(name: str, zero: ZeroStrain, gauge: float) -> list[Note]:
-    """A position that the layout states for the reference tension, but the log contradicts."""
+    """A position that the layout states for the reference tension or slack, unlike the log."""
     if zero.position is None or zero.stated_position is None:
         return []
     if abs(zero.position - zero.stated_position) <= _ELSEWHERE * gauge:
         return []
+    if not zero.reference_tension:
+        beyond = zero.position - zero.stated_position
+        return [note("slack-beyond-zero", name, beyond=beyond, strain=beyond / gauge)]
     return [
         note(
             "reference-tension-elsewhere", name, tension=zero.reference_tension,

@@ -41,7 +41,8 @@ class ZeroStrain:
     ``position`` [m] is None if it is not known, ``standard_uncertainty`` [m] that of reading
     it from the log, ``compliance`` [m/N] its derivative by the corresponding tension,
     ``is_logged`` whether it is a position of the log itself, ``reference_tension`` [N] the
-    tension there, zero at slack, and ``stated_position`` [m] that of the layout for this tension.
+    tension there, zero at slack, and ``stated_position`` [m] that of the layout for this tension,
+    where it may contradict the log.
     ``bent_at`` [m] is the first rest of a specimen that is longer than this rest, and hangs bent.
     ``is_behind_load`` says that the specimen was loaded before it rested there.
     """
@@ -122,7 +123,7 @@ def zero_at_start(
     >>> print(zero_at_start(late, 1e4 * (late[None] - 6.99), slack_tension=200.0, stated=6.99))
     None
     """
-    first = position[: _FEWEST - 1]  # four are a rest
+    first, place = position[: _FEWEST - 1], None  # four are a rest
     noise = noise_range(position)
     # of the noise alone, one range of three readings in a hundred is wider
     if not np.ptp(first) <= noise / 3:
@@ -131,14 +132,18 @@ def zero_at_start(
         beyond = 2 * first[0] - stated
         twice = first_sample(lambda part: position[part] >= beyond, 0, position.size, position)
         # a log that begins on the way has as much load there as it gains in the same stretch
-        if twice is not None and (tension[:, 0] > _STILL_SLACK * tension[:, twice]).any():
-            return None
-        first = first[:1]
+        if twice is not None:
+            most = [load[0] + _TOLD * estimate_noise(load)[0] for load in tension]
+            if (most > _STILL_SLACK * tension[:, twice]).any():
+                return None
+        first, place = first[:1], stated
     if not (tension[:, : first.size] <= slack_tension).all():
         return None
     spread = np.hypot(step_of_codes(position) / 12**0.5, estimate_noise(position)[0])
-    return ZeroStrain(float(np.median(first)), float(spread), is_logged=True)
+    return ZeroStrain(float(np.median(first)), float(spread), is_logged=True, stated_position=place)
 
+
+_TOLD = 3.0  # standard deviations of the noise
 
 _STILL_SLACK = 0.1  # of the load at twice the displacement; a cubic curve has an eighth
 
