@@ -598,7 +598,7 @@ def _off_other_specimens(
     campaign: Campaign, by_specimen: Mapping[str, Sequence[Survey]], models: Models
 ) -> Iterator[tuple[str, Note]]:
     """Find tests whose modulus differs from that of most other specimens of the same kind."""
-    groups: dict[tuple[str, ...], list[tuple[Survey, str, float, float, int]]] = {}
+    groups: dict[tuple[str, ...], list[tuple[Survey, str, float, float, str]]] = {}
     for name, several in by_specimen.items():
         made = campaign.specimens[name]
         # a hose is as stiff as its cords and their angle make it
@@ -611,8 +611,8 @@ def _off_other_specimens(
         # what was stretched further before may be softer
         is_first = before <= _GREATER * strain
         is_first |= _loads_set(several) & (_before(several, stress) <= _GREATER * stress)
-        n_before = _are_before(several).sum(axis=1).tolist()
-        for row in zip(several, repeat(name), strain, stress, n_before, is_first, strict=False):
+        past = _past_and_conditions(several, made.earlier_cycles)
+        for row in zip(several, repeat(name), strain, stress, past, is_first, strict=False):
             if row[2] > 0 and row[3] > 0 and row[5]:
                 rows.append(row[:5])
     for rows in groups.values():
@@ -624,7 +624,8 @@ def _off_other_specimens(
         ])  # fmt: skip
         names = np.array([name for _, name, *_ in rows])
         known, specimen = np.unique(names, return_inverse=True)
-        strain, stress, n_before = np.array([row[2:] for row in rows]).T
+        strain, stress = np.array([row[2:4] for row in rows]).T
+        past = np.array([row[4] for row in rows])
         modulus = stress / strain
         load_set = _loads_set([survey for survey, *_ in rows])
         size, of_others = np.log(modulus), np.full((len(rows), known.size), np.nan)
@@ -638,7 +639,7 @@ def _off_other_specimens(
             ones = (names != name) & (kind == kind[place])
             like = ones & (apart < np.log(_LIKE_STRAIN)) & (of_rate < np.log(_LIKE_RATE))
             batch = ones & (np.maximum(apart, of_rate) < np.log(_ONE_LEVEL))
-            batch &= n_before == n_before[place]
+            batch &= past == past[place]
             count = np.bincount(specimen[batch], minlength=known.size)
             total = np.bincount(specimen[batch], size[batch], minlength=known.size)
             np.divide(total, count, out=of_others[place], where=count > 0)
@@ -663,6 +664,23 @@ def _off_other_specimens(
             survey, name, *_ = rows[place]
             off = note("stiffness-off-own-tests", name, ratio=ratio, n_others=n_others)
             yield survey.plan.id, off
+
+
+def _past_and_conditions(several: Sequence[Survey], earlier_cycles: int | None) -> list[str]:
+    """What tests of a batch have in common beside their level, for each test of a specimen.
+
+    Number of tests before it (without a known order, of those above it in the campaign), cycles
+    before all of them, medium and temperature: ropes stiffen with cycles, nylon softens in water.
+    """
+    n_before = _are_before(several).sum(axis=1).tolist()
+    plans = [one.plan for one in several]
+    return [
+        repr((
+            place if plan.order is None else n_before[place], earlier_cycles or 0,
+            *(plan.attributes.get(one) for one in ("medium", "temperature")),
+        ))
+        for place, plan in enumerate(plans)
+    ]  # fmt: skip
 
 
 def _off_own_tests(
