@@ -65,10 +65,11 @@ def counted_cycles(
     reach = (np.minimum(length[:-1], length[1:]) * _LATE_COUNT).astype(np.intp)
     # a count may change some samples after the valley
     for row in np.flatnonzero(goes_on & (counts[:-1] > 0)):
-        before = values[begin[row] - reach[row] : begin[row] + 1]
-        lowest = int(np.nanargmin(before)) if np.isfinite(before).any() else 0
-        if lowest > 0:  # else it rises all the way, and the count changes beside no valley
-            begin[row] -= before.size - 1 - lowest
+        before = values[begin[row] - 2 * reach[row] : begin[row] + 1]
+        if np.isfinite(before).any():
+            late = before.size - 1 - int(np.nanargmin(before))
+            # on a rise it is lower still beyond the reach: the count changes beside no valley
+            begin[row] -= late if late <= reach[row] else 0
     first = np.concatenate([[0], begin])
     last = np.concatenate([np.where(goes_on, begin, begin - 1), [time.size - 1]])
     _check_rises(counts)
