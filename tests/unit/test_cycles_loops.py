@@ -1109,6 +1109,10 @@ def test_the_work_of_a_drift_is_given_beside_the_energy_and_carried():
     assert [(one.source, one.of) for one in found.component] == [("drift_place", "rope")]
     # with the sign of the drift, as in all tests of the specimen
     assert found.values["hysteresis_energy"][0] == pytest.approx(work / np.sqrt(6), rel=0.02)
+    # secant - 1 / secant of the loss angle moves by about twice the loss factor times its change
+    assert summary.uncertainty["slope_reading_spread"][0] == pytest.approx(
+        2 * summary.loss_factor[0] * abs(found.values["loss_factor"][0]), rel=0.05
+    )
 
 
 @pytest.mark.parametrize("lasts", [2.0, 8.0])  # cycles

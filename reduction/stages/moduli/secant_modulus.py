@@ -453,7 +453,15 @@ def summarise_amplitude(
     secant = np.sqrt(1 + tangent**2)
     means["slope_reading_spread"] = secant - 1 / secant
     per_tangent = tangent / secant * (1 + 1 / (1 + tangent**2))
-    uncertainty["slope_reading_spread"] = per_tangent * uncertainty["loss_factor"]
+    # a budget has the place of the drift for the loss factor, but none for this
+    drift = (means["closed_loop_energy"] - means["hysteresis_energy"]) * loops.drift_not_placed()
+    with np.errstate(divide="ignore", invalid="ignore"):
+        of_drift = drift / (
+            np.pi * means["strain_amplitude"] ** 2 * means["storage_spring_constant"]
+        )
+    uncertainty["slope_reading_spread"] = per_tangent * np.hypot(
+        uncertainty["loss_factor"], of_drift
+    )
     means["dynamic_modulus"] = means["apparent_spring_constant"] / areas
     uncertainty["dynamic_modulus"] = uncertainty["apparent_spring_constant"] / areas
     return AmplitudeSummary(**means, uncertainty=uncertainty)
