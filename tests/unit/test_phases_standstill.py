@@ -6,11 +6,13 @@ import pytest
 from reduction.record.errors import DataError
 from reduction.record.settings import PhaseSettings
 from reduction.stages.standstills import (
+    Standstills,
     _block_extremes,
     _still_blocks,
     estimate_noise,
     find_standstills,
     find_tension_stands,
+    level_of_standstill,
     median_step,
     noise_range,
 )
@@ -634,3 +636,14 @@ def test_a_coarse_encoder_with_missing_readings_is_not_without_noise():
     position[random.random(time.size) < 0.4] = np.nan
     found = find(time, position, 1e3 * position[None])
     assert found.start_time == pytest.approx([100, 220, 340, 460], abs=1)
+
+
+def test_four_readings_at_rest_that_rise_by_chance_have_a_level():
+    """Each half of the rest lies off its middle as the beginning of a ramp does."""
+    position = 0.05 + np.array([-2e-6, 0, 2e-6, 3e-6, 1e-3, 2e-3])
+    first, last, rest = np.array([0]), np.array([3]), np.array([True])
+    stand = Standstills(
+        first, last, 1.0 * first, 1.0 * last, np.array([0.05]), np.zeros((1, 1)), rest,
+        position_tolerance=1.5e-5, slack_tension=5.0,
+    )  # fmt: skip
+    assert level_of_standstill(position, stand, 0) == pytest.approx(0.05, abs=3e-6)
