@@ -625,7 +625,7 @@ def _off_other_specimens(
         names = np.array([name for _, name, *_ in rows])
         known, specimen = np.unique(names, return_inverse=True)
         strain, stress = np.array([row[2:4] for row in rows]).T
-        past = np.array([row[4] for row in rows])
+        pasts = np.array([row[4] for row in rows])
         modulus = stress / strain
         load_set = _loads_set([survey for survey, *_ in rows])
         size, of_others = np.log(modulus), np.full((len(rows), known.size), np.nan)
@@ -639,7 +639,7 @@ def _off_other_specimens(
             ones = (names != name) & (kind == kind[place])
             like = ones & (apart < np.log(_LIKE_STRAIN)) & (of_rate < np.log(_LIKE_RATE))
             batch = ones & (np.maximum(apart, of_rate) < np.log(_ONE_LEVEL))
-            batch &= past == past[place]
+            batch &= pasts == pasts[place]
             count = np.bincount(specimen[batch], minlength=known.size)
             total = np.bincount(specimen[batch], size[batch], minlength=known.size)
             np.divide(total, count, out=of_others[place], where=count > 0)
