@@ -57,7 +57,11 @@ SAMPLES_BESIDE = 5
 
 @dataclass(frozen=True)
 class _Ramp:
-    """The ramp that led to a hold."""
+    """The ramp that led to a hold.
+
+    ``stiffness`` is the slope at its end of the channel that answers: tension over position [N/m],
+    under load control strain over tension, a compliance [1/N].
+    """
 
     start_time: float
     end_time: float

@@ -259,7 +259,7 @@ def fit_prony(
     added: ArrayLike | None = None,
     maximum_terms: int = 3,
     weights: ArrayLike | None = None,
-    unsure: ArrayLike | None = None,
+    shared_error: ArrayLike | None = None,
     time_variance: ArrayLike = 0.0,
     known_to: float = 0.0,
 ) -> PronyFit:
@@ -281,8 +281,8 @@ def fit_prony(
         Largest number of terms tried. [1]
     weights : array_like, shape (n_samples,), optional
         Inverse relative variances. [1]
-    unsure : array_like, shape (n_samples,), optional
-        Change of the tensions for an error, common to all, of one standard uncertainty. [N]
+    shared_error : array_like, shape (n_samples,), optional
+        Change of the tensions for a common error of one standard uncertainty. [N]
     time_variance : array_like, shape (n_samples,), optional
         Variance of the times whose mean a sample is: the mean of an exponential exceeds that at
         the mean time. [s2]
@@ -398,14 +398,14 @@ def fit_prony(
         return left_by_ramp(added, at_end, times, ramp_duration=ramp_duration)
 
     found = _reported(fits[n_terms], longest, left, "; ".join(texts))
-    if unsure is None or not np.any(unsure):
+    if shared_error is None or not np.any(shared_error):
         return found
-    other = load + as_finite("unsure", unsure)
+    other = load + as_finite("shared_error", shared_error)
     shifted = fit_separable(basis, other, starts=fits[n_terms].shape, weights=weight)
-    return _less_known(found, _reported(shifted, longest, left, ""))
+    return _widened(found, _reported(shifted, longest, left, ""))
 
 
-def _less_known(found: PronyFit, other: PronyFit) -> PronyFit:
+def _widened(found: PronyFit, other: PronyFit) -> PronyFit:
     """A series whose uncertainties include the difference from another one."""
     wider = {
         f"{name}_standard_uncertainty": np.hypot(

@@ -520,7 +520,7 @@ def _prony(
         return None
     since = shifted(hold.time, hold.ramp_end_time)
     later = int(np.searchsorted(since, 0.0, side="right"))
-    blocks, unsure = (
+    blocks, shared_error = (
         logarithmic_blocks(since[later:], one[later:]) for one in (hold.tension, of_motion)
     )
     length, added = 0.0, None
@@ -534,7 +534,7 @@ def _prony(
             added=added,
             maximum_terms=settings.maximum_terms,
             weights=blocks.weight,
-            unsure=unsure.value,
+            shared_error=shared_error.value,
             time_variance=blocks.time_variance,
             known_to=known_to,
         )
@@ -570,8 +570,9 @@ def _creep(hold: Hold) -> Rate | None:
     series = select_samples(
         lambda part: (since[part] > 0) & np.isfinite(strain[part]), since, strain, hold.tension
     )
+    compliance = hold.ramp.stiffness if hold.on_tension else float("nan")
     try:
-        return creep_rate(*series, ramp_duration=hold.ramp_duration, compliance=hold.ramp.stiffness)
+        return creep_rate(*series, ramp_duration=hold.ramp_duration, compliance=compliance)
     except DataError as error:
         hold.refusals.append(note("no-rate", reason=error.problem))
         return None
