@@ -736,12 +736,16 @@ _FEWEST_STAMPS = 100  # minimum number of stamps to recognise a steady clock fro
 
 _FINE_STEP = 0.05  # of the sampling interval: finer rounding has no effect
 
+# Any one or two steps of double length fit a steady clock; five lost rows in such places have a
+# chance of 5!/5^5, one in twenty-six.
+_FEWEST_OF_EITHER = 5
+
 
 def _evenly_logged(time: Floats) -> tuple[Floats, float]:
     """Times of a steady clock stored with coarse resolution, and that resolution.
 
-    Such stamps advance by two adjacent multiples of the resolution and deviate from one line by no
-    more than its rounding. Other times are returned unchanged, with 0.
+    Such stamps advance by two adjacent multiples of the resolution, each several times, and deviate
+    from one line by no more than its rounding. Other times are returned unchanged, with 0.
     """
     steps = np.diff(time[:_STEPS_READ])
     if steps.size < _FEWEST_STAMPS:
@@ -753,6 +757,9 @@ def _evenly_logged(time: Floats) -> tuple[Floats, float]:
     multiple = low / step
     is_either = np.minimum(steps - low, high - steps) < 1e-3 * step
     if abs(multiple - round(multiple)) > 1e-3 * multiple or not is_either.all():
+        return time, 0.0
+    n_long = int(np.count_nonzero(steps > (low + high) / 2))
+    if min(n_long, steps.size - n_long) < _FEWEST_OF_EITHER:
         return time, 0.0
     middle, start = (time.size - 1) / 2, float(time[0])
     product = 0.0

@@ -249,6 +249,13 @@ def test_times_that_no_even_clock_would_be_written_as_stay_as_they_are(late):
     np.testing.assert_array_equal(flagged(record(time=stamps)).time, stamps)
 
 
+@pytest.mark.parametrize("lost", [[70], [500, 1500]])
+def test_times_beside_a_lost_row_stay_as_they_are(lost):
+    # one or two double steps in such places also agree with an even, slightly slower clock
+    stamps = np.delete(np.arange(TIME.size + len(lost)) / 10, lost)
+    np.testing.assert_array_equal(flagged(record(time=stamps)).time, stamps)
+
+
 @pytest.mark.parametrize("every", [2, 5])
 def test_a_channel_that_is_read_less_often_than_logged_is_not_late(every):
     rows = np.arange(TIME.size) // every * every
