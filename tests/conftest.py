@@ -39,6 +39,7 @@ NIGHTLY_BUT = {
     "cli/test_run_workers.py": ("test_products_have_the_same_bytes_on_any_number_of_workers[2]",),
     "browser/test_design_values.py": (
         "test_questions_put_into_the_form_are_answered_in_the_same_words[2]",
+        "test_lines_with_everything_at_once_have_the_answers_of_the_command",
         "test_the_page_is_sound_for_everybody[dark-390]",
         "test_levels_of_an_own_rope_are_the_table_of_the_command",
     ),

@@ -257,8 +257,10 @@ def own_half_width(found: DesignValues, end: End) -> Floats:
         random[None], freedom[None], found.contribution,
         [one.degrees_of_freedom for one in found.component],
     )  # fmt: skip
-    own = within * np.divide(alone, both, out=np.zeros_like(both), where=both > 0)
-    return np.asarray(np.sqrt(np.maximum(half**2 - within**2, 0.0) + own**2))
+    # far outside the tested range an interval has no end, and its parts are not known
+    own = within * np.divide(alone, both, out=np.ones_like(both), where=both > 0)
+    between = np.subtract(half**2, within**2, out=np.array(half), where=np.isfinite(half))
+    return np.asarray(np.sqrt(np.maximum(between, 0.0) + own**2))
 
 
 def is_even(found: DesignValues) -> bool:

@@ -91,6 +91,7 @@ def _line_data(line: LineSource) -> dict[str, Any]:
             "specimens": list(line.specimens),
             "absent": dict(line.absent),
             "notes": list(line.notes),
+            "warnings": list(line.warnings),
             "conditions": dict(line.conditions),
             "rule": line.rule,
             # from which the page solves K_1 and tau for sinusoids
@@ -389,7 +390,7 @@ MOST_BYTES = 2_500_000
 
 _REPORT = "index.html"
 
-_FORMAT = 5
+_FORMAT = 6
 """Format version of the data that one page keeps for the next."""
 
 _TIMES = 3

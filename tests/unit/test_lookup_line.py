@@ -573,6 +573,11 @@ def test_what_is_of_a_value_alone_is_the_interval_without_it():
         assert own_half_width(found, end) == pytest.approx(expected)
     assert own_half_width(alone, "low") == pytest.approx(alone.value - alone.low)
     assert shared_half_width(found.contribution) == pytest.approx(1.96 * 0.02 * found.value)
+    # far outside, the limits of a logarithm overflow: no end, and no parts
+    end, parts = np.full(found.value.shape, np.inf), np.full(found.value.shape, np.nan)
+    far = replace(found, high=end, run_standard_uncertainty=parts)
+    np.testing.assert_array_equal(own_half_width(far, "high"), end)
+    assert own_half_width(far, "low") == pytest.approx(found.value - found.low)
 
 
 def test_a_surface_beside_a_load_cell_has_the_factor_of_all_its_degrees_of_freedom():

@@ -12,9 +12,12 @@ function showRow(row) {
   const at = element("dl", null, { class: "at" });
   let last = null;
   for (const [head, text] of row) {
-    const cell = element(head.startsWith("value") ? "strong" : "span", head === "remark" ? text : grouped(text), { "data-head": head });
+    const isOfStrength = head === "value\n[MBL]";
+    const cell = element(head.startsWith("value") && !isOfStrength ? "strong" : "span", head === "remark" ? text : grouped(text), { "data-head": head });
     const words = head.replaceAll("\n", " ").trim(), [, name, unit] = words.match(/^(.*?) ?(?:\[(.*)\])?$/);
-    if (head.startsWith("value")) {
+    if (isOfStrength) {
+      box.lastChild.append(" (", cell, " MBL)");
+    } else if (head.startsWith("value")) {
       const value = element("p", null, { class: "value" });
       value.append(cell, ` ${unit === "1" ? "" : unit}`);
       box.append(value);

@@ -113,8 +113,8 @@ function apartWarning(values, name) {
 
 // What a person has to know before the number.
 function warningsOf(line, found, at) {
-  const told = [...found.warnings], columns = line.column_warnings, { quantity } = found;
-  if (![AP, SPRING, TIME, DASHPOT].includes(quantity)) return told;
+  const told = [...line.warnings, ...found.warnings], columns = line.column_warnings, { quantity } = found;
+  if (![AP, SPRING, TIME, DASHPOT].includes(quantity)) return distinct(told);
   if (!line.is_printed) {
     const values = consistentValues(line, at);
     const names = { [DASHPOT]: [SPRING, TIME], [TIME]: [TIME] }[quantity] ?? [SPRING];
@@ -125,11 +125,14 @@ function warningsOf(line, found, at) {
   const isContradicted = values.length > 0 && values.every((one) => one.excess > 1.96 * (one.uncertainty || 0));
   if (isContradicted) {
     const force = (number) => `${plainNumber(number, 4)} N`;
-    const sums = values.map((one) => `${force(one.rest + one.printed[SPRING])} (${one.of}; `
-      + `z ${(one.excess / one.uncertainty).toFixed(1)})`).join(" or ");
-    told.push("the printed numbers are inconsistent at 1 of 1 points: K_ap of a line is at most "
-      + `K_0 + K_1, and is ${force(values[0].printed[AP])} where K_0 + K_1 is ${sums}; K_ap and H `
-      + `need a K_1 of ${values.map((one) => force(one.spring)).join(" or ")}, printed is `
+    const lowerBy = (one) => {
+      const z = one.excess / one.uncertainty;
+      return Number.isFinite(z) ? `; ${z.toFixed(1)} standard errors lower` : "";
+    };
+    const sums = values.map((one) => `${force(one.rest + one.printed[SPRING])} (${one.of}${lowerBy(one)})`).join(" or ");
+    told.push("the printed numbers are inconsistent at 1 of 1 points: K_ap cannot exceed K_0 + K_1, but is printed as "
+      + `${force(values[0].printed[AP])} where K_0 + K_1 is ${sums}; K_ap and H need a K_1 of `
+      + `${values.map((one) => force(one.spring)).join(" or ")}, printed is `
       + `${force(values[0].printed[SPRING])}`);
   }
   const asked = { [DASHPOT]: [SPRING, TIME], [SPRING]: [SPRING], [TIME]: [TIME] }[quantity] ?? (isContradicted ? [SPRING] : []);

@@ -185,8 +185,10 @@ function ownHalfWidth(found, end) {
   const alone = halfWidthOfParts([random], [found.freedom]);
   const both = halfWidthOfParts([random], [found.freedom], found.contribution,
     found.component.map((one) => one[3]));
-  const own = both > 0 ? (within * alone) / both : 0;
-  return Math.sqrt(Math.max(half ** 2 - within ** 2, 0) + own ** 2);
+  // far outside the tested range an interval has no end, and its parts are not known
+  const own = within * (both > 0 ? alone / both : 1);
+  const between = Number.isFinite(half) ? half ** 2 - within ** 2 : half;
+  return Math.sqrt(Math.max(between, 0) + own ** 2);
 }
 
 // Whether the parts are known and the interval reaches as far to either side.

@@ -52,6 +52,10 @@ function rowOf(line, found, levels, system) {
   const row = levelCells(line, levels, system);
   const [unit, factor] = displayUnit(found.unit, system);
   row.push([`value\n[${unit}]`, valueText(found, factor)]);
+  // rope makers and rules state stiffness relative to break strength
+  if (found.unit === "N" && found.quantity !== "branch_tension" && !line.strength_of && Number.isFinite(line.rated_break_strength)) {
+    row.push(["value\n[MBL]", short(found.value / line.rated_break_strength, 3)]);
+  }
   row.push(...intervalsOf(found).map(([head, low, high]) => [head, span(factor, low, high)]));
   row.push(["peak\n[%RBS]", short(100 * found.peak_share, 4)]);
   row.push(["minimum\n[%RBS]", short(100 * found.minimum_share, 4)]);
