@@ -34,33 +34,11 @@ def shape_of_a_million_million_in_chunks(path):
     return _declared(path, chunks=(1 << 20,))
 
 
-def shape_of_a_million_million_in_one_piece(path):
-    return _declared(path)
-
-
-def every_column_a_million_million(path):
-    with h5py.File(path, "w") as file:
-        for name in ("t", "x", "F"):
-            file.create_dataset(name, shape=(10**12,), dtype="f8", chunks=(1 << 20,), fillvalue=7.0)
-    return path
-
-
 def every_column_ten_to_the_nine(path):
     """Fill values alone; a file of two kilobytes."""
     with h5py.File(path, "w") as file:
         for name in ("t", "x", "F"):
             file.create_dataset(name, shape=(10**9,), dtype="f8", chunks=(1 << 20,), fillvalue=7.0)
-    return path
-
-
-def chunks_of_four_gigabytes(path):
-    with h5py.File(path, "w") as file:
-        for name in ("t", "x", "F"):
-            dataset = file.create_dataset(
-                name, shape=(N,), maxshape=(None,), dtype="f8", chunks=(530_000_000,),
-                compression="gzip",
-            )  # fmt: skip
-            assert dataset.chunks
     return path
 
 
@@ -83,31 +61,6 @@ def one_chunk_of_zeros(path, size=1 << 24):
     return path
 
 
-def bomb(path, rows=10**8):
-    """Columns of 10^8 zeros, deflated, every chunk of them stored."""
-    import zlib
-
-    size = 1 << 23
-    packed = zlib.compress(bytes(8 * size), 1)
-    with h5py.File(path, "w") as file:
-        for name in ("t", "x", "F"):
-            dataset = file.create_dataset(
-                name, shape=(rows,), dtype="f8", chunks=(size,), compression="gzip"
-            )
-            for start in range(0, rows, size):
-                dataset.id.write_direct_chunk((start,), packed)
-    return path
-
-
-def matrix_of_a_million_million(path):
-    with h5py.File(path, "w") as file:
-        file.create_dataset("M", shape=(10**6, 10**6), dtype="f8", chunks=(1000, 1000))
-    return path
-
-
-matrix_of_a_million_million.layout = 'matrix = "M"'
-
-
 def columns_without_end(path, count=3_000):
     with h5py.File(path, "w") as file:
         _columns(file)
@@ -123,34 +76,6 @@ def groups_in_a_loop(path):
         two = one.create_group("two")
         two["one"] = one
         two["root"] = file["/"]
-    return path
-
-
-def group_that_holds_itself(path):
-    with h5py.File(path, "w") as file:
-        _columns(file)
-        file["self"] = file["/"]
-    return path
-
-
-def groups_that_branch(path, depth=40):
-    """Each group holds the next one twice: 2^40 ways to the last."""
-    with h5py.File(path, "w") as file:
-        _columns(file)
-        group = file.create_group("g")
-        for _ in range(depth):
-            below = group.create_group("a")
-            group["b"] = below
-            group = below
-    return path
-
-
-def groups_without_end(path, depth=500):
-    with h5py.File(path, "w") as file:
-        _columns(file)
-        group = file
-        for _ in range(depth):
-            group = group.create_group("g")
     return path
 
 
@@ -213,13 +138,6 @@ def object_references(path):
     return path
 
 
-def region_references(path):
-    with h5py.File(path, "w") as file:
-        _columns(file, ["F"])
-        file.create_dataset("F", data=[file["t"].regionref[0:2]] * N, dtype=h5py.regionref_dtype)
-    return path
-
-
 def compound(path):
     records = np.zeros(N, dtype=[("t", "f8"), ("x", "f8"), ("F", [("a", "f8"), ("b", "S4")])])
     with h5py.File(path, "w") as file:
@@ -230,55 +148,10 @@ def compound(path):
 compound.layout = 'matrix = "M"'
 
 
-def fields_of_huge_arrays(path):
-    """Records of which each holds a field of 1.6 GB."""
-    kind = np.dtype([("t", "f8"), ("x", "f8"), ("F", "f8"), ("big", "f8", (2 * 10**8,))])
-    with h5py.File(path, "w") as file:
-        file.create_dataset("M", shape=(N,), dtype=kind)
-    return path
-
-
-fields_of_huge_arrays.layout = 'matrix = "M"'
-
-
-def arrays_in_a_column(path):
-    with h5py.File(path, "w") as file:
-        _columns(file, ["F"])
-        file.create_dataset("F", shape=(N,), dtype=np.dtype(("f8", (3,))))
-    return path
-
-
 def text_of_any_length(path):
     with h5py.File(path, "w") as file:
         _columns(file, ["F"])
         file.create_dataset("F", data=["7 kN" * 1000] * N, dtype=h5py.string_dtype())
-    return path
-
-
-def numbers_of_any_length(path):
-    with h5py.File(path, "w") as file:
-        _columns(file, ["F"])
-        dataset = file.create_dataset("F", shape=(N,), dtype=h5py.vlen_dtype("f8"))
-        for place in range(N):
-            dataset[place] = np.zeros(1000)
-    return path
-
-
-def text_wider_than_memory(path):
-    """Texts of fixed length, two gigabytes each."""
-    with h5py.File(path, "w") as file:
-        _columns(file, ["F"])
-        kind = h5py.h5t.C_S1.copy()
-        kind.set_size(2_000_000_000)
-        space = h5py.h5s.create_simple((N,))
-        h5py.h5d.create(file.id, b"F", kind, space)
-    return path
-
-
-def opaque(path):
-    with h5py.File(path, "w") as file:
-        _columns(file, ["F"])
-        file.create_dataset("F", data=np.zeros(N, dtype="V8"))
     return path
 
 
@@ -291,17 +164,6 @@ def filter_of_a_stranger(path):
         space = h5py.h5s.create_simple((N,))
         dataset = h5py.h5d.create(file.id, b"F", h5py.h5t.NATIVE_DOUBLE, space, dcpl=plist)
         dataset.write_direct_chunk((0,), b"\0" * 240)
-    return path
-
-
-def names_that_are_paths(path):
-    with h5py.File(path, "w") as file:
-        _columns(file)
-        for name in (b"..", b".", b"a\nb", b"\xff\xfe", b"$(reboot)", b"<b>", b" " * 2000):
-            try:
-                h5py.h5d.create(file.id, name, h5py.h5t.NATIVE_DOUBLE, h5py.h5s.create_simple((N,)))
-            except (ValueError, RuntimeError, KeyError):
-                continue
     return path
 
 
@@ -322,13 +184,6 @@ def attribute_of_twenty_megabytes(path):
     return path
 
 
-def unit_of_twenty_megabytes(path):
-    with h5py.File(path, "w", libver="latest") as file:
-        _columns(file)
-        file["F"].attrs["units"] = "x" * 20_000_000
-    return path
-
-
 def unit_that_is_a_reference(path):
     with h5py.File(path, "w") as file:
         _columns(file)
@@ -336,25 +191,12 @@ def unit_that_is_a_reference(path):
     return path
 
 
-def attributes_without_end(path, count=3_000):
-    with h5py.File(path, "w", libver="latest") as file:
-        _columns(file)
-        for number in range(count):
-            file.attrs[f"a{number}"] = number
-    return path
-
-
 HDF5 = {
     "log.h5": [
-        good, shape_of_a_million_million_in_chunks, shape_of_a_million_million_in_one_piece,
-        every_column_a_million_million, every_column_ten_to_the_nine, chunks_of_four_gigabytes,
-        one_chunk_of_zeros, bomb, matrix_of_a_million_million, columns_without_end,
-        groups_in_a_loop, group_that_holds_itself, groups_that_branch, groups_without_end,
-        soft_links_in_a_loop, link_to_another_file, external_link_on_the_way, external_storage,
-        virtual_elsewhere, object_references, region_references, compound, fields_of_huge_arrays,
-        arrays_in_a_column, text_of_any_length, numbers_of_any_length, text_wider_than_memory,
-        opaque, filter_of_a_stranger, names_that_are_paths, name_with_a_nul,
-        attribute_of_twenty_megabytes, unit_of_twenty_megabytes, unit_that_is_a_reference,
-        attributes_without_end,
+        good, shape_of_a_million_million_in_chunks, every_column_ten_to_the_nine,
+        one_chunk_of_zeros, columns_without_end, groups_in_a_loop, soft_links_in_a_loop,
+        link_to_another_file, external_link_on_the_way, external_storage, virtual_elsewhere,
+        object_references, compound, text_of_any_length, filter_of_a_stranger,
+        name_with_a_nul, attribute_of_twenty_megabytes, unit_that_is_a_reference,
     ],
 }  # fmt: skip

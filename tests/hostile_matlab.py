@@ -62,16 +62,6 @@ def bomb(path, size=100):
     return _with(path, struct.pack("<II", 15, len(packed)) + packed)
 
 
-def bomb_of_two_hundred_megabytes(path):
-    return bomb(path, 200)
-
-
-def bomb_of_blanks_behind_a_column(path, size=100):
-    """A good column, and 100 MB behind it in the same deflated element."""
-    packed = _compressed(size, _matrix(b"F", _COLUMNS["F"]))
-    return _with(path, struct.pack("<II", 15, len(packed)) + packed)
-
-
 def bomb_in_another_variable(path):
     """What is not asked for is not inflated."""
     n = 100 * _MEGA // 8
@@ -81,36 +71,12 @@ def bomb_in_another_variable(path):
     return _with(path, struct.pack("<II", 15, len(packed)) + packed + _matrix(b"F", _COLUMNS["F"]))
 
 
-def shape_of_two_thousand_million(path):
-    return _with(path, _matrix(b"F", _COLUMNS["F"], dims=(2**31 - 1, 1)))
-
-
-def shape_that_overflows(path):
-    return _with(path, _matrix(b"F", _COLUMNS["F"], dims=(2**31 - 1, 2**31 - 1, 2**31 - 1)))
-
-
 def shape_below_zero(path):
     return _with(path, _matrix(b"F", _COLUMNS["F"], dims=(-30, 1)))
 
 
-def thousand_dimensions(path):
-    return _with(path, _matrix(b"F", _COLUMNS["F"], dims=(1,) * 1000 + (N,)))
-
-
 def element_longer_than_the_file(path):
     return _with(path, _matrix(b"F", _COLUMNS["F"], n_bytes=0xFFFFFFF0))
-
-
-def element_of_three_gigabytes(path):
-    return _with(path, _matrix(b"F", _COLUMNS["F"], n_bytes=3_000_000_000))
-
-
-def matrix_longer_than_the_file(path):
-    return _with(path, _matrix(b"F", _COLUMNS["F"], length=0xFFFFFFF0))
-
-
-def matrix_shorter_than_it_is(path):
-    return _with(path, _matrix(b"F", _COLUMNS["F"], length=64))
 
 
 def matrix_of_no_length(path):
@@ -118,25 +84,9 @@ def matrix_of_no_length(path):
     return _with(path, _matrix(b"F", _COLUMNS["F"], length=0))
 
 
-def name_without_end(path):
-    body = _element(6, struct.pack("<II", 6, 0)) + _element(5, struct.pack("<ii", N, 1))
-    body += _element(1, b"F", 0xFFFFFFF0) + _element(9, _COLUMNS["F"].tobytes())
-    return _with(path, _element(14, body))
-
-
 def complex_numbers(path):
     scipy.io.savemat(path, _COLUMNS | {"F": _COLUMNS["F"] * 1j})
     return path
-
-
-def nested_cells(path, depth=2000):
-    """A cell in a cell in a cell; a reader that calls itself runs out of stack."""
-    inner = _matrix(b"", [1.0])
-    for _ in range(depth):
-        body = _element(6, struct.pack("<II", 1, 0)) + _element(5, struct.pack("<ii", 1, 1))
-        inner = _element(14, body + _element(1, b"") + inner)
-    body = _element(6, struct.pack("<II", 1, 0)) + _element(5, struct.pack("<ii", 1, 1))
-    return _with(path, _element(14, body + _element(1, b"F") + inner))
 
 
 def cells_nested_a_hundred_thousand_times(path):
@@ -152,49 +102,14 @@ def cells_nested_a_hundred_thousand_times(path):
     return _with(path, _element(14, body))
 
 
-def cells_that_claim_to_be_many(path):
-    """A cell array of 2^31 cells of which none is there."""
-    body = _element(6, struct.pack("<II", 1, 0)) + _element(5, struct.pack("<ii", 2**31 - 1, 1))
-    return _with(path, _element(14, body + _element(1, b"F")))
-
-
-def struct_that_claims_to_be_large(path):
-    body = _element(6, struct.pack("<II", 2, 0)) + _element(5, struct.pack("<ii", 2**31 - 1, 1))
-    body += _element(1, b"F") + struct.pack("<IHH", 5, 4, 0)[:0]
-    body += struct.pack("<HHi", 5, 4, 32) + _element(1, b"a".ljust(32, b"\0"))
-    return _with(path, _element(14, body))
-
-
-def struct_of_structs(path):
-    value = {"a": 1.0}
-    for _ in range(25):
-        value = {"a": value}
-    scipy.io.savemat(path, _COLUMNS | {"F": value})
-    return path
-
-
 def text_for_numbers(path):
     scipy.io.savemat(path, _COLUMNS | {"F": np.array(["7 kN"] * N)})
     return path
 
 
-def function_handle(path):
-    """As MATLAB writes @(x) system('reboot')."""
-    body = _element(6, struct.pack("<II", 16, 0)) + _element(5, struct.pack("<ii", 1, 1))
-    body += _element(1, b"F") + _matrix(b"", [1.0])
-    return _with(path, _element(14, body))
-
-
 def opaque_object(path):
     body = _element(6, struct.pack("<II", 17, 0)) + _element(1, b"F") + _element(1, b"MCOS")
     body += _element(1, b"table") + _matrix(b"", [1.0])
-    return _with(path, _element(14, body))
-
-
-def java_object(path):
-    """What a Java object is stored as: serialised, which nothing here may undo."""
-    body = _element(6, struct.pack("<II", 17, 0)) + _element(1, b"F") + _element(1, b"java")
-    body += _element(1, b"java.util.HashMap") + _matrix(b"", [1.0])
     return _with(path, _element(14, body))
 
 
@@ -220,37 +135,6 @@ def numbers_of_no_type_in_a_cell(path):
     return _with(path, _element(14, body + _element(1, b"F") + _numbers_of_no_type(b"")))
 
 
-def numbers_of_no_type_in_a_handle_in_a_cell(path):
-    handle = _element(6, struct.pack("<II", 16, 0)) + _element(5, struct.pack("<ii", 1, 1))
-    handle = _element(14, handle + _element(1, b"") + _numbers_of_no_type(b""))
-    body = _element(6, struct.pack("<II", 1, 0)) + _element(5, struct.pack("<ii", 1, 1))
-    return _with(path, _element(14, body + _element(1, b"F") + handle))
-
-
-def imaginary_numbers_of_no_type_in_a_cell(path):
-    inner = _element(6, struct.pack("<II", 6 | 0x0800, 0)) + _element(5, struct.pack("<ii", 1, 1))
-    inner += _element(1, b"") + _element(9, struct.pack("<d", 1.0))
-    inner = _element(14, inner + _element(55156, struct.pack("<d", 1.0)))
-    body = _element(6, struct.pack("<II", 1, 0)) + _element(5, struct.pack("<ii", 1, 1))
-    return _with(path, _element(14, body + _element(1, b"F") + inner))
-
-
-def sparse_of_no_type_in_a_cell(path):
-    inner = _element(6, struct.pack("<II", 5, 1)) + _element(5, struct.pack("<ii", 1, 1))
-    inner += _element(1, b"") + _element(55156, struct.pack("<i", 0))
-    inner += _element(5, struct.pack("<i", 0)) + _element(9, struct.pack("<d", 1.0))
-    body = _element(6, struct.pack("<II", 1, 0)) + _element(5, struct.pack("<ii", 1, 1))
-    return _with(path, _element(14, body + _element(1, b"F") + _element(14, inner)))
-
-
-def variables_without_end(path, count=5_000):
-    return _with(
-        path,
-        b"".join(_matrix(f"c{i}".encode(), [1.0, 2.0]) for i in range(count))
-        + _matrix(b"F", _COLUMNS["F"]),
-    )
-
-
 def same_variable_twice(path):
     return _with(path, _matrix(b"F", _COLUMNS["F"]) + _matrix(b"F", -_COLUMNS["F"]))
 
@@ -272,25 +156,6 @@ def v4(path):
 
 def v4_of_two_thousand_million_rows(path):
     return _v4_with(path, _v4(b"F", _COLUMNS["F"], rows=2**31 - 1))
-
-
-def v4_that_overflows(path):
-    return _v4_with(path, _v4(b"F", _COLUMNS["F"], rows=2**31 - 1, columns=2**31 - 1))
-
-
-def v4_of_rows_below_zero(path):
-    return _v4_with(path, _v4(b"F", _COLUMNS["F"], rows=-30))
-
-
-def v4_of_rows_that_lead_back(path):
-    """The next variable is said to begin where this one does."""
-    return _v4_with(path, _v4(b"F", [], rows=-1, columns=3)[: -0 or None])
-
-
-def v4_of_a_name_without_end(path):
-    force = bytearray(_v4(b"F", _COLUMNS["F"]))
-    struct.pack_into("<i", force, 16, 2**31 - 1)
-    return _v4_with(path, bytes(force))
 
 
 def v4_sparse(path):
@@ -325,37 +190,10 @@ def v73_of_a_million_million(path):
     return _v73(path, lambda file: _force(file, shape=(1, 10**12), dtype="f8", chunks=(1, 1 << 20)))
 
 
-def v73_of_two_thousand_million_characters(path):
-    return _v73(
-        path,
-        lambda file: _force(
-            file, kind="char", shape=(1, 2 * 10**9), dtype="u2", chunks=(1, 1 << 20)
-        ),
-    )
-
-
 def v73_cells_that_refer_to_themselves(path):
     def write(file):
         dataset = _force(file, shape=(1, N), dtype=h5py.ref_dtype, kind="cell")
         dataset[...] = dataset.ref
-
-    return _v73(path, write)
-
-
-def v73_cells_that_refer_to_a_bomb(path):
-    def write(file):
-        text = file.create_dataset("#refs#/a", shape=(1, 10**10), dtype="u2", chunks=(1, 1 << 20))
-        text.attrs["MATLAB_class"] = np.bytes_("char")
-        dataset = _force(file, shape=(1, N), dtype=h5py.ref_dtype, kind="cell")
-        dataset[...] = text.ref
-
-    return _v73(path, write)
-
-
-def v73_structs_in_a_loop(path):
-    def write(file):
-        group = file.create_group("s")
-        group["s"] = group
 
     return _v73(path, write)
 
@@ -367,40 +205,13 @@ def v73_class_of_no_text(path):
     return _v73(path, write)
 
 
-def v73_class_of_numbers(path):
-    def write(file):
-        file["F"].attrs["MATLAB_class"] = np.arange(1000)
-        file["F"].attrs["MATLAB_empty"] = np.arange(3)
-
-    return _v73(path, write)
-
-
-def text_without_end_for_a_name(path):
-    path.write_bytes(_HEADER + b"\xff" * 100_000)
-    return path
-
-
-def nothing_but_zeros(path):
-    path.write_bytes(bytes(1000))
-    return path
-
-
 MATLAB = {
     "log.mat": [
-        good, bomb, bomb_of_two_hundred_megabytes, bomb_of_blanks_behind_a_column,
-        bomb_in_another_variable, shape_of_two_thousand_million, shape_that_overflows,
-        shape_below_zero, thousand_dimensions, element_longer_than_the_file,
-        element_of_three_gigabytes, matrix_longer_than_the_file, matrix_shorter_than_it_is,
-        matrix_of_no_length, name_without_end, complex_numbers, nested_cells,
-        cells_nested_a_hundred_thousand_times, cells_that_claim_to_be_many,
-        struct_that_claims_to_be_large, struct_of_structs, text_for_numbers, function_handle,
-        opaque_object, java_object, sparse, numbers_of_no_type, numbers_of_no_type_in_a_cell,
-        numbers_of_no_type_in_a_handle_in_a_cell, imaginary_numbers_of_no_type_in_a_cell,
-        sparse_of_no_type_in_a_cell, variables_without_end, same_variable_twice, v4,
-        v4_of_two_thousand_million_rows, v4_that_overflows, v4_of_rows_below_zero,
-        v4_of_rows_that_lead_back, v4_of_a_name_without_end, v4_sparse, v73,
-        v73_of_a_million_million, v73_of_two_thousand_million_characters,
-        v73_cells_that_refer_to_themselves, v73_cells_that_refer_to_a_bomb, v73_structs_in_a_loop,
-        v73_class_of_no_text, v73_class_of_numbers, text_without_end_for_a_name, nothing_but_zeros,
+        good, bomb, bomb_in_another_variable, shape_below_zero,
+        element_longer_than_the_file, matrix_of_no_length, complex_numbers,
+        cells_nested_a_hundred_thousand_times, text_for_numbers, opaque_object, sparse,
+        numbers_of_no_type, numbers_of_no_type_in_a_cell, same_variable_twice, v4,
+        v4_of_two_thousand_million_rows, v4_sparse, v73, v73_of_a_million_million,
+        v73_cells_that_refer_to_themselves, v73_class_of_no_text,
     ],
 }  # fmt: skip

@@ -30,7 +30,7 @@ def _sheet(body):
     return lambda text: text.replace("</sheetData>", body + "</sheetData>")
 
 
-def _pieces(path, name, before, piece, count, after, replace=None, add=None):
+def _pieces(path, name, before, piece, count, after):
     """A workbook in which one member is a piece, many times."""
     good = io.BytesIO()
     write_xlsx(good, {"log": ROWS})
@@ -40,10 +40,7 @@ def _pieces(path, name, before, piece, count, after, replace=None, add=None):
     ):
         for held in source.namelist():
             if held != name:
-                text = source.read(held).decode()
-                target.writestr(held, replace[held](text) if held in (replace or {}) else text)
-        for held, text in (add or {}).items():
-            target.writestr(held, text)
+                target.writestr(held, source.read(held))
         with target.open(name, "w", force_zip64=True) as stream:
             stream.write(before.encode())
             for _ in range(count):
@@ -56,25 +53,12 @@ _MEGA = 1 << 20
 SIZE = 64  # MB that the bombs unpack to: more than the limit of the tests
 
 
-def good(path):
-    return write_xlsx(path, {"log": ROWS})
-
-
 def bomb_of_a_sheet(path, size=SIZE):
     """Blanks inside the sheet, more than memory may hold."""
     before = f'{_HEAD}<worksheet xmlns="{_MAIN}"><sheetData>'
     return _pieces(
         path, "xl/worksheets/sheet1.xml", before, b" " * _MEGA, size, "</sheetData></worksheet>"
     )
-
-
-def bomb_of_cells(path, size=SIZE):
-    """Cells without a place of their own, one after another."""
-    cell = b"<c><v>1</v></c>"
-    row = b"<row>" + 1000 * cell + b"</row>"
-    before = f'{_HEAD}<worksheet xmlns="{_MAIN}"><sheetData>'
-    count = size * _MEGA // len(row)
-    return _pieces(path, "xl/worksheets/sheet1.xml", before, row, count, "</sheetData></worksheet>")
 
 
 _STRINGS = {
@@ -86,47 +70,13 @@ _STRINGS = {
 }
 
 
-def bomb_of_shared_strings(path, size=SIZE):
-    piece = b"<si><t>a</t></si>" * 60_000
-    count = size * _MEGA // len(piece)
-    return _pieces(
-        path,
-        "xl/sharedStrings.xml",
-        f'{_HEAD}<sst xmlns="{_MAIN}">',
-        piece,
-        count,
-        "</sst>",
-        _STRINGS,
-    )
-
-
-def strings_that_lie_about_their_count(path):
-    text = f'{_HEAD}<sst xmlns="{_MAIN}" count="1" uniqueCount="18446744073709551615"><si><t>a</t></si></sst>'
-    return _replaced(path, _STRINGS, {"xl/sharedStrings.xml": text})
-
-
 def strings_that_claim_billions(path):
     text = f'{_HEAD}<sst xmlns="{_MAIN}" count="1" uniqueCount="9000000000"><si><t>a</t></si></sst>'
     return _replaced(path, _STRINGS, {"xl/sharedStrings.xml": text})
 
 
-def bomb_of_styles(path, size=SIZE):
-    piece = b'<xf numFmtId="0"/>' * 60_000
-    before = f'{_HEAD}<styleSheet xmlns="{_MAIN}"><cellXfs count="1">'
-    count = size * _MEGA // len(piece)
-    return _pieces(path, "xl/styles.xml", before, piece, count, "</cellXfs></styleSheet>")
-
-
-def nested(path):
-    """A workbook inside the workbook, with a bomb inside that."""
-    inner = io.BytesIO()
-    with zipfile.ZipFile(inner, "w", zipfile.ZIP_DEFLATED) as archive:
-        archive.writestr("bomb", b"\0" * (50 * _MEGA))
-    return _replaced(path, add={"xl/embeddings/inner.xlsx": inner.getvalue()})
-
-
-def _lying(path, size):
-    """The directory of the zip says another unpacked size than comes out."""
+def size_stated_too_small(path):
+    """The directory of the zip says a smaller unpacked size than comes out."""
     bomb_of_a_sheet(path, 64)
     data = bytearray(path.read_bytes())
     for mark, place in ((b"PK\x01\x02", 24), (b"PK\x03\x04", 22)):
@@ -134,17 +84,9 @@ def _lying(path, size):
         while (at := data.find(mark, at + 1)) >= 0:
             name = 46 if mark == b"PK\x01\x02" else 30
             if data[at + name : at + name + 24] == b"xl/worksheets/sheet1.xml":
-                struct.pack_into("<I", data, at + place, size)
+                struct.pack_into("<I", data, at + place, 1000)
     path.write_bytes(data)
     return path
-
-
-def size_stated_too_small(path):
-    return _lying(path, 1000)
-
-
-def size_stated_too_large(path):
-    return _lying(path, 0xFFFFFFF0)
 
 
 def overlapping_members(path):
@@ -167,25 +109,6 @@ def overlapping_members(path):
     struct.pack_into("<HHII", tail, 8, count, count, len(entries), start)
     path.write_bytes(data[:start] + entries + tail)
     return path
-
-
-def many_members(path, count=5_000):
-    return _replaced(path, add={f"xl/media/{i}": "" for i in range(count)})
-
-
-def entity_bomb(path):
-    """Ten to the nine lol."""
-    entities = "".join(f'<!ENTITY l{i} "{10 * f"&l{i - 1};"}">' for i in range(1, 10))
-    doctype = f'<!DOCTYPE worksheet [<!ENTITY l0 "lol">{entities}]>'
-    cell = '<row r="32"><c r="A32" t="inlineStr"><is><t>&l9;</t></is></c></row>'
-    return _replaced(
-        path,
-        {
-            "xl/worksheets/sheet1.xml": lambda text: _sheet(cell)(text).replace(
-                "?>", "?>" + doctype, 1
-            )
-        },
-    )
 
 
 def external_entity(path, target="file:///etc/passwd"):
@@ -232,10 +155,6 @@ def sheet_outside_the_file(path, target="file:///etc/passwd", mode=' TargetMode=
     )
 
 
-def sheet_above_the_file(path):
-    return sheet_outside_the_file(path, "../../../../../../etc/passwd", "")
-
-
 def formulas_with_values(path):
     cell = '<row r="32"><c r="A32"><f>A31+0.1</f><v>3</v></c><c r="B32"><f>B31</f><v>1.3</v></c><c r="C32"><f>C31+1</f><v>36</v></c></row>'
     return _replaced(path, {"xl/worksheets/sheet1.xml": _sheet(cell)})
@@ -243,12 +162,6 @@ def formulas_with_values(path):
 
 def formulas_without_values(path):
     cell = '<row r="32"><c r="A32"><f>A31+0.1</f></c><c r="B32"><f>B31</f></c><c r="C32"><f>C31+1</f></c></row><row r="33"><c r="A33"><v>3.1</v></c><c r="B33"><v>1</v></c><c r="C33"><v>1</v></c></row>'
-    return _replaced(path, {"xl/worksheets/sheet1.xml": _sheet(cell)})
-
-
-def last_rows_without_values(path):
-    """Formulas whose values no program has computed, in the last rows alone."""
-    cell = '<row r="32"><c r="A32"><f>A31+0.1</f></c><c r="B32"><f>B31</f></c><c r="C32"><f>C31+1</f></c></row>'
     return _replaced(path, {"xl/worksheets/sheet1.xml": _sheet(cell)})
 
 
@@ -266,17 +179,6 @@ def macros(path):
     )
 
 
-def dimension_of_everything(path):
-    return _replaced(
-        path,
-        {
-            "xl/worksheets/sheet1.xml": lambda text: text.replace(
-                "<sheetData>", '<dimension ref="A1:XFD1048576"/><sheetData>'
-            )
-        },
-    )
-
-
 def one_cell_in_the_last_corner(path):
     return _replaced(
         path,
@@ -288,56 +190,11 @@ def one_cell_in_the_last_corner(path):
     )
 
 
-def one_cell_in_the_last_column(path):
-    return _replaced(
-        path,
-        {"xl/worksheets/sheet1.xml": _sheet('<row r="32"><c r="XFD32"><v>1</v></c></row>')},
-    )
-
-
 def one_cell_in_the_last_row(path):
     return _replaced(
         path,
         {"xl/worksheets/sheet1.xml": _sheet('<row r="1048576"><c r="A1048576"><v>1</v></c></row>')},
     )
-
-
-def one_cell_beyond_every_sheet(path):
-    return _replaced(
-        path,
-        {
-            "xl/worksheets/sheet1.xml": _sheet(
-                '<row r="4294967295"><c r="ZZZZZZ4294967295"><v>1</v></c></row>'
-            )
-        },
-    )
-
-
-def rows_backwards(path):
-    return _replaced(
-        path,
-        {
-            "xl/worksheets/sheet1.xml": _sheet(
-                '<row r="1048576"><c><v>1</v></c></row><row r="2"><c r="XFD2"><v>1</v></c></row>'
-            )
-        },
-    )
-
-
-def merged_cells(path):
-    merged = '<mergeCell ref="A1:XFD1048576"/>' * 1000
-    return _replaced(
-        path,
-        {
-            "xl/worksheets/sheet1.xml": lambda text: text.replace(
-                "</sheetData>", f"</sheetData><mergeCells>{merged}</mergeCells>"
-            )
-        },
-    )
-
-
-def many_sheets(path, count=2_000):
-    return write_xlsx(path, {f"s{i}": [["t"]] for i in range(count)} | {"log": ROWS})
 
 
 def _cfb(streams):
@@ -392,16 +249,8 @@ def compound_file_that_lies(path, at, value):
     return path
 
 
-def xls_with_a_huge_table_of_tables(path):
-    return compound_file_that_lies(path, 72, 0xFFFFFFFF)
-
-
 def xls_with_a_huge_table(path):
     return compound_file_that_lies(path, 44, 0xFFFFFFFF)
-
-
-def xls_with_a_huge_mini_table(path):
-    return compound_file_that_lies(path, 64, 0xFFFFFFFF)
 
 
 def xls_whose_sectors_run_in_a_circle(path):
@@ -412,46 +261,12 @@ def xls_whose_sectors_run_in_a_circle(path):
     return path
 
 
-def xls_with_huge_sectors(path):
-    data = bytearray(_cfb({"Workbook": b"\0" * 5000}))
-    struct.pack_into("<H", data, 30, 31)
-    path.write_bytes(data)
-    return path
-
-
-def _biff(*records):
-    return b"".join(struct.pack("<HH", kind, len(data)) + data for kind, data in records)
-
-
-def xls(path, *cells, strings=None):
-    """A workbook of the oldest kind of one sheet, with the cells (row, column, number)."""
-    begin = (0x809, struct.pack("<HHHHII", 0x600, 5, 0, 0, 0, 0))
-    end = (0x0A, b"")
-    shared = [] if strings is None else [(0xFC, strings)]
-    name = b"log"
-    bound = lambda at: (0x85, struct.pack("<IHBB", at, 0, len(name), 0) + name)  # noqa: E731
-    globals_ = _biff(begin, bound(0), *shared, end)
-    globals_ = _biff(begin, bound(len(globals_)), *shared, end)
-    sheet_begin = (0x809, struct.pack("<HHHHII", 0x600, 0x10, 0, 0, 0, 0))
-    numbers = [(0x203, struct.pack("<HHHd", row, column, 0, value)) for row, column, value in cells]
-    path.write_bytes(_cfb({"Workbook": globals_ + _biff(sheet_begin, *numbers, end)}))
-    return path
-
-
-def xls_with_a_cell_in_the_last_corner(path):
-    return xls(path, (0, 0, 1.0), (65535, 65535, 2.0))
-
-
-def xls_with_strings_that_lie_about_their_count(path):
-    return xls(path, (0, 0, 1.0), strings=struct.pack("<II", 0xFFFFFFFF, 0xFFFFFFFF))
-
-
 def xls_that_is_text(path):
     path.write_text("t\tx\tF\n0\t1\t2\n")
     return path
 
 
-def _ods(path, body, prolog=""):
+def _ods(path, body):
     office = "urn:oasis:names:tc:opendocument:xmlns"
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr("mimetype", "application/vnd.oasis.opendocument.spreadsheet")
@@ -461,7 +276,7 @@ def _ods(path, body, prolog=""):
         )
         archive.writestr(
             "content.xml",
-            f'<?xml version="1.0" encoding="UTF-8"?>{prolog}<office:document-content '
+            f'<?xml version="1.0" encoding="UTF-8"?><office:document-content '
             f'xmlns:office="{office}:office:1.0" xmlns:table="{office}:table:1.0" '
             f'xmlns:text="{office}:text:1.0"><office:body><office:spreadsheet>'
             f'<table:table table:name="log">{body}</table:table></office:spreadsheet>'
@@ -473,124 +288,24 @@ def _ods(path, body, prolog=""):
 _ODS_CELL = '<table:table-cell{} office:value-type="float" office:value="1"/>'
 
 
-def ods_with_a_cell_that_repeats(path):
-    cell = _ODS_CELL.format(' table:number-columns-repeated="4000000000"')
-    return _ods(path, f"<table:table-row>{cell}</table:table-row>")
-
-
 def ods_with_a_row_that_repeats(path):
     cell = _ODS_CELL.format(' table:number-columns-repeated="16384"')
     row = f'<table:table-row table:number-rows-repeated="1048576">{cell}</table:table-row>'
     return _ods(path, row)
 
 
-def ods_with_text_of_blanks(path):
-    cell = (
-        '<table:table-cell office:value-type="string"><text:p>a<text:s text:c="4000000000"/></text:p>'
-        "</table:table-cell>"
-    )
-    return _ods(path, f"<table:table-row>{cell}</table:table-row>")
-
-
-def ods_with_entities(path):
-    entities = "".join(f'<!ENTITY l{i} "{10 * f"&l{i - 1};"}">' for i in range(1, 10))
-    cell = '<table:table-cell office:value-type="string"><text:p>&l9;</text:p></table:table-cell>'
-    return _ods(
-        path,
-        f"<table:table-row>{cell}</table:table-row>",
-        f'<!DOCTYPE x [<!ENTITY l0 "lol">{entities}]>',
-    )
-
-
-def _xlsb_record(kind, data):
-    head = bytes([kind]) if kind < 128 else bytes([(kind & 0x7F) | 0x80, kind >> 7])
-    size, length = len(data), b""
-    while True:
-        length += bytes([(size & 0x7F) | (0x80 if size > 0x7F else 0)])
-        size >>= 7
-        if not size:
-            return head + length + data
-
-
-def xlsb(path, *cells, strings=None, more=b""):
-    """A binary workbook with the cells (row, column, number)."""
-
-    def wide(text):
-        return struct.pack("<I", len(text)) + text.encode("utf-16-le")
-
-    workbook = (
-        _xlsb_record(0x83, b"")
-        + _xlsb_record(0x8F, b"")
-        + _xlsb_record(0x9C, struct.pack("<II", 0, 1) + wide("rId1") + wide("log"))
-        + _xlsb_record(0x90, b"")
-        + _xlsb_record(0x84, b"")
-    )
-    sheet = _xlsb_record(0x81, b"") + _xlsb_record(0x94, struct.pack("<IIII", 0, 31, 0, 2))
-    sheet += _xlsb_record(0x91, b"")
-    for row, column, value in cells:
-        sheet += _xlsb_record(0, struct.pack("<IIHHHII", row, 0, 0, 0, 0, 0, 0))
-        sheet += _xlsb_record(5, struct.pack("<IId", column, 0, value))
-    sheet += more + _xlsb_record(0x92, b"") + _xlsb_record(0x82, b"")
-    with zipfile.ZipFile(path, "w") as archive:
-        archive.writestr("[Content_Types].xml", f'{_HEAD}<Types xmlns="{_PACKAGE}/content-types"/>')
-        archive.writestr(
-            "xl/_rels/workbook.bin.rels",
-            f'{_HEAD}<Relationships xmlns="{_PACKAGE}/relationships"><Relationship Id="rId1" '
-            f'Type="{_RELATION}/worksheet" Target="worksheets/sheet1.bin"/></Relationships>',
-        )
-        archive.writestr("xl/workbook.bin", workbook)
-        archive.writestr("xl/worksheets/sheet1.bin", sheet)
-        if strings is not None:
-            archive.writestr("xl/sharedStrings.bin", strings)
-    return path
-
-
-def good_xlsb(path):
-    return xlsb(path, *((r, c, float(r + c)) for r in range(30) for c in range(3)))
-
-
-def xlsb_with_a_cell_in_the_last_corner(path):
-    return xlsb(path, (0, 0, 1.0), (1048575, 16383, 2.0))
-
-
-def xlsb_with_a_cell_beyond_every_sheet(path):
-    return xlsb(path, (0, 0, 1.0), (0xFFFFFFF0, 0xFFFFFFF0, 2.0))
-
-
-def xlsb_with_strings_that_lie_about_their_count(path):
-    strings = _xlsb_record(0x9F, struct.pack("<II", 0xFFFFFFFF, 0xFFFFFFFF))
-    return xlsb(path, (0, 0, 1.0), strings=strings + _xlsb_record(0xA0, b""))
-
-
-def xlsb_with_a_record_that_lies_about_its_length(path):
-    return xlsb(path, (0, 0, 1.0), more=bytes([5, 0xFF, 0xFF, 0xFF, 0x7F]))
-
-
 WORKBOOKS = {
     "log.xlsx": [
-        bomb_of_a_sheet, bomb_of_cells, bomb_of_shared_strings, bomb_of_styles,
-        strings_that_lie_about_their_count, strings_that_claim_billions, nested,
-        size_stated_too_small, size_stated_too_large, overlapping_members, many_members,
-        entity_bomb, external_entity, external_link, sheet_outside_the_file, sheet_above_the_file,
-        formulas_with_values, formulas_without_values, last_rows_without_values,
-        dimension_of_everything, one_cell_in_the_last_corner, one_cell_in_the_last_column,
-        one_cell_in_the_last_row, one_cell_beyond_every_sheet, rows_backwards, merged_cells,
-        many_sheets, encrypted,
+        bomb_of_a_sheet, strings_that_claim_billions, size_stated_too_small,
+        overlapping_members, external_entity, external_link, sheet_outside_the_file,
+        formulas_with_values, formulas_without_values, one_cell_in_the_last_corner,
+        one_cell_in_the_last_row, encrypted,
     ],
     "log.xlsm": [macros],
     "log.xls": [
-        xls_with_a_huge_table_of_tables, xls_with_a_huge_table, xls_with_a_huge_mini_table,
-        xls_whose_sectors_run_in_a_circle, xls_with_huge_sectors,
-        xls_with_a_cell_in_the_last_corner, xls_with_strings_that_lie_about_their_count,
-        xls_that_is_text,
+        xls_with_a_huge_table, xls_whose_sectors_run_in_a_circle, xls_that_is_text,
     ],
     "log.ods": [
-        ods_with_a_cell_that_repeats, ods_with_a_row_that_repeats, ods_with_text_of_blanks,
-        ods_with_entities,
-    ],
-    "log.xlsb": [
-        good_xlsb, xlsb_with_a_cell_in_the_last_corner, xlsb_with_a_cell_beyond_every_sheet,
-        xlsb_with_strings_that_lie_about_their_count,
-        xlsb_with_a_record_that_lies_about_its_length,
+        ods_with_a_row_that_repeats,
     ],
 }  # fmt: skip
