@@ -11,7 +11,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
-from reduction.record.arrays import noise_of_differences, run_blocks
+from reduction.record.arrays import finite_median, noise_of_differences, run_blocks
 from reduction.record.errors import DataError
 from reduction.record.measurement import Bools, Floats, Integers, Quality, Record
 from reduction.record.notes import Note, note
@@ -782,8 +782,7 @@ def _step(time: Floats) -> float:
     """Median time step; 0 where no two consecutive samples have a stamp."""
     first = np.arange(0, time.size - 1, max(1, time.size // _STEPS_READ))
     steps = take_samples(time, first + 1) - take_samples(time, first)
-    steps = steps[np.isfinite(steps)]
-    return float(np.median(steps)) if steps.size else 0.0
+    return finite_median(steps, otherwise=0.0)
 
 
 def _updates(values: Floats) -> Integers | None:

@@ -70,6 +70,8 @@ def as_same_shape(**named: ArrayLike) -> tuple[Floats, ...]:
     return tuple(arrays.values())
 
 
+Number = TypeVar("Number", bound=np.generic)
+
 MAD_TO_DEVIATION = 1.4826
 """Standard deviation of a normal error over the median of its magnitude. [1]"""
 
@@ -93,6 +95,23 @@ def runs_of_true(flags: Bools) -> Integers:
      [3 4]]
     """
     return np.flatnonzero(np.diff(flags, prepend=False, append=False)).reshape(-1, 2)
+
+
+def evenly_spread(values: NDArray[Number], most: int) -> NDArray[Number]:
+    """At most ``most`` of some values or rows, spread evenly from the first to the last.
+
+    Examples
+    --------
+    >>> print(evenly_spread(np.arange(10), 4), evenly_spread(np.arange(3), 4))
+    [0 3 6 9] [0 1 2]
+    """
+    return values[np.linspace(0, len(values) - 1, min(len(values), most)).astype(np.intp)]
+
+
+def finite_median(values: Floats, *, otherwise: float = float("nan")) -> float:
+    """Median of the finite values; ``otherwise`` without any."""
+    known = values[np.isfinite(values)]
+    return float(np.median(known)) if known.size else otherwise
 
 
 def require_of_design(

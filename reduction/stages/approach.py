@@ -16,6 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from reduction.record.arrays import finite_median
 from reduction.record.measurement import Bools, Floats
 from reduction.record.samples import BLOCK, finite_extremes, last_sample, release_pages
 
@@ -251,8 +252,7 @@ def _early_level(held: Floats) -> float:
     """Median of the first tenth of a standstill, which may begin with the end of its approach."""
     n_early = max(held.size // 10, min(held.size, _LEVEL_SAMPLES))
     early = held[: n_early : max(n_early // _LEVEL_SAMPLES_MOST, 1)]
-    early = early[np.isfinite(early)]
-    return float(np.median(early)) if early.size else float("nan")
+    return finite_median(early)
 
 
 def corner_in_noise(

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from reduction.record.arrays import evenly_spread, finite_median
 from reduction.record.measurement import Bools, Floats, Integers, read_only_arrays
 from reduction.record.samples import (
     finite_extremes,
@@ -171,17 +172,14 @@ def levels_of_test(
     like_means, mean_ramps = np.full((2, n_specimens, 3), np.nan)
     valley_position, valley_tension, valley_strain = np.nan, nothing, nothing
     if cycles is not None and cycles.n_cycles:
-        some = np.unique(
-            np.linspace(0, cycles.n_cycles - 1, min(cycles.n_cycles, _MOST_CYCLES)).astype(int)
-        )
+        some = evenly_spread(np.arange(cycles.n_cycles), _MOST_CYCLES)
         frequency = 1 / _period(take_samples(time, cycles.first), take_samples(time, cycles.last))
         peak, valley = cycles.branch_last[some, 0], cycles.branch_first[some, 0]
         rise = take_samples(position, peak) - take_samples(position, valley)
         # a cycle that a machine counted without a stroke reaches its peak in zero time
         with np.errstate(divide="ignore", invalid="ignore"):
             rates = np.abs(rise) / (take_samples(time, peak) - take_samples(time, valley))
-        rates = rates[np.isfinite(rates)]
-        speed = float(np.median(rates)) if rates.size else np.nan
+        speed = finite_median(rates)
         for index, load in enumerate(tension):
             rows = [_of_cycle(time, position, load, int(cycles.first[one]), int(cycles.last[one]))
                     for one in some]  # fmt: skip
@@ -218,7 +216,7 @@ def levels_of_test(
         lead=lead,
         strain_per_length=_strain_per_length(position, measured_strain, n_specimens),
         slack_strain=nothing if measured_strain is None or not rests.size else np.array([
-            _middle(one[standstills.first[rests[0]] : standstills.last[rests[0]] + 1])
+            finite_median(one[standstills.first[rests[0]] : standstills.last[rests[0]] + 1])
             for one in measured_strain
         ]),
         final_share=_final_share(position, tension),
@@ -318,7 +316,9 @@ def _three_means(load: Floats, cycles: Cycles, some: Integers) -> Floats:
     some = some[1:]
     if some.size < _FEWEST_LIKE - 1:
         return np.full(3, np.nan)
-    means = np.array([_middle(load[cycles.first[one] : cycles.last[one] + 1]) for one in some])
+    means = np.array(
+        [finite_median(load[cycles.first[one] : cycles.last[one] + 1]) for one in some]
+    )
     n, part = means.size, max(means.size // 4, 1)
     middle = (n - part) // 2
     return np.array([
@@ -337,7 +337,7 @@ def _mean_ramp(
     Also the growth of half the range of the cycles between them.
     """
     loads = [load[cycles.first[one] : cycles.last[one] + 1] for one in some]
-    means = np.array([_middle(one) for one in loads])
+    means = np.array([finite_median(one) for one in loads])
     rows = np.stack([means] if middles is None else [means, middles])
     if means.size < _FEWEST_LIKE or not np.isfinite(rows).all() or not np.ptp(rows, axis=1).all():
         return (np.nan,) * 3
@@ -348,12 +348,6 @@ def _mean_ramp(
     halves = [np.subtract(*finite_extremes(one)[::-1]) / 2 for one in loads]
     grows = np.polyfit(some, halves, 1)[0] * (some[-1] - some[0])
     return float(start + slope * some[0]), float(start + slope * some[-1]), float(grows)
-
-
-def _middle(values: Floats) -> float:
-    """Median of the known values; NaN if there are none."""
-    known = values[np.isfinite(values)]
-    return float(np.median(known)) if known.size else np.nan
 
 
 def _of_cycle(

@@ -17,7 +17,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from reduction.record.arrays import runs_of_true
+from reduction.record.arrays import evenly_spread, runs_of_true
 from reduction.record.measurement import Bools, Floats, Integers
 from reduction.record.notes import Note, note
 from reduction.record.samples import BLOCK, sample_blocks, step_of_codes, take_samples
@@ -113,9 +113,8 @@ def _usual_turn(
     """Median duration at the level of some reversals of a channel; 0 if they are too few."""
     if places.size < _FEWEST_DWELLS:
         return 0.0
-    some = places[np.linspace(0, places.size - 1, min(places.size, _TURNS_READ)).astype(int)]
     lasting = []
-    for place in some.tolist():
+    for place in evenly_spread(places, _TURNS_READ).tolist():
         at = int(reversals[place])
         first = int(reversals[max(place - 1, 0)])
         last = int(reversals[min(place + 1, reversals.size - 1)])

@@ -23,8 +23,8 @@ from typing import Literal
 
 import numpy as np
 
-from reduction.record.arrays import MAD_TO_DEVIATION
-from reduction.record.measurement import Bools, Floats, Integers
+from reduction.record.arrays import MAD_TO_DEVIATION, evenly_spread, finite_median
+from reduction.record.measurement import Bools, Floats
 from reduction.record.notes import Note, note
 from reduction.record.samples import take_samples
 from reduction.stages.cycles.cycle_product import PLACE_OF_DRIFT, Cycles, Loops
@@ -176,7 +176,7 @@ def unlike_neighbours(
     threes = np.flatnonzero(follows[1:-1] & follows[2:])
     if threes.size >= _FEWEST_CYCLES - 1:
         # from middle to middle of the rises, which noise and rests at the turns do not shift
-        which = (_spread(threes)[:, None] + np.arange(3)).ravel()
+        which = (evenly_spread(threes, _MOST_CYCLES)[:, None] + np.arange(3)).ravel()
         edges = cycles.branch_first[which, 0], cycles.branch_last[which, 0] + 1
         begins = [
             _crossing(time[first:stop], driven[first:stop])
@@ -190,7 +190,9 @@ def unlike_neighbours(
             end < driven.size and not standstills.covers(slice(first, end)).any()
             for first, end in zip(cycles.first.tolist(), stop.tolist(), strict=True)
         ]
-        some = _spread(np.column_stack([ends, stop])[np.array(goes_on, dtype=bool)])
+        some = evenly_spread(
+            np.column_stack([ends, stop])[np.array(goes_on, dtype=bool)], _MOST_CYCLES
+        )
         crosses = [
             _crosses(driven[second:end], driven[first:last])
             for first, last, second, end in some.tolist()
@@ -259,7 +261,7 @@ def change_of_wave(time: Floats, driven: Floats, cycles: Cycles) -> tuple[float,
     >>> print(round(share, 2), last, first)
     0.08 4 5
     """
-    places = _spread(np.flatnonzero(touching(cycles)[1:]))
+    places = evenly_spread(np.flatnonzero(touching(cycles)[1:]), _MOST_CYCLES)
     phase = np.linspace(0, 1, _PHASES, endpoint=False)
     waves, at, noise = [], [], []
     for one in places.tolist():
@@ -315,12 +317,6 @@ _PHASES = 64
 _GOES_ON = 3  # durations of a cycle
 
 _GAP = 1.3  # ratio of durations for equal numbers of readings
-
-
-def _spread(values: Integers) -> Integers:
-    """At most forty of many values, from the first to the last."""
-    some = np.linspace(0, len(values) - 1, min(len(values), _MOST_CYCLES))
-    return values[np.unique(some.astype(np.int64))]
 
 
 def _crossing(time: Floats, rise: Floats) -> float:
@@ -414,8 +410,7 @@ def waveform_of_log(
     >>> print(told(triangle), told(np.cos(time)), told(np.clip(triangle, 0.15, 0.85)))
     triangular sinusoidal other
     """
-    n_cycles = cycles.n_cycles
-    some = np.unique(np.linspace(0, n_cycles - 1, min(n_cycles, _MOST_CYCLES)).astype(int))
+    some = evenly_spread(np.arange(cycles.n_cycles), _MOST_CYCLES)
     apart = np.array([
         _apart_from_shapes(time[first : last + 1], driven[first : last + 1])
         for first, last in zip(cycles.first[some].tolist(), cycles.last[some].tolist(), strict=True)
@@ -658,9 +653,3 @@ def _channel_that_runs_backward(tension: float, strain: float) -> str:
     if strain > 0 > tension:
         return "tension"
     return ""
-
-
-def finite_median(values: Floats) -> float:
-    """Median of the finite values; NaN without any."""
-    known = values[np.isfinite(values)]
-    return float(np.median(known)) if known.size else float("nan")

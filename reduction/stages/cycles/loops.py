@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from reduction.record.arrays import run_blocks
+from reduction.record.arrays import evenly_spread, run_blocks
 from reduction.record.measurement import Bools, Floats, Integers
 from reduction.record.samples import (
     empty_like,
@@ -486,7 +486,7 @@ def _shape_of_wave(
         known = known[1:]  # drift after a ramp dies away within the cycle, unlike harmonics
     if not known.size:
         return _Shape()
-    some = _spread(known)
+    some = evenly_spread(known, _CYCLES_OF_SHAPE)
     # growth of a wave within its cycle adds harmonics, which raise its extremes
     before, after = np.diff(amplitude, prepend=np.nan), np.diff(amplitude, append=np.nan)
     lesser = np.where(np.abs(before) < np.abs(after), before, after)
@@ -559,7 +559,7 @@ def _shape_of_wave(
     common = _Shape(half, middle, missed)
     # the shape may change with the specimen; growth between neighbours alters it as well
     step = np.fmax(np.abs(before), np.abs(after)) / amplitude
-    some = _spread(np.flatnonzero(step < _OF_ONE_WAVE)[1:-1])
+    some = evenly_spread(np.flatnonzero(step < _OF_ONE_WAVE)[1:-1], _CYCLES_OF_SHAPE)
     if not some.size:
         return common
     phases, waves = zip(*map(wave_of, some.tolist()), strict=True)
@@ -577,13 +577,6 @@ def _shape_of_wave(
         np.interp(number, some, (high + low) / 2),
         float(np.hypot(missed, WITHIN_STEP * error * np.sqrt(changing.size))),
     )
-
-
-def _spread(cycles: Integers) -> Integers:
-    """At most a hundred cycles, evenly spread."""
-    at = np.linspace(0, cycles.size - 1, min(cycles.size, _CYCLES_OF_SHAPE))
-    chosen: Integers = cycles[np.unique(at.astype(int))]
-    return chosen
 
 
 def _own_harmonics(

@@ -13,6 +13,7 @@ from functools import partial
 import numpy as np
 from scipy.ndimage import median_filter
 
+from reduction.record.arrays import evenly_spread
 from reduction.record.measurement import Bools, Floats, Integers
 from reduction.record.samples import take_samples
 from reduction.stages.cycles.cycle_product import Cycles
@@ -558,8 +559,7 @@ def change_of_period(time: Floats, driven: Floats, cycles: Cycles) -> float:
     middle = middle[parted[middle + reach] == parted[middle - reach]]
     if not middle.size:
         return 0.0
-    some = np.unique(np.linspace(0, middle.size - 1, min(middle.size, _PLACES)).astype(int))
-    rows = middle[some] + reach * np.array([[-1], [0], [1]])
+    rows = evenly_spread(middle, _PLACES) + reach * np.array([[-1], [0], [1]])
     rise = (cycles.branch_first[:, 0], cycles.branch_last[:, 0])
     at = _half_way(driven, *(one[rows.ravel()] for one in rise)).reshape(rows.shape)
     before, half_way, after = take_samples(time, at)

@@ -25,6 +25,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
+from reduction.record.arrays import evenly_spread
 from reduction.record.measurement import Floats, Integers
 from reduction.record.samples import release_pages, take_samples
 
@@ -141,7 +142,7 @@ def noise_in_extreme(
     inside = turn[(turn >= 2 * reach) & (turn < values.size - 2 * reach)]
     if not inside.size or reach < 1 or not noise > 0:
         return 0.0, 0.0
-    some = inside[np.linspace(0, inside.size - 1, min(inside.size, _MOST_TURNS)).astype(int)]
+    some = evenly_spread(inside, _MOST_TURNS)
     place = np.arange(-reach, reach + 1)
     shift = np.zeros(some.size, dtype=int)
     for _ in range(_PASSES):
@@ -230,8 +231,7 @@ def kind_of_turns(
     inside = peak[(peak >= _BESIDE) & (peak < driven.size - _BESIDE)]
     if inside.size == 0:
         return "rounded"
-    some = inside[np.linspace(0, inside.size - 1, min(inside.size, _MOST_TURNS)).astype(int)]
-    level = take_samples(driven, some[:, None] + np.arange(-2, 3))
+    level = take_samples(driven, evenly_spread(inside, _MOST_TURNS)[:, None] + np.arange(-2, 3))
     level = level[np.isfinite(level).all(axis=1)]
     if not level.size:
         return "rounded"

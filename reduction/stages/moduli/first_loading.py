@@ -20,7 +20,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reduction.record.arrays import as_positive, as_same_shape, run_blocks
+from reduction.record.arrays import as_positive, as_same_shape, finite_median, run_blocks
 from reduction.record.measurement import Bools, Floats, Integers
 from reduction.record.samples import (
     finite_extremes,
@@ -31,7 +31,6 @@ from reduction.record.samples import (
     take_samples,
 )
 from reduction.record.settings import ModulusSettings
-from reduction.stages.cycles.loop_sense import finite_median
 from reduction.stages.moduli.least_squares import lag_one_inflation
 from reduction.stages.moduli.local_regression import (
     LocalFits,

@@ -29,7 +29,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from reduction.record.arrays import MAD_TO_DEVIATION
+from reduction.record.arrays import MAD_TO_DEVIATION, evenly_spread, finite_median
 from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import Floats, Integers
 from reduction.record.samples import step_that_fills, take_samples
@@ -150,7 +150,7 @@ def bins_each_side(window: float, width: float) -> int:
 
 def sample_spacing(strain: Floats, cycles: Cycles, stroke: float) -> float:
     """Strain between samples at constant rate, median over branches spread over the test."""
-    chosen = np.unique(np.linspace(0, cycles.n_cycles - 1, _BRANCHES_READ).astype(int))
+    chosen = evenly_spread(np.arange(cycles.n_cycles), _BRANCHES_READ)
     spacings = []
     for first, last in zip(
         cycles.branch_first[chosen].ravel(), cycles.branch_last[chosen].ravel(), strict=True
@@ -161,9 +161,7 @@ def sample_spacing(strain: Floats, cycles: Cycles, stroke: float) -> float:
         if last > first:
             begin, end = take_samples(strain, kept[[0, -1]]).T
             spacings.append(np.abs(end - begin) / (kept[-1] - kept[0]))
-    known = np.asarray(spacings)
-    known = known[np.isfinite(known)]
-    return float(np.median(known)) if known.size else stroke
+    return finite_median(np.asarray(spacings), otherwise=stroke)
 
 
 def choose_grid_and_window(
@@ -379,7 +377,7 @@ def pooled_spacing(strain: Floats, cycles: Cycles) -> float:
     >>> print(pooled_spacing(strain, cycles))
     1.0
     """
-    chosen = np.unique(np.linspace(0, cycles.n_cycles - 1, _BRANCHES_READ).astype(int))
+    chosen = evenly_spread(np.arange(cycles.n_cycles), _BRANCHES_READ)
     found = 0.0
     for column in (0, 1):
         read = np.concatenate([

@@ -30,6 +30,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike
 
+from reduction.record.arrays import evenly_spread
 from reduction.record.measurement import Floats, Integers
 from reduction.record.settings import Control, Waveform
 
@@ -76,7 +77,7 @@ def tension_above_midline(
     30
     """
     strain, tension = np.asarray(strain, dtype=np.float64), np.asarray(tension, dtype=np.float64)
-    chosen = np.unique(np.linspace(0, first.size - 1, min(first.size, _MOST_CYCLES)).astype(int))
+    chosen = evenly_spread(np.arange(first.size), _MOST_CYCLES)
     found = []
     for cycle in chosen.tolist():
         rows = slice(int(first[cycle]), int(last[cycle]) + 1)
