@@ -7,11 +7,10 @@ from functools import partial
 
 import numpy as np
 import pytest
+from located_cycles import cycles_of_log
 
-from reduction.record.settings import CycleSettings, PhaseSettings
-from reduction.stages.cycles.cycle_search import find_cycles
+from reduction.record.settings import CycleSettings
 from reduction.stages.cycles.loops import close_loops
-from reduction.stages.standstills import find_standstills
 
 HALF, N_CYCLES, LOW, HIGH = 5.0, 12, 4.0, 5.0
 SPRING, DASHPOT_SPRING, RELAXATION = 100.0, 40.0, 0.1
@@ -45,8 +44,7 @@ def log(*, before=0.0, after=0.0, hold=0.0, comes="down", rate=20.0, noise=0.0):
 
 
 def cycles_of(time, position, tension, **settings):
-    stand = find_standstills(time, position, tension, settings=PhaseSettings())
-    cycles = find_cycles(time, position, tension, stand, settings=CycleSettings(**settings))
+    cycles = cycles_of_log(time, position, tension, settings=CycleSettings(**settings))
     assert cycles.n_cycles == N_CYCLES
     return cycles
 
@@ -103,8 +101,7 @@ def test_a_rise_that_waits_on_its_way_from_slack_begins_no_cycle(wait, share, sl
     position = np.interp(time, *np.transpose(knots))
     position += noise * np.random.default_rng(7).normal(size=time.size)
     tension = SPRING * (position - slack)
-    stand = find_standstills(time, position, tension, settings=PhaseSettings())
-    cycles = find_cycles(time, position, tension, stand, settings=CycleSettings())
+    cycles = cycles_of_log(time, position, tension)
     assert cycles.n_cycles == N_CYCLES + (wait == 0)
     period = time[cycles.last] - time[cycles.first]
     np.testing.assert_allclose(period, 2 * HALF, atol=0.3)
@@ -128,9 +125,6 @@ def test_a_sine_begins_where_it_leaves_the_valley(wait):
     on = (time >= start) & (time <= start + 2 * HALF * N_CYCLES)
     position[on] = 4.5 - 0.5 * np.cos(np.pi * (time[on] - start) / HALF)
     tension = SPRING * (position - 3)
-    stand = find_standstills(time, position, tension, settings=PhaseSettings())
-    cycles = find_cycles(
-        time, position, tension, stand, settings=CycleSettings(waveform="sinusoidal")
-    )
+    cycles = cycles_of_log(time, position, tension, settings=CycleSettings(waveform="sinusoidal"))
     assert time[cycles.first[0]] == pytest.approx(start, abs=0.11)
     assert time[cycles.last] - time[cycles.first] == pytest.approx(2 * HALF, abs=0.11)

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from located_cycles import cycles_of_log
 
 from reduction.lines.composite import (
     CompositeRule,
@@ -18,13 +19,11 @@ from reduction.lines.composite import (
     _composite_curve,
     pieces_of_branches,
 )
-from reduction.record.settings import CycleSettings, ModulusSettings, PhaseSettings
-from reduction.stages.cycles.cycle_search import find_cycles
+from reduction.record.settings import ModulusSettings
 from reduction.stages.moduli.local_regression import accumulate_moments, fit_windows
 from reduction.stages.moduli.loop_balance import check_identity
 from reduction.stages.moduli.tangent_modulus import tangent_curves
 from reduction.stages.moduli.tangent_window import StrainGrid
-from reduction.stages.standstills import find_standstills
 
 DATA = Path(__file__).parents[2] / "raw" / "tmt-synthetic"
 FOOT, INCH, LBF = 0.3048, 0.0254, 4.4482216152605
@@ -41,8 +40,7 @@ def cycles_of(test):
     time = log.time_s.to_numpy()
     position = FOOT * log.crosshead_ft.to_numpy()
     tension = LBF * np.stack([log[f"load_{name}_lb"].to_numpy() for name in SPECIMENS])
-    standstills = find_standstills(time, position, tension, settings=PhaseSettings())
-    cycles = find_cycles(time, position, tension, standstills, settings=CycleSettings())
+    cycles = cycles_of_log(time, position, tension)
     return truth, time, tension, cycles
 
 

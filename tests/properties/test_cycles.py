@@ -5,6 +5,7 @@ from examples import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
+from located_cycles import cycles_of_log
 
 from reduction.record.settings import CycleSettings, PhaseSettings
 from reduction.stages.cycles.cycle_search import find_cycles
@@ -76,8 +77,7 @@ def test_holds_before_and_after_change_no_cycle(n_cycles, n_samples, before, aft
     noise = np.random.default_rng(seed).normal(0, 0.002, before + stroke.size + after)
     time = 0.1 * np.arange(noise.size)
     position = np.concatenate([np.full(before, 4.0), stroke, np.full(after, 4.0)]) + noise
-    stand = find_standstills(time, position, [100 * position], settings=PhaseSettings())
-    cycles = find_cycles(time, position, [100 * position], stand, settings=CycleSettings())
+    cycles = cycles_of_log(time, position, [100 * position])
     assert cycles.n_cycles == n_cycles
     valleys = before + n_samples * np.arange(n_cycles + 1)
     early, late = cycles.first - valleys[:-1], cycles.last - valleys[1:]

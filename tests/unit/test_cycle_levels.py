@@ -4,11 +4,10 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from located_cycles import cycles_of_log
 
-from reduction.record.settings import CycleSettings, PhaseSettings
-from reduction.stages.cycles.cycle_search import find_cycles
+from reduction.record.settings import CycleSettings
 from reduction.stages.cycles.levels import are_unlike, find_levels, spread_of_cycles
-from reduction.stages.standstills import find_standstills
 
 PER = 40  # samples a cycle
 
@@ -33,8 +32,7 @@ def levels_of(*pieces, noise=0.02, seed=1):
     control = control + noise * np.random.default_rng(seed).standard_normal(control.size)
     time = STEP * np.arange(control.size)
     settings = CycleSettings(control="load", waveform="sinusoidal")
-    stand = find_standstills(time, control / 10, control[None], settings=PhaseSettings())
-    cycles = find_cycles(time, control / 10, control[None], stand, settings=settings)
+    cycles = cycles_of_log(time, control / 10, control[None], settings=settings)
     return time, cycles, find_levels(time, control, cycles, waveform="sinusoidal")
 
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from located_cycles import cycles_of_log
 
 from reduction.record.settings import CycleSettings, PhaseSettings
 from reduction.stages.cycles.cycle_pairing import _without_stands
@@ -56,10 +57,7 @@ def test_a_wait_that_flickers_between_two_codes_of_a_converter_is_no_part_of_a_c
     position[time < 2] = np.linspace(10.2, 8.8023, int((time < 2).sum()))
     position = 0.0037 * np.round(position / 0.0037)
     tension = 100 * position[None]
-    stands = find_standstills(time, position, tension, settings=PhaseSettings())
-    found = find_cycles(
-        time, position, tension, stands, settings=CycleSettings(waveform="sinusoidal")
-    )
+    found = cycles_of_log(time, position, tension, settings=CycleSettings(waveform="sinusoidal"))
     assert np.diff(time[found.first]) == pytest.approx(7.5, abs=0.5)
 
 
@@ -108,10 +106,7 @@ def test_the_first_cycle_of_a_sine_joined_by_a_ramp_counts_if_its_rise_is_that_o
     position = np.concatenate([np.zeros(60), np.linspace(0, 1, 80)[:-1], sine])
     position += 1e-4 * np.random.default_rng(2).standard_normal(position.size)
     time, tension = 0.1 * np.arange(position.size), 100 * position[None]
-    stands = find_standstills(time, position, tension, settings=PhaseSettings())
-    cycles = find_cycles(
-        time, position, tension, stands, settings=CycleSettings(waveform="sinusoidal")
-    )
+    cycles = cycles_of_log(time, position, tension, settings=CycleSettings(waveform="sinusoidal"))
     assert cycles.n_cycles == n_cycles
     assert cycles.first[0] == pytest.approx(139 + 100 * (10 - n_cycles), abs=3)
 
@@ -123,10 +118,7 @@ def test_a_first_cycle_behind_a_hold_is_as_high_as_the_others_in_noise(seed):
     position = np.concatenate([np.zeros(400), wave, np.zeros(100)]) + 1.0
     position += 0.008 * np.random.default_rng(seed).standard_normal(position.size)
     time, tension = 0.1 * np.arange(position.size), 100 * position[None]
-    stands = find_standstills(time, position, tension, settings=PhaseSettings())
-    cycles = find_cycles(
-        time, position, tension, stands, settings=CycleSettings(waveform="sinusoidal")
-    )
+    cycles = cycles_of_log(time, position, tension, settings=CycleSettings(waveform="sinusoidal"))
     assert cycles.n_cycles == 30
 
 
@@ -167,8 +159,7 @@ def test_a_first_ramp_that_is_slower_all_the_way_begins_a_cycle(lead):
     levels = np.array([-lead, -lead, *[1.0, 0.0] * 10, 0.0])
     position = 0.2 * np.interp(time, np.cumsum([0.0, *lasts]), levels)
     tension = 500 + 3000 * position
-    stands = find_standstills(time, position, tension[None], settings=PhaseSettings())
-    cycles = find_cycles(
-        time, position, tension[None], stands, settings=CycleSettings(waveform="triangular")
+    cycles = cycles_of_log(
+        time, position, tension[None], settings=CycleSettings(waveform="triangular")
     )
     assert cycles.n_cycles == 10

@@ -4,6 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from located_cycles import cycles_of_log
 
 from reduction.quantities.flags import BRANCH_VALUES, PHASE_VALUES
 from reduction.record.errors import DataError
@@ -39,9 +40,8 @@ def back(points, *, after=10.0, rest=50.0):
 
 def find(time, position, counter=None, **settings):
     tension = np.stack([100 * (position - 3), 80 * (position - 3)])
-    stand = find_standstills(time, position, tension, settings=PhaseSettings())
-    return find_cycles(
-        time, position, tension, stand, settings=CycleSettings(**settings), cycle_counter=counter
+    return cycles_of_log(
+        time, position, tension, settings=CycleSettings(**settings), cycle_counter=counter
     )
 
 

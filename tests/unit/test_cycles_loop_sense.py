@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from located_cycles import cycles_of_log
 
 from reduction.record.settings import CycleSettings, PhaseSettings
 from reduction.stages.cycles.cycle_product import Cycles, Loops
@@ -352,8 +353,7 @@ def test_a_ramp_away_from_a_few_cycles_is_no_other_wave(n_cycles, away):
 def changed(wave, *, step=0.05, noise=0.01):
     time = np.arange(0, 120, step)
     driven = wave(time) + noise * np.random.default_rng(8).normal(size=time.size)
-    stands = find_standstills(time, driven, driven[None], settings=PhaseSettings())
-    cycles = find_cycles(time, driven, driven[None], stands, settings=CycleSettings())
+    cycles = cycles_of_log(time, driven, driven[None])
     found = change_of_wave(time, driven, cycles)
     return None if found is None else tuple(time[cycles.first[list(found[1:])]].round())
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from located_cycles import cycles_of_log
 from scipy.signal import lfilter
 
 from reduction.record.contributions import InstrumentErrors
@@ -337,8 +338,7 @@ def test_ramps_that_a_machine_rounds_over_some_readings_in_step_with_the_log(ove
         stretch = strain[log] + rng.normal(0, 3e-6, load.size)
         time, length = 0.5 * np.arange(load.size), 8 * (1 + stretch)
         settings = CycleSettings(waveform=waveform, control="load")
-        stands = find_standstills(time, length, load[None], settings=PhaseSettings())
-        cycles = find_cycles(time, length, load[None], stands, settings=settings)
+        cycles = cycles_of_log(time, length, load[None], settings=settings)
         loops = close_loops(
             time, load[None], stretch[None], cycles, waveform=waveform, control="load", driven=load
         )
@@ -1210,10 +1210,7 @@ def stored_cycles(wave, *, every=20, n_cycles=10, period=2.0, step=0.02, skew=0.
     time = (number - 1) * period + np.tile(np.arange(0, period - step / 2, step), n_cycles)
     phase = (time + skew) / period
     driven = wave(phase)
-    stand = find_standstills(time, driven, driven[None], settings=PhaseSettings())
-    cycles = find_cycles(
-        time, driven, driven[None], stand, cycle_counter=number, settings=CycleSettings()
-    )
+    cycles = cycles_of_log(time, driven, driven[None], cycle_counter=number)
     assert cycles.n_cycles == n_cycles
     return time, driven, cycles
 
@@ -1279,10 +1276,7 @@ def test_sines_stored_in_pairs_have_the_period_of_the_machine():
     number = np.repeat(np.add.outer(20 * np.arange(10), [1, 2]).ravel(), 24)
     time = (number - 1) * 2.0 + np.tile(np.arange(24) / 12, 20)
     driven = -np.cos(np.pi * time)
-    stand = find_standstills(time, driven, driven[None], settings=PhaseSettings())
-    cycles = find_cycles(
-        time, driven, driven[None], stand, cycle_counter=number, settings=CycleSettings()
-    )
+    cycles = cycles_of_log(time, driven, driven[None], cycle_counter=number)
     loops = close_loops(time, driven[None], driven[None], cycles, waveform="sinusoidal")
     assert loops.frequency.mean() == pytest.approx(0.5, rel=2e-5)
 
@@ -1752,8 +1746,7 @@ def test_corners_in_dense_noise_are_held_by_the_interval_of_the_amplitude(noise)
         wave = np.interp(turn % 1, [0, 0.5, 1], [-1, 1, -1])
         strain, load = (wave + noise * rng.normal(size=turn.size) for _ in range(2))
         load, strain = 9000 + 4000 * load, 0.05 + 0.02 * strain
-        stands = find_standstills(10 * turn, strain, load[None], settings=PhaseSettings())
-        cycles = find_cycles(10 * turn, strain, load[None], stands, settings=CycleSettings())
+        cycles = cycles_of_log(10 * turn, strain, load[None])
         loops = close_loops(10 * turn, load[None], strain[None], cycles, waveform="triangular")
         found = summarise_amplitude(loops, area=[1e-4])
         for name, true in (("strain_amplitude", 0.02), ("tension_amplitude", 4000)):
@@ -2014,8 +2007,7 @@ def test_amplitude_of_a_saw_whose_slow_stroke_noise_hides_is_covered(rise):
         time = rng.uniform(0, 0.05) + np.arange(0, 179.9, 0.0501)
         strain = np.interp(time, fine, turns) + rng.normal(0, 0.001, time.size)
         force = (np.interp(time, fine, drawn) + rng.normal(0, 0.7, time.size))[None]
-        stands = find_standstills(time, strain, force, settings=PhaseSettings())
-        cycles = find_cycles(time, strain, force, stands, settings=CycleSettings())
+        cycles = cycles_of_log(time, strain, force)
         loops = close_loops(time, force, strain[None], cycles)
         found = summarise_amplitude(loops, area=[1e-4], break_in_cycles=2)
         off.append((found.tension_amplitude[0] - true) / found.uncertainty["tension_amplitude"][0])
@@ -2032,8 +2024,7 @@ def test_noise_of_a_tension_makes_no_saw_of_even_ramps():
         time = rng.uniform(0, 0.2) + np.arange(0, 179.7, 0.2007)
         strain = np.interp(time, fine, ramps) + rng.normal(0, 0.00125, time.size)
         force = 1000 + 300 * np.interp(time, fine, ramps) + rng.normal(0, 3, time.size)
-        stands = find_standstills(time, strain, force[None], settings=PhaseSettings())
-        cycles = find_cycles(time, strain, force[None], stands, settings=CycleSettings())
+        cycles = cycles_of_log(time, strain, force[None])
         loops = close_loops(time, force[None], strain[None], cycles)
         found = summarise_amplitude(loops, area=[1e-4], break_in_cycles=2)
         stated.append(found.uncertainty["strain_amplitude"][0])
@@ -2056,8 +2047,7 @@ def test_ramps_of_a_hose_that_locks_end_beyond_their_readings(per_cycle, noise):
         for one in (0.6, 0.2)
     )
     tension = tension + np.random.default_rng(4).normal(0, 1, tension.size) * noise
-    stand = find_standstills(1.0 * place, strain, tension[None], settings=PhaseSettings())
-    cycles = find_cycles(1.0 * place, strain, tension[None], stand, settings=CycleSettings())
+    cycles = cycles_of_log(1.0 * place, strain, tension[None])
     loops = close_loops(1.0 * place, tension[None], strain[None], cycles)
     mean = summarise_amplitude(loops, area=np.ones(1), break_in_cycles=0)
     for value, own, true in (
@@ -2145,10 +2135,7 @@ def one_stored_cycle(place, per_cycle, *, n_cycles=1, skip=20):
 @pytest.mark.parametrize("per_cycle", [16, 25, 60])
 def test_a_single_stored_cycle_goes_on_to_its_first_reading(place, per_cycle):
     time, wave, count = one_stored_cycle(place, per_cycle)
-    stands = find_standstills(time, wave, wave[None], settings=PhaseSettings())
-    cycles = find_cycles(
-        time, wave, wave[None], stands, settings=CycleSettings(), cycle_counter=count
-    )
+    cycles = cycles_of_log(time, wave, wave[None], cycle_counter=count)
     strain = 1 + wave / 200
     loops = close_loops(time, wave[None], strain[None], cycles, waveform="triangular")
     found = summarise_amplitude(loops, area=[1e-4])
@@ -2578,10 +2565,7 @@ def test_the_first_of_cycles_that_dwell_and_grow_has_its_own_valley(grows):
     knots = np.cumsum(np.append([0.0, 10.0, 4.0, 2.0], np.tile([4.0, 2.0, 4.0, 2.0], 10)))
     time = np.arange(0, knots[-1] + 10, 0.1)
     strain = np.interp(time, knots, turns)
-    stands = find_standstills(time, strain, strain[None], settings=PhaseSettings())
-    cycles = find_cycles(
-        time, strain, strain[None], stands, settings=CycleSettings(waveform="other")
-    )
+    cycles = cycles_of_log(time, strain, strain[None], settings=CycleSettings(waveform="other"))
     loops = close_loops(time, 3000 * strain[None], strain[None], cycles, waveform="other")
     ranges = 0.2 + grows * (np.arange(cycles.n_cycles) + 0.5)
     assert cycles.n_cycles == 10
@@ -2648,10 +2632,7 @@ def test_slow_cycles_of_a_sweep_have_their_extremes_where_they_are():
     rate = steps[np.minimum(number.astype(int), steps.size - 1)]
     strain = -0.1 * np.cos(2 * np.pi * number)
     tension = 500 * rate**0.3 * np.sin(2 * np.pi * number)
-    stands = find_standstills(time, strain, tension[None], settings=PhaseSettings())
-    cycles = find_cycles(
-        time, strain, tension[None], stands, settings=CycleSettings(waveform="other")
-    )
+    cycles = cycles_of_log(time, strain, tension[None], settings=CycleSettings(waveform="other"))
     loops = close_loops(time, tension[None], strain[None], cycles, waveform="other")
     assert time[cycles.last[1]] < 9  # the second of the slowest cycles
     assert loops.tension_amplitude[0, 1] == pytest.approx(500 * 0.25**0.3, rel=1e-3)

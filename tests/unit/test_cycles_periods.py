@@ -4,14 +4,13 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from located_cycles import cycles_of_log
 
 from reduction.pipeline.reduce_test import _with_waveform_of_log
-from reduction.record.settings import CycleSettings, PhaseSettings, ReductionSettings
+from reduction.record.settings import CycleSettings, ReductionSettings
 from reduction.stages.cycles.cycle_product import Cycles
-from reduction.stages.cycles.cycle_search import find_cycles
 from reduction.stages.cycles.loops import close_loops
 from reduction.stages.cycles.periods import change_of_period, own_periods, periods_alone
-from reduction.stages.standstills import find_standstills
 
 
 def periods_of(wave, begin, peak, end):
@@ -89,8 +88,7 @@ SINES = CycleSettings(waveform="sinusoidal")
 
 
 def cycles_of(time, wave):
-    stands = find_standstills(time, wave, wave[None], settings=PhaseSettings())
-    return find_cycles(time, wave, wave[None], stands, settings=SINES)
+    return cycles_of_log(time, wave, wave[None], settings=SINES)
 
 
 def sweep(share, *, n_cycles=60, step=0.2, seed=0, noise=1e-3):

@@ -4,16 +4,14 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from located_cycles import cycles_of_log
 
 from reduction.record.errors import DataError
-from reduction.record.settings import CycleSettings, PhaseSettings
-from reduction.stages.cycles.cycle_search import find_cycles
 from reduction.stages.cycles.reversals import (
     _typical_range,
     find_reversals,
     reversals_of_typical_cycles,
 )
-from reduction.stages.standstills import find_standstills
 
 
 def sequential(values, band):
@@ -175,6 +173,5 @@ def test_a_stroke_of_a_few_samples_is_told_but_not_where_a_rest_follows_it(fast,
     time = np.arange(10 * corners[-1], dtype=float)
     wave = 2 + np.interp(time % corners[-1], corners, levels)
     tension = 100 * wave[None]
-    stands = find_standstills(time, wave, tension, settings=PhaseSettings())
-    cycles = find_cycles(time, wave, tension, stands, settings=CycleSettings())
+    cycles = cycles_of_log(time, wave, tension)
     assert ("few-samples-a-stroke" in [one.code for one in cycles.notes]) == is_few

@@ -4,13 +4,13 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from located_cycles import cycles_of_log
 from refusals import refusals
 from scipy.signal import lfilter
 
 from reduction.pipeline.located_test import slips_of
 from reduction.record.errors import DataError
-from reduction.record.settings import CycleSettings, PhaseSettings, ReductionSettings, SlipSettings
-from reduction.stages.cycles.cycle_search import find_cycles
+from reduction.record.settings import ReductionSettings, SlipSettings
 from reduction.stages.cycles.reading_noise import noise_and_step, reading_noise
 from reduction.stages.moduli import splice_slip
 from reduction.stages.moduli import splice_slip as stepscan
@@ -27,7 +27,6 @@ from reduction.stages.moduli.splice_slip import (
     find_steps,
     sample_noise,
 )
-from reduction.stages.standstills import find_standstills
 
 SLOPE = 200.0  # N/m
 
@@ -165,15 +164,7 @@ def test_relaxation_in_cycles_that_the_machine_did_not_store_is_no_slip():
     tension = 5000 * (position - 1) - 40 * np.log10(1 + phase)
     tension += np.random.default_rng(0).normal(0, 1.0, tension.size)
     time = 0.1 * np.arange(phase.size)
-    stands = find_standstills(time, position, [tension], settings=PhaseSettings())
-    cycles = find_cycles(
-        time,
-        position,
-        [tension],
-        stands,
-        settings=CycleSettings(),
-        cycle_counter=number,
-    )
+    cycles = cycles_of_log(time, position, [tension], cycle_counter=number)
     located = SimpleNamespace(
         cycles=cycles, position=position, tension=tension[None], parted=(-1,),
         record=SimpleNamespace(specimens=("new",), time=time),
