@@ -20,6 +20,8 @@ from reduction.cli.printed_numbers import plain, short, table_of
 from reduction.lines.archive_pieces import source_of_tests, specimens_of
 from reduction.lines.assembly import DeployedLine, WorkingState, deploy, stated_model
 from reduction.lines.composite import (
+    LEAST_SLOPE,
+    TAPER,
     CompositeCurve,
     CompositeRule,
     PieceBranch,
@@ -269,8 +271,8 @@ def _document(source: PieceSource, curve: CompositeCurve, rule: CompositeRule) -
         "branch": source.branch,
         "rule": {
             "precedence": list(rule.precedence),
-            "taper": rule.taper,
-            "least_slope": rule.least_slope,
+            "taper": TAPER,
+            "least_slope": LEAST_SLOPE,
         },
         "strain": plain(curve.strain),
         "tension": plain(curve.tension),

@@ -211,6 +211,15 @@ def pieces_of_branches(
 
 _KINDS: tuple[PieceKind, ...] = ("cyclic", "static", "first-loading")
 
+TAPER = 0.5
+"""Share of a piece, at each end, over which its weight falls to zero: a triangle over all of it."""
+
+LEAST_SLOPE = 0.5
+"""Of the least slope of the pieces there: 0 would let the curve run level where pieces fall, and
+1 keep every slope and move levels more."""
+
+_GRID_POINTS = 401  # over all pieces; ends of pieces are added
+
 
 @dataclass(frozen=True)
 class CompositeRule:
@@ -220,21 +229,9 @@ class CompositeRule:
     ----------
     precedence : tuple of str
         Kinds, highest precedence first; kinds that are not named are not used.
-    taper : float
-        Share of a piece, at each end, over which its weight falls to zero; 0.5 makes the weight
-        a triangle over the whole piece.
-    least_slope : float
-        Share b of the least slope of the pieces there: the slope of the curve may not fall below
-        it.  0 lets the curve run level where pieces fall; 1 keeps every slope and moves levels
-        more.
-    n_points : int
-        Number of points of the grid over all pieces; ends of pieces are added.
     """
 
     precedence: tuple[PieceKind, ...] = _KINDS
-    taper: float = 0.5
-    least_slope: float = 0.5
-    n_points: int = 401
 
     def __post_init__(self) -> None:
         """Refuse a rule that cannot be followed."""
@@ -248,18 +245,6 @@ class CompositeRule:
             raise SettingsError(
                 "the precedence names a kind twice", found=", ".join(self.precedence)
             )
-        if not 0 < self.taper <= 0.5:
-            raise SettingsError(
-                "the taper is a share of a piece", found=f"{self.taper:g}", needed="above 0, to 0.5"
-            )
-        if not 0 <= self.least_slope <= 1:
-            raise SettingsError(
-                "the least slope is a share of that of the pieces",
-                found=f"{self.least_slope:g}",
-                needed="0 to 1",
-            )
-        if self.n_points < 2:
-            raise SettingsError("a grid has two points", found=str(self.n_points))
 
 
 def mean_piece(ascending: CurvePiece, descending: CurvePiece) -> CurvePiece:
@@ -531,9 +516,7 @@ class _Blend:
     farthest: Floats
 
 
-def _blend_pieces(
-    pieces: Sequence[CurvePiece], *, taper: float, least_slope: float, n_points: int
-) -> _Blend:
+def _blend_pieces(pieces: Sequence[CurvePiece]) -> _Blend:
     """Weighted mean of pieces, and the nearest rising curve.
 
     Notes
@@ -553,11 +536,11 @@ def _blend_pieces(
     --------
     >>> at = np.array([0.5, 1.0])
     >>> one = CurvePiece("T", "static", "ascending", at, 100 * at, 0 * at)
-    >>> _blend_pieces([one], taper=0.5, least_slope=0.5, n_points=3).tension
+    >>> _blend_pieces([one]).tension[::200]
     array([ 50.,  75., 100.])
     """
-    strain, is_covered = _grid(pieces, n_points)
-    tension, variance, fade = _on_grid(pieces, strain, taper)
+    strain, is_covered = _grid(pieces)
+    tension, variance, fade = _on_grid(pieces, strain)
     shared = stacked([one.shared_at(strain) for one in pieces])
     rows = shared.values["tension"] * (fade > 0)
     apart = _variance_apart(pieces, strain, tension)
@@ -574,7 +557,7 @@ def _blend_pieces(
     share = weight / total
     mean = (share * tension).sum(axis=0)
     middle = (share[:, 1:] + share[:, :-1]) / 2
-    slopes = _least_slopes(strain, tension, mean, middle, is_covered, least_slope)
+    slopes = _least_slopes(strain, tension, mean, middle, is_covered)
     rising = _rising(strain, mean, total * _widths(strain, is_covered), slopes)
     off = (share * (tension - mean) ** 2).sum(axis=0)
     own = (share * variance).sum(axis=0)
@@ -596,10 +579,10 @@ def _blend_pieces(
     )
 
 
-def _grid(pieces: Sequence[CurvePiece], n_points: int) -> tuple[Floats, Bools]:
+def _grid(pieces: Sequence[CurvePiece]) -> tuple[Floats, Bools]:
     """Strains of the grid, and for each piece the intervals that it covers."""
     ends = np.array([(one.strain[0], one.strain[-1]) for one in pieces])
-    fine = np.linspace(ends.min(), ends.max(), n_points)
+    fine = np.linspace(ends.min(), ends.max(), _GRID_POINTS)
     # a node closer than this to an end is moved to that end
     near = 0.05 * (fine[1] - fine[0])
     edges = np.unique(ends)
@@ -613,9 +596,7 @@ def _grid(pieces: Sequence[CurvePiece], n_points: int) -> tuple[Floats, Bools]:
     return strain, covered
 
 
-def _on_grid(
-    pieces: Sequence[CurvePiece], strain: Floats, taper: float
-) -> tuple[Floats, Floats, Floats]:
+def _on_grid(pieces: Sequence[CurvePiece], strain: Floats) -> tuple[Floats, Floats, Floats]:
     """Tension, variance and fading weight of each piece on the grid; zero outside it."""
     tension, variance, fade = np.zeros((3, len(pieces), strain.size))
     over, taken = np.zeros((2, strain.size))
@@ -629,7 +610,7 @@ def _on_grid(
         depth /= one.strain[-1] - one.strain[0]
         tension[row, inside] = np.interp(at, one.strain, one.tension)
         variance[row, inside] = np.interp(at, one.strain, one.random_standard_uncertainty) ** 2
-        full = np.minimum(depth / taper, 1.0)
+        full = np.minimum(depth / TAPER, 1.0)
         fade[row, inside] = full * (1 - over[inside]) + _LEAST_WEIGHT
         alone = np.minimum(depth / _HAND_OVER, 1.0)
         taken[inside] = np.maximum(taken[inside], alone)
@@ -658,7 +639,6 @@ def _least_slopes(
     mean: Floats,
     share: Floats,
     is_covered: Bools,
-    least_slope: float,
 ) -> Floats:
     """Least slope allowed for the curve in each interval: that of the softest piece there."""
     slopes = np.diff(tension, axis=1) / np.diff(strain)
@@ -669,8 +649,8 @@ def _least_slopes(
     chords = np.where(share > _NO_SAY, _chords(strain, tension)[:, None], np.inf).min(axis=0)
     beside = [chords[told[np.clip(place - back, 0, told.size - 1)]] for back in (1, 0)]
     softest = np.minimum(*beside)  # infinite where no piece has a chord: no bound there
-    least = least_slope * np.where(np.isfinite(softest), softest, 0.0)
-    least[told] = least_slope * of_pieces[told]
+    least = LEAST_SLOPE * np.where(np.isfinite(softest), softest, 0.0)
+    least[told] = LEAST_SLOPE * of_pieces[told]
     return np.asarray(np.maximum(least, _LEAST_SLOPE * mean.max() / strain[-1]))
 
 
@@ -718,7 +698,7 @@ def _quality_warning(blend: _Blend) -> tuple[str, Bools]:
     >>> at = np.array([0.5, 1.0])
     >>> pieces = [CurvePiece("T", "static", "ascending", at, load * at, 0 * at)
     ...     for load in (*[100] * 5, 200)]
-    >>> blend = _blend_pieces(pieces, taper=0.5, least_slope=0.5, n_points=3)
+    >>> blend = _blend_pieces(pieces)
     >>> print(_quality_warning(blend)[0][:42])
     the curve is up to 2.24 standard uncertain
     """
@@ -757,7 +737,7 @@ def _notes_of(
     strain, change = blend.strain, blend.change
     notes = [
         f"order of precedence {', '.join(rule.precedence)}; pieces are blended over "
-        f"{rule.taper:g} of their length at each end: {used}",
+        f"{TAPER:g} of their length at each end: {used}",
         f"a straight line from zero to strain {strain[0]:.4g}, where the first piece begins",
     ]
     notes += [
@@ -782,7 +762,7 @@ def _notes_of(
         notes.append(
             "the mean of the pieces falls where one ends and the next begins:"
             f" {100 * moved.mean():.0f} % of the nodes were moved to keep the curve from being"
-            f" softer than {rule.least_slope:g} of the softest piece there, by"
+            f" softer than {LEAST_SLOPE:g} of the softest piece there, by"
             f" {np.sqrt(np.mean(change**2)):.4g} N rms, most by {change[worst]:+.4g} N"
             f" ({100 * share[worst]:+.1f} %) at strain {strain[worst]:.4g}"
         )
@@ -933,9 +913,7 @@ def _composite_curve(
             found=", ".join(sorted({one.kind for one in pieces})) or "no pieces",
             needed=" or ".join(rule.precedence),
         )
-    blend = _blend_pieces(
-        used, taper=rule.taper, least_slope=rule.least_slope, n_points=rule.n_points
-    )
+    blend = _blend_pieces(used)
     moved = np.abs(blend.change) > _MOVED * blend.tension
     strain = np.concatenate([[0.0], blend.strain])
     tension = np.concatenate([[0.0], blend.tension])
