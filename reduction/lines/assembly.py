@@ -76,14 +76,11 @@ class SeriesPart:
         Length without tension. [m]
     spring_constant : float
         EA, force per unit strain; infinite for a rigid part. [N]
-    curve : CompositeCurve or None
-        Replaces the spring constant.
     """
 
     name: str
     length: float
     spring_constant: float = float("inf")
-    curve: CompositeCurve | None = None
 
     def __post_init__(self) -> None:
         """Refuse an invalid part."""
@@ -99,10 +96,8 @@ class SeriesPart:
             )
 
     def length_at(self, tension: ArrayLike) -> Floats:
-        """Length [m] at a tension [N]; NaN beyond the curve."""
+        """Length [m] at a tension [N]."""
         load = np.asarray(tension, dtype=np.float64)
-        if self.curve is not None:
-            return np.asarray(self.length * (1 + self.curve.strain_at(load)))
         return np.asarray(self.length * (1 + load / self.spring_constant))
 
 
