@@ -16,7 +16,6 @@ from reduction.stages.three_parameter_line.line_model import (
     amplitude_sensitivities,
     apparent_spring_constant,
     check_single_time,
-    dashpot_coefficient,
     hysteresis_energy,
     identify_by_amplitude,
     identify_by_fundamental,
@@ -102,8 +101,6 @@ def test_a_negative_input_is_refused_by_name(name):
 def test_a_negative_amplitude_is_refused():
     with pytest.raises(DataError, match="tension amplitude are negative; found -1"):
         hysteresis_energy(frequency=0.3, tension_amplitude=-1.0, **LINE)
-    with pytest.raises(DataError, match="relaxation time are negative"):
-        dashpot_coefficient(dissipation_spring_constant=1.0, relaxation_time=-1.0)
 
 
 LOOP = {

@@ -106,46 +106,6 @@ def _at_least_zero(**named: ArrayLike) -> tuple[Floats, ...]:
     return tuple(arrays.values())
 
 
-def dashpot_coefficient(
-    *, dissipation_spring_constant: ArrayLike, relaxation_time: ArrayLike
-) -> Floats:
-    r"""Damping coefficient of the dashpot.
-
-    .. math:: N = K_1 \tau
-
-    Parameters
-    ----------
-    dissipation_spring_constant : array_like, shape (...)
-        :math:`K_1`, force per unit strain. [N]
-    relaxation_time : array_like, shape (...)
-        :math:`\tau`. [s]
-
-    Returns
-    -------
-    dashpot_coefficient : ndarray, shape (...)
-        Force per unit strain rate. [N s]
-
-    Raises
-    ------
-    DataError
-        If an input is negative.
-
-    Notes
-    -----
-    Source: [1]_, sec. 4.2 (tau = N / K_1).  NaN in, NaN out.
-
-    Examples
-    --------
-    >>> print(dashpot_coefficient(dissipation_spring_constant=43530.0, relaxation_time=4.0))
-    174120.0
-    """
-    spring, time = _at_least_zero(
-        dissipation_spring_constant=dissipation_spring_constant, relaxation_time=relaxation_time
-    )
-    product: Floats = spring * time
-    return product
-
-
 def _storage_and_loss(
     *,
     quasi_static_spring_constant: ArrayLike,
