@@ -562,21 +562,12 @@ def surface_names(dataset: xr.Dataset, experiment: str) -> tuple[str, ...]:
     )
 
 
-def surfaces_of(
-    dataset: xr.Dataset, experiment: str, responses: Sequence[str] | None = None
-) -> ResponseSurfaces:
-    """Return the fitted surfaces; `reduction.experiments` accepts them like new ones.
-
-    Surfaces in the requested order, each with its own pattern.
-    """
-    known = surface_names(dataset, experiment)
-    names = known if responses is None else tuple(responses)
-    missing = [name for name in names if name not in known]
-    if missing or not names:
+def surfaces_of(dataset: xr.Dataset, experiment: str) -> ResponseSurfaces:
+    """Return the fitted surfaces; `reduction.experiments` accepts them like new ones."""
+    names = surface_names(dataset, experiment)
+    if not names:
         raise ArchiveError(
-            f"experiment '{experiment}' has no such surface",
-            found=", ".join(missing) or "no surface",
-            needed=", ".join(known) or "an experiment with surfaces",
+            f"experiment '{experiment}' has no surface", needed="an experiment with surfaces"
         )
     return _Reader(dataset, _row_of(dataset, experiment), names).surfaces()
 

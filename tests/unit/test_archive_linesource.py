@@ -37,7 +37,8 @@ def surfaces(folder):
 
 def test_a_surface_is_looked_up_as_it_was_fitted(surfaces):
     line = _line_source_of_experiment(surfaces, "nylon")
-    fitted = surfaces_of(surfaces, "nylon", ["apparent_spring_constant"])
+    fitted = surfaces_of(surfaces, "nylon")
+    assert fitted.response_names[0] == "apparent_spring_constant"
     centre, half = (fitted.low + fitted.high) / 2, (fitted.high - fitted.low) / 2
     points = centre + half * np.array([[0, 0, 0], [1, 0, -1], [-1, 1, 0.5]])
     expected = evaluate_surfaces(fitted, points)

@@ -430,14 +430,16 @@ def test_a_surface_is_evaluated_from_the_file_alone(archive, result):
     rng = np.random.default_rng(8)
     points = rng.uniform(LOW, HIGH, (20, 3))
     wanted = evaluate_surfaces(result.surfaces, points)
+    from_file = surfaces_of(archive, result.name)
+    found = evaluate_surfaces(from_file, points)
     for row, name in enumerate(result.surfaces.response_names):
-        found = evaluate_surfaces(surfaces_of(archive, result.name, [name]), points)
+        place = from_file.response_names.index(name)
         for field in (
             "value", "mean_value", "variance_factor", "confidence_interval",
             "prediction_interval", "simultaneous_interval", "above_leverage",
         ):  # fmt: skip
             np.testing.assert_allclose(
-                getattr(found, field)[0], getattr(wanted, field)[row], rtol=1e-12, err_msg=field
+                getattr(found, field)[place], getattr(wanted, field)[row], rtol=1e-12, err_msg=field
             )
 
 
@@ -452,14 +454,8 @@ def test_the_covariance_in_the_file_gives_the_uncertainty_in_the_file(archive):
 
 def test_a_screening_has_no_surface(archive):
     assert surface_names(archive, "screening") == ()
-    with pytest.raises(ArchiveError, match=r"'screening' has no such surface; found no surface"):
+    with pytest.raises(ArchiveError, match="'screening' has no surface"):
         surfaces_of(archive, "screening")
-
-
-def test_a_surface_that_an_experiment_lacks_is_refused(archive):
-    message = r"'short' has no such surface; found loss_factor; needed apparent_spring_constant"
-    with pytest.raises(ArchiveError, match=message):
-        surfaces_of(archive, "short", ["loss_factor"])
 
 
 def test_an_experiment_that_is_not_there_is_refused(archive, archives):
