@@ -20,7 +20,12 @@ from reduction.campaign.prediction_specs import load_armour_case, load_wave_case
 from reduction.campaign.toml_file import at_place
 from reduction.cli.output import CommandOutput
 from reduction.cli.printed_numbers import plain, short, table_of
-from reduction.prediction.armour import PredictedArmour, predict_armour_case
+from reduction.prediction.armour import (
+    ARMOUR_QUANTITIES,
+    SIMPLER_THEORIES,
+    PredictedArmour,
+    predict_armour_case,
+)
 from reduction.prediction.comparison_error import HoseCalibration, PressureComparison, verdict_words
 from reduction.prediction.hose_design import DesignedHose, design_hoses
 from reduction.prediction.hose_prediction import (
@@ -436,10 +441,10 @@ def _armour_document(found: PredictedArmour) -> dict[str, Any]:
     }
     errors = {
         theory: {
-            quantity: plain(found.errors.error[i, j, :, 0])
-            for j, quantity in enumerate(found.errors.quantity)
+            quantity: plain(found.errors[i, j, :, 0])
+            for j, quantity in enumerate(ARMOUR_QUANTITIES)
         }
-        for i, theory in enumerate(found.errors.theory)
+        for i, theory in enumerate(SIMPLER_THEORIES)
     }
     held, free = found.axial_stiffness
     return {

@@ -578,23 +578,12 @@ ARMOUR_QUANTITIES = ("axial_force", "shear_force", "bending_moment", "torsion_mo
 
 Reference = Literal["exact", "conjugate"]
 
-_SIMPLER: tuple[ArmourTheory, ...] = ("small", "intermediate", "large")
-
-
-@dataclass(frozen=True)
-@read_only_arrays
-class _TheoryErrors:
-    """Error of each theory."""
-
-    theory: tuple[ArmourTheory, ...]
-    quantity: tuple[str, ...]
-    reference: Reference
-    error: Floats
+SIMPLER_THEORIES: tuple[ArmourTheory, ...] = ("small", "intermediate", "large")
 
 
 def theory_errors(
     design: ArmourDesign, strain: ArrayLike, *, reference: Reference = "exact"
-) -> _TheoryErrors:
+) -> Floats:
     r"""Error of the theories of small, intermediate and large angles, for each quantity.
 
     Parameters
@@ -609,8 +598,8 @@ def theory_errors(
 
     Returns
     -------
-    errors : TheoryErrors
-        Array of shape (n_theories, n_quantities, ..., n_strain).
+    errors : ndarray, shape (n_theories, n_quantities, ..., n_strain)
+        Of `SIMPLER_THEORIES` and `ARMOUR_QUANTITIES`. [1]
 
     Raises
     ------
@@ -629,7 +618,7 @@ def theory_errors(
     [1]_, sec. 5.2: the axial force of small and intermediate angles, and of a spring
 
     >>> design = ArmourDesign(np.radians(20.0), 2.5e-3, 25e-3, 210e9)
-    >>> for percent in 100 * theory_errors(design, 1e-3).error[:, 0, 0]:
+    >>> for percent in 100 * theory_errors(design, 1e-3)[:, 0, 0]:
     ...     print(f"{percent:.3f}")
     -0.006
     -0.006
@@ -643,10 +632,9 @@ def theory_errors(
     scale = np.abs(_table(true))
     stiffness = np.asarray(design.torsion_stiffness)[..., None]
     scale[-1] = stiffness * np.hypot(true.curvature_change, true.torsion_change)
-    each = [_table(predict_armour(design, strain, theory=theory)) for theory in _SIMPLER]
+    each = [_table(predict_armour(design, strain, theory=theory)) for theory in SIMPLER_THEORIES]
     miss = np.stack(each) - _table(true)
-    error = np.divide(miss, scale, out=np.full_like(miss, np.nan), where=scale > 0)
-    return _TheoryErrors(_SIMPLER, ARMOUR_QUANTITIES, reference, error)
+    return np.divide(miss, scale, out=np.full_like(miss, np.nan), where=scale > 0)
 
 
 def _table(response: _ArmourResponse) -> Floats:
@@ -658,8 +646,6 @@ def _table(response: _ArmourResponse) -> Floats:
 class _AnglesOfUse:
     """Angles at which each theory holds."""
 
-    theory: tuple[ArmourTheory, ...]
-    quantity: tuple[str, ...]
     winding_angle: Floats
     is_within: Bools
     least_angle: Floats
@@ -685,12 +671,11 @@ def _angles_of_use(design: ArmourDesign, strain: float, *, tolerance: float) -> 
     if not tolerance > 0:
         raise SettingsError("tolerance is not above zero", found=f"{tolerance:g}", needed="above 0")
     angle = as_increasing("winding_angle", design.winding_angle)
-    errors = theory_errors(design, strain)
-    is_within = np.abs(errors.error[..., 0]) <= tolerance
+    is_within = np.abs(theory_errors(design, strain)[..., 0]) <= tolerance
     ends = np.full((*is_within.shape[:2], 2), np.nan)
     sentences = []
-    for i, theory in enumerate(errors.theory):
-        for j, quantity in enumerate(errors.quantity):
+    for i, theory in enumerate(SIMPLER_THEORIES):
+        for j, quantity in enumerate(ARMOUR_QUANTITIES):
             runs = runs_of_true(is_within[i, j]) - [0, 1]
             if runs.size:
                 ends[i, j] = angle[runs[np.argmax(runs[:, 1] - runs[:, 0])]]
@@ -700,8 +685,6 @@ def _angles_of_use(design: ArmourDesign, strain: float, *, tolerance: float) -> 
                 + (f"at {places} deg" if places else "nowhere")
             )
     return _AnglesOfUse(
-        theory=errors.theory,
-        quantity=errors.quantity,
         winding_angle=angle,
         is_within=is_within,
         least_angle=ends[..., 0],
@@ -1122,7 +1105,7 @@ class PredictedArmour:
     layers: ArmourLayers
     strain: Floats
     responses: dict[ArmourTheory, _ArmourResponse]
-    errors: _TheoryErrors
+    errors: Floats
     use: tuple[_AnglesOfUse, ...]
     tolerance: float
     together: _LayersResponse

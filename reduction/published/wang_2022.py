@@ -292,7 +292,7 @@ def _trends() -> Answers:
 
 
 def _errors() -> Answers:
-    linear = theory_errors(_armour(_FINE), 1e-3).error[:2, 0, :, 0]
+    linear = theory_errors(_armour(_FINE), 1e-3)[:2, 0, :, 0]
     missing = "a finite-element result is one side of it, and the core radius is not given"
     shear = "shear stress of intermediate angles"
     zero = float(_FINE[np.argmin(np.abs(_response(_FINE, "torsion_moment")))])

@@ -10,7 +10,7 @@ import numpy as np
 from reduction.archive.atomic_write import write_text_atomically
 from reduction.lines.assembly import DeployedLine
 from reduction.lines.composite import CompositeCurve, PieceSource
-from reduction.prediction.armour import PredictedArmour
+from reduction.prediction.armour import ARMOUR_QUANTITIES, SIMPLER_THEORIES, PredictedArmour
 from reduction.prediction.wave_load import (
     CODE_OF_HYDROLOGY,
     PUBLISHED_COEFFICIENTS,
@@ -597,10 +597,10 @@ def use_table(found: PredictedArmour) -> PageTable | None:
     pairs = [
         (f"{layer}, {THEORY_WORDS[theory]}", use.least_angle[i], use.greatest_angle[i])
         for layer, use in zip(found.layer_names, found.use, strict=True)
-        for i, theory in enumerate(use.theory)
+        for i, theory in enumerate(SIMPLER_THEORIES)
     ]
     sheet = Sheet(Calculated("si")).texts("layer, theory", [name for name, *_ in pairs])
-    for k, name in enumerate(found.use[0].quantity):
+    for k, name in enumerate(ARMOUR_QUANTITIES):
         sheet.cells(
             DEGREES.label(name.replace("_", " ")),
             [_angles(float(low[k]), float(high[k])) for _, low, high in pairs],

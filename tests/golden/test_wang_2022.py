@@ -211,7 +211,7 @@ def test_small_and_intermediate_angles_have_one_axial_force():
 
 
 def test_axial_force_is_within_half_a_tenth_of_a_percent_of_the_exact_rod():
-    error = theory_errors(armour(FINE), STRAIN).error[1, 0, :, 0]
+    error = theory_errors(armour(FINE), STRAIN)[1, 0, :, 0]
     assert 0.00049 < np.max(np.abs(error)) < 0.0005
 
 

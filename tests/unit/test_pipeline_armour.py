@@ -112,7 +112,7 @@ def test_where_each_theory_holds_is_looked_for_at_every_half_degree(predict):
     assert found.tolerance == pytest.approx(0.005)
     assert len(found.use) == 2
     np.testing.assert_allclose(np.degrees(found.use[0].winding_angle), np.arange(5, 85.5, 0.5))
-    within = np.abs(found.errors.error) <= 0.005
+    within = np.abs(found.errors) <= 0.005
     # at the layer's own angle, which is among them
     place = np.flatnonzero(np.isclose(np.degrees(found.use[0].winding_angle), 20))[0]
     np.testing.assert_array_equal(found.use[0].is_within[..., place], within[..., 0, 0])

@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 
 from reduction.prediction.armour import (
+    ARMOUR_QUANTITIES,
+    SIMPLER_THEORIES,
     ArmourTheory,
     PredictedArmour,
     predict_armour,
@@ -119,11 +121,11 @@ def draw_errors(found: PredictedArmour) -> list[Figure]:
     angle = np.degrees(designs.winding_angle)
     tolerance = 100 * found.tolerance
     figures = []
-    for j, quantity in enumerate(errors.quantity):
+    for j, quantity in enumerate(ARMOUR_QUANTITIES):
         words = _WORDS[quantity]
         data: list[Trace] = []
-        for i, theory in enumerate(errors.theory):
-            size = 100 * np.abs(errors.error[i, j, :, 0])
+        for i, theory in enumerate(SIMPLER_THEORIES):
+            size = 100 * np.abs(errors[i, j, :, 0])
             size = np.where(size > 0, size, np.nan)  # a logarithm has no zero
             within = np.where(use.is_within[i, j], size, np.nan)
             tint, name = _COLOUR[theory], THEORY_WORDS[theory]
