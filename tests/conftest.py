@@ -24,8 +24,6 @@ hypothesis.settings.register_profile("some", deadline=None, max_examples=20)
 hypothesis.settings.register_profile("nightly", deadline=None, max_examples=100)
 hypothesis.settings.load_profile("some")
 
-# needs atheris, and is run by hand
-collect_ignore = ["fuzz_readers.py"]
 
 # each takes a minute or more; the first makes the campaigns that others read, and would wait for
 LONGEST = (
