@@ -33,6 +33,7 @@ from reduction.pipeline.located_test import (
 )
 from reduction.pipeline.rope_test import PullConditions, parts_of_line, pull_specimens, rope_step
 from reduction.quantities.flags import PHASE_VALUES
+from reduction.record.arrays import finite_median
 from reduction.record.contributions import (
     Component,
     Contributions,
@@ -65,7 +66,6 @@ from reduction.stages.cycles.cycle_search import control_channel, label_phases
 from reduction.stages.cycles.loop_sense import (
     OPEN,
     change_of_wave,
-    finite_median,
     notes_of_loops,
     unlike_neighbours,
     waveform_of_log,
