@@ -71,7 +71,6 @@ NOT_IN_SUITE = {
     "coverage_surfaces": "coverage of intervals, not cost; docs/method.md",
     "coverage_tethers": "coverage of intervals, not cost; docs/uncertainty.md",
     "same_bytes": "products in other surroundings, not cost; docs/reproducing.md",
-    "between_versions": "products by other releases, not cost; docs/reproducing.md",
     "monte_carlo": "uncertainty against draws, not cost; docs/benchmarks.md",
     "hostile": "files that are refused; docs/robustness.md",
 }
