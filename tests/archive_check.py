@@ -1,12 +1,11 @@
 """A written archive against the schema, on the file as it lies on the disk.
 
-A small part of CF, fitted to what `reduction.quantities.names` and its like promise; the whole of CF
-is checked by an outside program.
+What `reduction.quantities.names` and its like promise; CF is checked by an outside program.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +13,7 @@ import netCDF4
 import numpy as np
 from numpy.typing import NDArray
 
-from reduction.archive.dataset_builder import CONVENTIONS, SCHEMA_NAME, SCHEMA_VERSION
+from reduction.archive.dataset_builder import SCHEMA_NAME, SCHEMA_VERSION
 from reduction.archive.open import _schema_of_file
 from reduction.quantities.row import GROUPS, Quantity
 
@@ -51,8 +50,6 @@ def _global_findings(file: netCDF4.Dataset) -> Iterator[str]:
     for name, group in file.groups.items():
         if getattr(group, "comment", "") != GROUPS.get(name) or group.groups:
             yield f"group {name} is not one of the schema"
-    if getattr(file, "Conventions", None) != CONVENTIONS:
-        yield f"Conventions is not {CONVENTIONS}"
     if getattr(file, "schema_name", None) != SCHEMA_NAME:
         yield f"schema_name is not {SCHEMA_NAME}"
     if getattr(file, "schema_version", None) != SCHEMA_VERSION:
@@ -80,9 +77,12 @@ def _variable_findings(group: netCDF4.Dataset, file: netCDF4.Dataset) -> Iterato
         if row.group != own and not is_axis:
             yield f"{name} is in group '{own}', not in '{row.group}'"
         yield from _type_findings(name, variable, row)
-        yield from _reference_findings(name, variable, {**file.variables, **group.variables})
         if row.flags:
-            yield from _flag_findings(name, variable, row)
+            listed = np.atleast_1d(
+                variable.getncattr("flag_masks" if row.is_mask else "flag_values")
+            )
+            if any(_has_odd(part, listed, row) for part in _parts(variable)):
+                yield f"{name} has values without a meaning"
         elif not row.is_bounds and not row.is_text and not getattr(variable, "units", ""):
             yield f"{name} has no units"
         if not row.is_bounds and not getattr(variable, "long_name", ""):
@@ -99,32 +99,6 @@ def _type_findings(name: str, variable: netCDF4.Variable[Any], row: Quantity) ->
             yield f"{name} does not say that it is utf-8"
     elif variable.dtype != np.dtype(row.dtype):
         yield f"{name} has type {variable.dtype}, not {row.dtype}"
-
-
-def _reference_findings(
-    name: str, variable: netCDF4.Variable[Any], there: Mapping[str, netCDF4.Variable[Any]]
-) -> Iterator[str]:
-    for attribute in ("ancillary_variables", "coordinates", "bounds"):
-        for other in str(getattr(variable, attribute, "")).split():
-            if other not in there:
-                yield f"{name} names {other} in {attribute}, which is not there"
-            elif attribute != "bounds" and not set(there[other].dimensions) <= set(
-                variable.dimensions
-            ):
-                yield f"{name} names {other} in {attribute}, which has other dimensions"
-
-
-def _flag_findings(name: str, variable: netCDF4.Variable[Any], row: Quantity) -> Iterator[str]:
-    kind = "flag_masks" if row.is_mask else "flag_values"
-    listed = np.atleast_1d(getattr(variable, kind, np.empty(0)))
-    if listed.dtype != variable.dtype:
-        yield f"{name} has {kind} of type {listed.dtype}, not {variable.dtype}"
-    if listed.size != len(str(getattr(variable, "flag_meanings", "")).split()):
-        yield f"{name} has not one meaning for each of its {kind}"
-    if not listed.size:
-        return
-    if any(_has_odd(part, listed, row) for part in _parts(variable)):
-        yield f"{name} has values without a meaning"
 
 
 def _parts(variable: netCDF4.Variable[Any]) -> Iterator[NDArray[Any]]:

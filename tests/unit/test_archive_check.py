@@ -3,7 +3,6 @@
 import shutil
 
 import netCDF4
-import numpy as np
 import pytest
 from archive_check import check_archive
 
@@ -24,10 +23,6 @@ def test_nothing_is_found_in_any_kind_of_product(archives):
     assert [check_archive(path) for path in archives] == [[], [], [], []]
 
 
-def set_attribute(variable, attribute, value):
-    return lambda file: file[variable].setncattr(attribute, value)
-
-
 def delete_attribute(variable, attribute):
     return lambda file: file[variable].delncattr(attribute)
 
@@ -40,10 +35,6 @@ def add_variable(name, dtype, dims):
     ("change", "finding"),
     [
         (lambda file: file.createGroup("g"), "group g is not one of the schema"),
-        (
-            lambda file: file.setncattr("Conventions", "CF-1.6"),
-            "Conventions is not CF-1.11 ACDD-1.3",
-        ),
         (lambda file: file.delncattr("schema_version"), "schema_version is not 1.0"),
         (lambda file: file.delncattr("history"), "global attribute history is missing"),
         (lambda file: file.createDimension("more", None), "dimension more is unlimited"),
@@ -61,30 +52,6 @@ def add_variable(name, dtype, dims):
         (delete_attribute("tension", "units"), "tension has no units"),
         (delete_attribute("tension", "long_name"), "tension has no long_name"),
         (
-            set_attribute("tension", "ancillary_variables", "nothing"),
-            "tension names nothing in ancillary_variables, which is not there",
-        ),
-        (
-            set_attribute("tension", "ancillary_variables", "phase"),
-            None,
-        ),
-        (
-            set_attribute("phase", "ancillary_variables", "tension"),
-            "phase names tension in ancillary_variables, which has other dimensions",
-        ),
-        (
-            set_attribute("phase", "flag_values", np.array([0, 1, 2, 3], dtype="i4")),
-            "phase has flag_values of type int32, not int8",
-        ),
-        (
-            set_attribute("phase", "flag_meanings", "rest approach hold"),
-            "phase has not one meaning for each of its flag_values",
-        ),
-        (
-            delete_attribute("phase", "flag_values"),
-            "phase has not one meaning for each of its flag_values",
-        ),
-        (
             lambda file: file["phase"].__setitem__(0, 9),
             "phase has values without a meaning",
         ),
@@ -95,11 +62,7 @@ def add_variable(name, dtype, dims):
     ],
 )
 def test_each_fault_is_found(path, change, finding):
-    found = findings_after(path, change)
-    if finding is None:
-        assert found == []
-    else:
-        assert finding in found
+    assert finding in findings_after(path, change)
 
 
 def test_text_in_another_type_is_found(path):
