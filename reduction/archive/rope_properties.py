@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -19,6 +18,7 @@ from reduction.archive.shared_errors import (
 from reduction.archive.variables import (
     Values,
     numbers,
+    settings_of,
     texts,
 )
 from reduction.quantities.names import PROPERTY_SCHEMA
@@ -143,13 +143,13 @@ def step_of_archive(
     names = dataset.variables["specimen"].values.astype(str).tolist()
     if specimen not in names:
         raise ArchiveError(f"the archive has no specimen '{specimen}'", found=", ".join(names))
-    settings = json.loads(str(dataset.attrs["settings"]))
-    control = settings["reduction"].get("cycles", {}).get("control")
+    settings = settings_of(dataset)["reduction"]
+    control = settings.get("cycles", {}).get("control")
     read = _Reader(dataset, names.index(specimen), instruments, model, control == "load")
     bedding = _bedding(read)
     step = StepOfProgramme(
         name=str(dataset.attrs["test"]),
-        reference_time=float(settings["reduction"]["rope"]["reference_time"]),
+        reference_time=float(settings["rope"]["reference_time"]),
         first_rise=_first_rise(read),
         bedding=bedding,
         level=None if bedding is not None else _level(read),

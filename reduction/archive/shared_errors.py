@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from dataclasses import fields
 from typing import Any
@@ -10,7 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from reduction.archive.variables import Values, stored, texts
+from reduction.archive.variables import Values, settings_of, stored, texts
 from reduction.prediction.measured_curve import SharedErrors, constant_errors
 from reduction.quantities.names import OF_TEST
 from reduction.quantities.outcomes_and_weights import IN_PLACE_OF_RECORD
@@ -157,8 +156,7 @@ def _combine_channel(values: Values, name: str, rows: Floats) -> None:
 
 def stated_errors_of(archive: xr.Dataset) -> StatedErrors:
     """Stated standard uncertainties in the reduction of a test."""
-    settings = json.loads(str(archive.attrs.get("settings") or "{}"))
-    kept = settings.get("uncertainty") or {}
+    kept = settings_of(archive).get("uncertainty") or {}
     known: dict[str, Any] = {}
     for item in fields(StatedErrors):
         value = kept.get(item.name, item.default)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Hashable, Sequence
 from typing import Any, cast
 
@@ -70,6 +71,11 @@ def at_places(variable: xr.Variable, dim: Hashable, places: Integers) -> xr.Vari
 _NOTE_TEXTS = ("note", "note_stage", "note_code", "note_severity")
 
 NOTE_VARIABLES = (*_NOTE_TEXTS, "note_effect")
+
+
+def settings_of(archive: xr.Dataset) -> dict[str, Any]:
+    """Return all settings of the run that made an archive; empty if it states none."""
+    return dict(json.loads(str(archive.attrs.get("settings") or "{}")))
 
 
 def note_values(notes: Sequence[Note]) -> Values:

@@ -15,6 +15,7 @@ from reduction import __version__
 from reduction.archive.open import Opener, as_kept, keep_written, reading
 from reduction.archive.shared_errors import shared_contributions
 from reduction.archive.surfaces_dataset import surfaces_to_dataset
+from reduction.archive.uncertainty_budget import break_in_cycles
 from reduction.archive.variables import read_notes, stored
 from reduction.archive.write import write_archive
 from reduction.batch.campaign_status import PartStatus, TestStatus
@@ -185,8 +186,7 @@ def _row_of_archive(plan: ExperimentPlan, archive: xr.Dataset, place: int, speci
         name: shared_contributions(archive, f"test_{name}", place)
         for name in dict.fromkeys((*MEASURED, *plan.responses))
     }
-    settings = json.loads(archive.attrs["settings"])
-    begin = int(settings["reduction"]["cycles"]["break_in_cycles"])
+    begin = break_in_cycles(archive)
     if "peak_tension" in archive:
         peak = archive.variables["peak_tension"].values[place, begin:]
         valley = archive.variables["valley_tension"].values[place, begin:]

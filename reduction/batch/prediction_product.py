@@ -21,6 +21,7 @@ from reduction.archive.campaign_products import (
 from reduction.archive.open import Opener, as_kept, keep_written, reading
 from reduction.archive.shared_errors import curve_errors_of
 from reduction.archive.test_dataset import stored_cycles
+from reduction.archive.uncertainty_budget import break_in_cycles
 from reduction.archive.write import write_archive
 from reduction.batch.campaign_status import PartStatus
 from reduction.batch.reuse import NOT_REDUCED
@@ -210,7 +211,7 @@ def compare_archive(
             cycle_number=_numbers(archive) if "cycle_number" in archive else None,
             branch=archive.variables["branch"].values if "branch" in archive else None,
             # a pull has no break-in cycles
-            break_in_cycles=_break_in(archive) if "cycle_number" in archive else 0,
+            break_in_cycles=break_in_cycles(archive) if "cycle_number" in archive else 0,
             shared=shared,
             calibrate=plan.calibrate,
             **gauge,
@@ -272,11 +273,6 @@ def _specimen(path: Path, archive: xr.Dataset, wanted: str) -> tuple[str, int]:
             needed="specimen = one of " + ", ".join(names),
         )
     return wanted, names.index(wanted)
-
-
-def _break_in(archive: xr.Dataset) -> int:
-    settings = json.loads(archive.attrs.get("settings", "{}"))
-    return int(settings.get("reduction", {}).get("cycles", {}).get("break_in_cycles", 0))
 
 
 def write_named(

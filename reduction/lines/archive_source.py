@@ -6,7 +6,6 @@ surfaces.
 
 from __future__ import annotations
 
-import json
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
@@ -22,7 +21,7 @@ from reduction.archive.product_files import archives_of_tests, failure_words
 from reduction.archive.shared_errors import components_of, shared_contributions
 from reduction.archive.surfaces_dataset import is_share_of_mean, surface_names, surfaces_of
 from reduction.archive.uncertainty_budget import break_in_cycles, random_freedom
-from reduction.archive.variables import stored
+from reduction.archive.variables import settings_of, stored
 from reduction.experiments.fit_results import FIT_REASONS, ResponseSurfaces
 from reduction.experiments.surface_discrepancy import discrepancy_of
 from reduction.experiments.surface_points import greatest_leverage
@@ -548,7 +547,7 @@ def lines_of_open_archive(
             for name, kind in zip(names, kinds, strict=True)
             if kind == "box-behnken" and surface_names(archive, name)
         ]
-        settings = json.loads(str(archive.attrs.get("settings", "{}")))
+        settings = settings_of(archive)
         return [
             _with_slow_pulls(
                 one, path, settings.get(one.name, {}), opener, _runs_of(archive, one.name)
@@ -776,7 +775,7 @@ def _sine_over_wave(archive: xr.Dataset, place: int) -> dict[str, float]:
     if cycles.get("waveform") == "sinusoidal" or "storage_over_time" not in archive:
         return {}
     storage, loss = (
-        float(np.nanmean(archive.variables[name].values[place, _break_in(cycles) :]))
+        float(np.nanmean(archive.variables[name].values[place, break_in_cycles(archive) :]))
         for name in ("storage_over_time", "loss_over_time")
     )
     load, apparent, energy = (
@@ -789,12 +788,7 @@ def _sine_over_wave(archive: xr.Dataset, place: int) -> dict[str, float]:
 
 
 def _cycle_settings(archive: xr.Dataset) -> dict[str, Any]:
-    settings = json.loads(str(archive.attrs.get("settings", "{}")))
-    return dict(settings.get("reduction", {}).get("cycles", {}))
-
-
-def _break_in(cycles: Mapping[str, Any]) -> int:
-    return int(cycles.get("break_in_cycles") or 0)
+    return dict(settings_of(archive).get("reduction", {}).get("cycles", {}))
 
 
 def _cycle_of_level(archive: xr.Dataset, place: int, curve: LineCurve) -> RunOfLine:
@@ -804,7 +798,7 @@ def _cycle_of_level(archive: xr.Dataset, place: int, curve: LineCurve) -> RunOfL
         return archive.variables[name].values
 
     settings = _cycle_settings(archive)
-    kept = _break_in(settings)
+    kept = break_in_cycles(archive)
     first, turn, last = (
         ends[kept:]
         for ends in (
@@ -930,7 +924,7 @@ def experiments_with_pulls(path: Path) -> list[LineSource]:
     opener = ReadOnce()
     with opener(path) as archive:
         found = lines_of_open_archive(archive, path, opener)
-        settings = json.loads(str(archive.attrs.get("settings", "{}")))
+        settings = settings_of(archive)
         runs = {line.name: _runs_of(archive, line.name) for line in found}
     made = []
     for line in found:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -16,7 +15,7 @@ from numpy.typing import NDArray
 from reduction.archive.campaign_products import outcomes_of_dataset
 from reduction.archive.open import in_memory
 from reduction.archive.surfaces_dataset import is_share_of_mean, surface_names, surfaces_of
-from reduction.archive.variables import at_places, stored
+from reduction.archive.variables import at_places, settings_of, stored
 from reduction.experiments.fit_results import ResponseSurfaces
 from reduction.experiments.outcome_groups import Group
 from reduction.experiments.outcomes import Outcome
@@ -661,7 +660,7 @@ def view_ropes(
 ) -> list[RopeView]:
     """Return the ropes of an archive of properties, which may then be closed."""
     data = in_memory(archive)
-    used = json.loads(str(data.attrs.get("settings", "{}"))).get("tests", {})
+    used = settings_of(data).get("tests", {})
     owners = data["property_specimen"].values.astype(str)
     return [
         RopeView(
