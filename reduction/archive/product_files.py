@@ -62,24 +62,31 @@ def record_campaign(folder: Path, campaign: Path) -> Path | None:
     return earlier if is_other else None
 
 
-def failure_words(archive: Path) -> tuple[str, ...]:
-    """Why the last run could not make an archive of a test, which is then of an earlier run."""
+def earlier_run_words(archive: Path) -> tuple[str, ...]:
+    """Why an archive is not from the last run of the campaign in its folder; empty if it is."""
+    name, test = archive.stem, archive.stem.partition(".")[0]
+    if archive.parent.name == SUPERSEDED:
+        return (f"{name} is from an earlier run: the campaign no longer makes it",)
     try:
         text = (archive.parent / STATUS_NAME).read_text(encoding="utf-8")
-        if "failed" not in text:  # of a thousand archives, not a thousand tables
+        has_row = name in OF_CAMPAIGN or f"\n{name}," in text
+        if has_row and "failed" not in text:  # of a thousand archives, not a thousand tables
             return ()
-        # of a log that could not be read, the archives of its steps are kept
-        names = (archive.stem, archive.stem.partition(".")[0])
-        rows = [
-            row for row in csv.DictReader(io.StringIO(text, newline="")) if row["test"] in names
-        ]
+        rows = {row["test"]: row for row in csv.DictReader(io.StringIO(text, newline=""))}
     except (OSError, KeyError, ValueError, csv.Error):
         return ()  # an archive without its campaign
+    # of a log that could not be read, the archives of its steps are kept
+    failed = [rows[one] for one in dict.fromkeys((name, test))
+              if one in rows and rows[one]["status"] == "failed"]  # fmt: skip
+    if not failed and not has_row:
+        return (
+            f"{name} has no row in {STATUS_NAME}: it is of a test that the campaign no longer has,"
+            " of another campaign, or of a run that did not finish. Run the campaign again",
+        )
     return tuple(
-        f"{archive.stem} could not be reduced in the last run, and this is from an earlier one:"
+        f"{name} could not be reduced in the last run, and its archive is from an earlier one:"
         f" {bare_cell(row['message'] or '')}"
-        for row in rows
-        if row["status"] == "failed"
+        for row in failed
     )
 
 

@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 
 from reduction.archive.open import failing_reads, open_archive
-from reduction.archive.product_files import archives_of_tests, failure_words
+from reduction.archive.product_files import archives_of_tests, earlier_run_words
 from reduction.campaign.assembly_spec import AssemblyCase, load_assembly_case
 from reduction.campaign.toml_file import at_place, in_toml
 from reduction.cli.output import CommandOutput
@@ -84,7 +84,7 @@ def piece_source(
         failed = [
             f"DOUBTFUL: {text}"
             for path, one in zip(paths, datasets, strict=True) if name in specimens_of(one)
-            for text in failure_words(path)
+            for text in earlier_run_words(path)
         ]  # fmt: skip
         return replace(made, notes=(*failed, *made.notes))
 

@@ -17,7 +17,7 @@ import numpy as np
 import xarray as xr
 
 from reduction.archive.open import Opener, ReadOnce, reading
-from reduction.archive.product_files import archives_of_tests, failure_words
+from reduction.archive.product_files import archives_of_tests, earlier_run_words
 from reduction.archive.shared_errors import components_of, shared_contributions
 from reduction.archive.surfaces_dataset import is_share_of_mean, surface_names, surfaces_of
 from reduction.archive.uncertainty_budget import break_in_cycles, random_freedom
@@ -209,6 +209,8 @@ def _line_source_of_experiment(
             for name, unit in zip(factors, units, strict=True)
         ]
     )
+    runs = _runs_of(dataset, experiment)
+    tested = tuple(sorted({specimen for _, specimen in runs}))
     surfaces = {}
     for response in RESPONSES:
         name = looked_up_surface(response, names)
@@ -224,10 +226,11 @@ def _line_source_of_experiment(
         rated_break_strength=strength,
         factor_names=factors,
         surfaces=surfaces,
-        specimens=_specimens_of(dataset, experiment),
+        runs=runs,
+        specimens=tested,
         notes=_synthetic(dataset),
         campaign=str(dataset.attrs.get("campaign", "")),
-        **_agreed([(specimens or {}).get(one, {}) for one in _specimens_of(dataset, experiment)]),
+        **_agreed([(specimens or {}).get(one, {}) for one in tested]),
     )
 
 
@@ -240,14 +243,6 @@ def looked_up_surface(response: str, names: Sequence[str]) -> str:
     'log_hysteresis_energy'
     """
     return next((f"{one}{response}" for one in _SCALES if f"{one}{response}" in names), "")
-
-
-def _specimens_of(dataset: xr.Dataset, experiment: str) -> tuple[str, ...]:
-    """Names of the specimens tested in the runs of an experiment."""
-    row = dataset.variables["experiment"].values.astype(str).tolist().index(experiment)
-    return tuple(
-        sorted({str(name) for name in dataset.variables["run_specimen"].values[row] if str(name)})
-    )
 
 
 def _facts_of_specimens(dataset: xr.Dataset) -> dict[str, Facts]:
@@ -529,8 +524,21 @@ def lines_of_archive(path: Path) -> list[LineSource]:
 def _lines_at(path: Path, opener: Opener) -> list[LineSource]:
     with opener(path) as archive:
         lines = lines_of_open_archive(archive, path, opener)
-    failed = failure_words(path)
-    return [replace(one, warnings=(*failed, *one.warnings)) for one in lines] if failed else lines
+    told = earlier_run_words(path)
+    return [_with_warnings(one, told) for one in lines] if told else lines
+
+
+def _with_warnings(line: LineSource, told: tuple[str, ...]) -> LineSource:
+    """A line that also warns of its archive, at each test for when it is pooled with others."""
+    return replace(
+        line,
+        warnings=(*told, *line.warnings) if line.surfaces else line.warnings,
+        curves=tuple(replace(one, warnings=(*told, *one.warnings)) for one in line.curves),
+        levels=tuple(
+            replace(one, warnings=tuple((*told, *own) for own in one.warnings))
+            for one in line.levels
+        ),
+    )
 
 
 def lines_of_open_archive(
@@ -540,7 +548,7 @@ def lines_of_open_archive(
     if "experiment" in archive.sizes:
         names = archive.variables["experiment"].values.astype(str).tolist()
         kinds = archive.variables["experiment_kind"].values.astype(str).tolist()
-        wanted = {one for name in names for one in _specimens_of(archive, name)}
+        wanted = {specimen for name in names for _, specimen in _runs_of(archive, name)}
         known = _specimens(path, wanted, opener)
         made = [
             _line_source_of_experiment(archive, name, specimens=known)
@@ -549,9 +557,7 @@ def lines_of_open_archive(
         ]
         settings = settings_of(archive)
         return [
-            _with_slow_pulls(
-                one, path, settings.get(one.name, {}), opener, _runs_of(archive, one.name)
-            )
+            _with_slow_pulls(one, path, settings.get(one.name, {}), opener)
             if set(one.factor_names) == _OF_A_CYCLE
             else one
             for one in made
@@ -572,18 +578,14 @@ _OF_A_CYCLE = {"frequency", "mean_tension", "tension_amplitude"}
 
 
 def _with_slow_pulls(
-    line: LineSource,
-    path: Path,
-    settings: Mapping[str, Any],
-    opener: Opener,
-    runs: Sequence[tuple[str, str]],
+    line: LineSource, path: Path, settings: Mapping[str, Any], opener: Opener
 ) -> LineSource:
     """Surfaces over the cycles of a rope, with K_0 and how its K_1 and tau were read."""
-    pulls = _slow_pulls(path, settings, opener, runs)
+    pulls = _slow_pulls(path, settings, opener, line.runs)
     return replace(
         line,
         slow_pulls=pulls,
-        by_fundamental=bool(pulls) and _are_other_waves(path.parent, runs, opener),
+        by_fundamental=bool(pulls) and _are_other_waves(path.parent, line.runs, opener),
     )
 
 
@@ -616,14 +618,15 @@ def _slow_pulls(
     return found
 
 
-def _runs_of(dataset: xr.Dataset, experiment: str) -> list[tuple[str, str]]:
+def _runs_of(dataset: xr.Dataset, experiment: str) -> tuple[tuple[str, str], ...]:
     """Test and specimen of each run of an experiment."""
     row = dataset.variables["experiment"].values.astype(str).tolist().index(experiment)
     tests, specimens = (
         dataset.variables[name].values[row].astype(str).tolist()
         for name in ("run_name", "run_specimen")
     )
-    return list(zip(tests, specimens, strict=True))
+    # an experiment with fewer runs than another ends with empty names
+    return tuple(one for one in zip(tests, specimens, strict=True) if one[1])
 
 
 def _with_bend(
@@ -685,11 +688,15 @@ def lines_of_folder(folder: Path) -> list[LineSource]:
 
 def _with_runs(line: LineSource, tests: Sequence[LineSource]) -> LineSource:
     """Surfaces with the conditions of their runs, and why runs have the status `check`."""
-    runs = [one for one in tests if one.levels and set(one.specimens) & set(line.specimens)]
+    runs = [
+        one
+        for one in tests
+        if one.levels and (one.levels[0].tests[0], one.specimens[0]) in line.runs
+    ]
     return replace(
         line,
         conditions=joined_conditions(one.conditions for one in runs),
-        warnings=_checks_of_runs(runs),
+        warnings=(*line.warnings, *_checks_of_runs(runs)),
     )
 
 
@@ -698,9 +705,11 @@ def _checks_of_runs(runs: Sequence[LineSource]) -> tuple[str, ...]:
     doubted = [texts for line in runs if (texts := line.levels[0].warnings[0])]
     if not doubted:
         return ()
-    first = doubted[0][0].replace(" has the status check", "", 1)
+    check = " has the status check"
+    what = "the status check" if all(check in texts[0] for texts in doubted) else "a warning"
+    first = doubted[0][0].replace(check, "", 1)
     has = "has" if len(doubted) == 1 else "have"
-    return (f"{len(doubted)} of {len(runs)} runs {has} the status check; {first}",)
+    return (f"{len(doubted)} of {len(runs)} runs {has} {what}; {first}",)
 
 
 def ropes_with_pulls(folder: Path) -> list[LineSource]:
@@ -925,7 +934,6 @@ def experiments_with_pulls(path: Path) -> list[LineSource]:
     with opener(path) as archive:
         found = lines_of_open_archive(archive, path, opener)
         settings = settings_of(archive)
-        runs = {line.name: _runs_of(archive, line.name) for line in found}
     made = []
     for line in found:
         pulls = settings.get(line.name, {}).get("quasi_static", {})
@@ -936,9 +944,7 @@ def experiments_with_pulls(path: Path) -> list[LineSource]:
                     line,
                     name=line.name if len(pulls) == 1 else f"{line.name} {specimen}",
                     source=f"{line.source}; slow pull {pulled.source}",
-                    curves=_with_bend(
-                        path.parent, specimen, pulled.curves, opener, runs[line.name]
-                    ),
+                    curves=_with_bend(path.parent, specimen, pulled.curves, opener, line.runs),
                     notes=tuple(dict.fromkeys((*line.notes, *pulled.notes))),
                 )
             )

@@ -22,7 +22,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from reduction.archive.open import reading
-from reduction.archive.product_files import failure_words
+from reduction.archive.product_files import earlier_run_words
 from reduction.archive.variables import stored
 from reduction.lines.archive_pieces import (
     Turns,
@@ -81,7 +81,7 @@ def line_from_archive(
     """Read one curve of an archive as a line."""
     with reading(path) as archive:
         line = _line_from_open_archive(archive, path.stem, curve=curve, specimen=specimen, **stated)
-    failed = tuple(f"DOUBTFUL: {text}" for text in failure_words(path))
+    failed = tuple(f"DOUBTFUL: {text}" for text in earlier_run_words(path))
     return replace(line, notes=(*failed, *line.notes))
 
 

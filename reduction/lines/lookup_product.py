@@ -318,6 +318,8 @@ class LineSource:
         Conditions of its tests, as a campaign states them: ``medium``, ``temperature`` ...
     specimens : tuple of str
         Specimens of the numbers; none for a published line.
+    runs : tuple of (str, str)
+        Test and specimen of each run of the surfaces; none for a published line.
     campaign : str
         Identification of the campaign; empty for published lines.
     notes, warnings : tuple of str
@@ -345,6 +347,7 @@ class LineSource:
     levels: tuple[LineLevels, ...] = ()
     conditions: dict[str, str] = field(default_factory=dict)
     specimens: tuple[str, ...] = ()
+    runs: tuple[tuple[str, str], ...] = ()
     notes: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
     campaign: str = ""

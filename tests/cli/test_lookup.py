@@ -2,6 +2,7 @@
 
 import json
 import re
+import shutil
 from dataclasses import replace
 
 import numpy as np
@@ -144,6 +145,27 @@ def test_what_the_last_run_could_not_reduce_is_answered_with_a_warning(
     joined = command("composite", tmp_path, "--specimen", "new")
     doubt = "note: DOUBTFUL: T-1 could not be reduced in the last run"
     assert any(one.startswith(doubt) for one in joined.stdout.splitlines()[:3])
+
+
+def test_an_archive_that_the_last_run_did_not_make_is_answered_with_a_warning(
+    command, two_tests, tmp_path
+):
+    """Copied back, from another campaign, or moved aside by the run that replaced it."""
+    shutil.copytree(two_tests, tmp_path, symlinks=True, dirs_exist_ok=True)
+    row = campaign_status.TestStatus("T-1", "reduced", 0, "", 0, 0, "", 0.0)
+    (tmp_path / "status.csv").write_text(campaign_status.status_csv([row]), newline="")
+    (tmp_path / "superseded").mkdir()
+    (tmp_path / "superseded" / "T-1.nc").symlink_to((tmp_path / "T-1.nc").resolve())
+    told = "warning: T-2 has no row in status.csv"
+    for line, n_told in (("T-1 new", 0), ("T-2 new", 1)):
+        for quantity in (("K_ap",), ("tension", "--strain", "1", "--branch", "ascending")):
+            done = command("lookup", tmp_path, "--line", line, "--quantity", *quantity)
+            assert done.stdout.startswith(told) == n_told
+            assert done.stdout.count(told) == n_told
+    done = command("lookup", tmp_path / "superseded", "--line", "new", "--quantity", "K_ap")
+    assert done.stdout.startswith("warning: T-1 is from an earlier run: the campaign no longer")
+    joined = command("composite", tmp_path, "--specimen", "new")
+    assert "note: DOUBTFUL: T-2 has no row in status.csv" in joined.stdout
 
 
 def test_a_tether_has_its_stiffness_at_the_level_of_each_test(command, two_tests):

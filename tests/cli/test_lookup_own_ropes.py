@@ -15,6 +15,7 @@ from typer.testing import CliRunner
 
 import reduction
 from reduction.archive.open import reading
+from reduction.batch.campaign_status import TestStatus, status_csv
 from reduction.cli.lookup import one_line_of
 from reduction.cli.main import app
 from reduction.lines.archive_source import lines_of_folder
@@ -294,6 +295,34 @@ def test_a_rope_without_a_diameter_is_looked_up_at_its_levels(without_diameter):
     found = look_up(line, K_AP, frequency=0.1, mean_tension=[12e3, 18e3], tension_amplitude=6e3)
     assert found.value == pytest.approx(600e3, rel=2e-3)
     assert np.all(found.surface_low < found.value) and np.all(found.value < found.surface_high)
+
+
+def test_a_level_warns_if_the_last_run_could_not_reduce_its_test(rope, tmp_path):
+    doubted = tmp_path / "rope"
+    shutil.copytree(rope, doubted)
+    rows = [
+        TestStatus(name, "failed" if name == "R11" else "reduced", 0, "cut off", 0, 0, "", 0.0)
+        for name in KEPT
+    ]
+    (doubted / "status.csv").write_text(status_csv(rows), newline="")
+    (line, *_) = lines_of_folder(doubted)
+    (said,) = look_up(line, K_AP, **at(0.3, 0.30, 0.05)).warnings
+    assert said.startswith("R11 could not be reduced in the last run")
+    assert look_up(line, K_AP, **CENTRE).warnings == ()
+
+
+def test_surfaces_have_the_conditions_and_checks_of_their_runs_alone(tmp_path_factory, tmp_path):
+    """One more test of the rope, dry and with the status check, is in no surface."""
+    made = run_once("nylon-synthetic", shared_by_processes(tmp_path_factory)).processed
+    for path in made.glob("*.nc"):
+        (tmp_path / path.name).symlink_to(path)
+    shutil.copy(made / "R05.nc", tmp_path / "X1.nc")
+    with netCDF4.Dataset(tmp_path / "X1.nc", "a") as archive:
+        archive.test, archive.medium = "X1", "dry"
+    (line,) = (one for one in lines_of_folder(tmp_path) if one.surfaces)
+    assert line.conditions["medium"] == "wet"
+    assert line.warnings[0].startswith("1 of 15 runs has the status check; R05")
+    assert look_up(in_conditions(line, K_AP, {"medium": "wet"}), K_AP, **CENTRE).value > 0
 
 
 def test_a_value_brings_along_why_its_own_test_has_the_status_check(rope, command, tmp_path):

@@ -15,7 +15,6 @@ from reduction.lines.archive_source import (
     CURVES,
     _line_source_of_experiment,
     _line_source_of_test,
-    _specimens_of,
     experiments_with_pulls,
 )
 from reduction.lines.line_lookup import look_up
@@ -158,7 +157,7 @@ def test_the_line_of_an_experiment_is_of_its_specimens(folder):
 
 
 def test_nothing_is_said_of_what_specimens_differ_in(surfaces):
-    (name,) = _specimens_of(surfaces, "nylon")
+    (name,) = _line_source_of_experiment(surfaces, "nylon").specimens
     several = surfaces.copy(deep=True)
     several["run_specimen"][0, :3] = "other"
     known = {
