@@ -398,10 +398,16 @@ def test_a_bedding_in_that_begins_above_slack_gives_the_first_cycle(log, tmp_pat
     assert "from the first cycle" in original["property_remark"]
 
 
-def test_cycles_of_a_sine_that_bed_a_rope_in_begin_with_the_first(tmp_path):
-    """A rope of 1 MN that is longer by 0.01 (1 - exp(-n)) after the rise of the nth cycle."""
+@pytest.mark.parametrize("wave", ["sine", "ramps"])
+def test_cycles_that_bed_a_rope_in_begin_with_the_first(wave, tmp_path):
+    """A rope of 1 MN that is longer by 0.01 (1 - exp(-n)) after the rise of the nth cycle.
+
+    Steps of a log share one waveform, and sines often follow bedding in by ramps.
+    """
     ramp, cycle = np.arange(0, 1, 0.1), np.arange(0, 8, 0.0025)
-    tension = np.concatenate([np.zeros(200), 2e3 * ramp, 21e3 - 19e3 * np.cos(2 * np.pi * cycle)])
+    phase = np.cos(2 * np.pi * cycle)
+    phase = phase if wave == "sine" else 1 - 2 / np.pi * np.arccos(phase)
+    tension = np.concatenate([np.zeros(200), 2e3 * ramp, 21e3 - 19e3 * phase])
     before = 0.01 * (1 - np.exp(-np.floor(cycle)))
     risen = (1 - np.cos(2 * np.pi * np.minimum(cycle % 1, 0.5))) / 2
     longer = before + (0.01 - before) * (1 - np.exp(-1)) * risen
