@@ -23,7 +23,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -33,6 +33,7 @@ from reduction.lines.composite import (
     MeasuredLoop,
     PieceSource,
     curve_of_piece,
+    whole_pieces,
 )
 from reduction.lines.cycle_stiffness import (
     LEAST_COVER,
@@ -813,7 +814,7 @@ def deploy(
     tether = _Tether(curve, _deployed_model(model, first), is_stated=has_stated_splices)
     alike = len(set(free_lengths)) < 2
     tethers = _equal_tethers(tether, n_tethers) if alike else _unequal_tethers(tether, free_lengths)
-    assembly = _assemble(tethers, parts)
+    assembly = _up_to_turns(_assemble(tethers, parts), tethers, parts, loops)
     slack = float(assembly.total_length[0])
     lengths = tuple(one.model.relaxed_length for one in tethers)
     tests = _loaded_tests(tethers, parts, loops)
@@ -841,6 +842,71 @@ def deploy(
     )
 
 
+_SET_WITHIN = 0.02
+"""Share within which a machine reaches a load, and a cycle is the one that was tested. [1]"""
+
+
+def _up_to_turns(
+    assembly: _AssemblyCurve,
+    tethers: Sequence[_Tether],
+    parts: Sequence[SeriesPart],
+    loops: Sequence[MeasuredLoop],
+) -> _AssemblyCurve:
+    """The curve up to the turns of its cycles, within which their branches end.
+
+    What is between the turns was tested, also in a hole of the branches.  Beyond the last branch
+    the curve goes straight on to the upper turn, as an exported curve does, and further by the
+    share within which a machine reaches a load, so that the cycle that was tested can be asked for.
+    """
+    of_branches = {piece.words: piece for piece in whole_pieces(tethers[0].curve.pieces)}
+    known = [one for one in loops if one.words in of_branches]
+    strain, last = assembly.tether_strain[0, -1], assembly.tether_tension[:, -1]
+    if not known or np.ptp(last) > _APART * last[0]:
+        return assembly  # unequal tethers reach the ends of their curves at different lengths
+    at, load = assembly.tether_strain[0], assembly.tether_tension[0]
+    reached = np.zeros(load.size, dtype=bool)
+    for loop in known:
+        low, high = loop.tension * (1 - _SET_WITHIN, 1 + _SET_WITHIN)
+        own = of_branches[loop.words]
+        reached |= (own.strain[0] <= at) & (at <= own.strain[-1])
+        reached |= (low <= load) & (load <= own.tension[0])
+        reached |= (own.tension[-1] <= load) & (load <= high)
+    # a flag is that of the interval before a node
+    reached[1:] |= reached[:-1]
+    assembly = replace(assembly, is_tested=assembly.is_tested | reached)
+    highest = max(known, key=lambda one: float(one.tension[1]))
+    rise = np.array([highest.tension[1] - last[0], highest.strain[1] - strain])
+    if (rise <= 0).any():
+        return assembly
+    share = 1 + _SET_WITHIN * float(highest.tension[1]) / rise[0]
+    pulled, stretch = np.array([last[0], strain]) + share * rise
+    length = float(position_by_model(tethers[0].model, strain=stretch, tension=pulled))
+    tension = last.size * pulled
+    added: dict[str, Any] = {
+        "total_length": length + sum(float(part.length_at(tension)) for part in parts),
+        "tension": tension,
+        "tether_length": length,
+        "tether_tension": pulled,
+        "tether_strain": stretch,
+        "is_tested": True,
+        "is_join": False,
+        "is_moved": False,
+        "standard_uncertainty": assembly.standard_uncertainty[-1],
+        "random_standard_uncertainty": assembly.random_standard_uncertainty[-1],
+        "contribution": assembly.contribution[:, -1:],
+    }
+    nodes: dict[str, Any] = {
+        name: _with_node(getattr(assembly, name), new) for name, new in added.items()
+    }
+    return replace(assembly, **nodes)
+
+
+def _with_node(values: Floats, new: ArrayLike) -> Floats:
+    """Values with those of one more node at the end."""
+    node = np.broadcast_to(np.asarray(new, dtype=values.dtype), values[..., -1:].shape)
+    return np.concatenate([values, node], axis=-1)
+
+
 def _loaded_tests(
     tethers: Sequence[_Tether], parts: Sequence[SeriesPart], loops: Sequence[MeasuredLoop]
 ) -> tuple[LoadedTest, ...]:
@@ -858,7 +924,7 @@ def _loaded_tests(
         for one in loops
         if one.words not in drawn and of_lines[one.words].stroke > 0
     ]
-    for piece in tethers[0].curve.pieces:
+    for piece in whole_pieces(tethers[0].curve.pieces):
         own = curve_of_piece(piece)
         try:
             assembly = _assemble([replace(one, curve=own) for one in tethers], parts)
@@ -909,6 +975,7 @@ def _loop_of_line(
         stroke=stroke + stretch,
         distance=loop.distance * (stroke + stretch) / float(loop.strain[1] - loop.strain[0]),
         width=width / narrower,
+        relative_uncertainty=loop.relative_uncertainty,
     )
 
 

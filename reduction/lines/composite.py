@@ -1017,7 +1017,8 @@ class MeasuredLoop:
         low, high = self.tension.tolist()
         stroke = float(self.strain[1] - self.strain[0])
         return LineLoop(
-            low, high, 1 + float(self.strain[0]), stroke, self.distance, self.width
+            low, high, 1 + float(self.strain[0]), stroke, self.distance, self.width,
+            self.relative_uncertainty,
         )  # fmt: skip
 
 
@@ -1109,11 +1110,34 @@ def curve_of_piece(piece: CurvePiece) -> CompositeCurve:
     return _composite_curve((piece,), rule=CompositeRule(precedence=(piece.kind,)))
 
 
+def whole_pieces(pieces: Sequence[CurvePiece]) -> tuple[CurvePiece, ...]:
+    """Pieces, with those of the mean curve of one loop as one.
+
+    Readings in step with the machine leave bins that no window reaches, also in the middle.
+    """
+    found: dict[str, CurvePiece] = {}
+    for piece in pieces:
+        words = piece.words if piece.kind == "cyclic" else f"{piece.words} {len(found)}"
+        first = found.get(words)
+        found[words] = piece if first is None else replace(
+            first,
+            strain=np.append(first.strain, piece.strain),
+            tension=np.append(first.tension, piece.tension),
+            random_standard_uncertainty=np.append(
+                first.random_standard_uncertainty, piece.random_standard_uncertainty
+            ),
+            contribution=np.concatenate([first.contribution, piece.contribution], axis=1)
+            if first.component
+            else first.contribution,
+        )  # fmt: skip
+    return tuple(found.values())
+
+
 def tests_of_curve(curve: CompositeCurve, loops: Sequence[MeasuredLoop]) -> tuple[LoadedTest, ...]:
     """Each piece of a curve as a separate line, 1 m long at zero tension, with its loop."""
     found = []
     of_lines = {one.words: one.of_line() for one in loops}
-    for piece in curve.pieces:
+    for piece in whole_pieces(curve.pieces):
         own = curve_of_piece(piece)
         inside = own.strain >= piece.strain[0]
         found.append(

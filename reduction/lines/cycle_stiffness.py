@@ -65,6 +65,8 @@ class LineLoop:
         From either turn; increasing, from zero. [m]
     width : ndarray, shape (n,)
         Greatest difference of tension between the branches up to there. [N]
+    relative_uncertainty : float
+        Standard uncertainty of the spring constant between the turns. [1]
     """
 
     low: float
@@ -73,6 +75,7 @@ class LineLoop:
     stroke: float
     distance: Floats
     width: Floats
+    relative_uncertainty: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -228,6 +231,11 @@ def stiffness_of_cycles(
             )
             # what changes the stiffness of the curve changes that of the whole cycle as much
             spread[place, own] *= 1 + least_of_loop[place, own] / spring[place, own]
+            # turns that the readings missed are in the whole cycle, not in its curve
+            whole = spring[place, own] + least_of_loop[place, own]
+            spread[place, own] = np.maximum(
+                spread[place, own], one.loop.relative_uncertainty * whole
+            )
     cycles = np.array([one.cycle for one in tests]).reshape(-1, 2, 1)
     apart = _distance(cycles, valley, peak)
     weight = np.where(is_used, apart**-2, 0.0)

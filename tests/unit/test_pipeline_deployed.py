@@ -194,7 +194,7 @@ def test_kinds_behind_that_which_covers_the_cycle_have_no_say():
     )
     level = WorkingLevel("tension", 400.0, 150.0)
     (state,) = deploy(windows(*pieces), SPRING, n_tethers=1, levels=[level]).working
-    assert [one.words for one in state.used] == ["T-1 cycles"]
+    assert [one.words for one in state.used if one.covered] == ["T-1 cycles"]
     assert state.secant_spring_constant == pytest.approx(400, rel=1e-6)
 
 
@@ -247,13 +247,13 @@ def of_friction(stroke):
     return SPRING_OF_LOOPOFCYCLE * stroke + np.minimum(FRICTION * stroke, 2 * LIMIT)
 
 
-def loop(width=lambda at: np.minimum(FRICTION * at, 2 * LIMIT), rise=None):
+def loop(width=lambda at: np.minimum(FRICTION * at, 2 * LIMIT), rise=None, error=0.0):
     rise = of_friction(2 * HALF) if rise is None else rise
     at = np.linspace(0, 2 * HALF, 81)
     return MeasuredLoop(
         "T", strain=np.array([MIDDLE - HALF, MIDDLE + HALF]),
         tension=SPRING_OF_LOOPOFCYCLE * MIDDLE + rise / 2 * np.array([-1.0, 1.0]), distance=at, width=width(at),
-        relative_uncertainty=0.01,
+        relative_uncertainty=error,
     )  # fmt: skip
 
 
@@ -277,11 +277,37 @@ def test_the_cycle_of_the_test_has_its_stiffness():
     assert (state.used[0].low, state.used[0].high) == pytest.approx((250, 750))
     assert state.least_spring_constant == pytest.approx(tested)
     assert state.greatest_spring_constant == pytest.approx(tested, rel=1e-3)
-    rope = state_of(249.9, drawn=curve("static", "Q", (0.01, 0.9)))
-    assert rope.nearest == "T cycles"
-    assert rope.secant_spring_constant == pytest.approx(tested, rel=1e-3)
-    error = 1.96 * 0.01 * tested
-    assert rope.greatest_spring_constant - tested == pytest.approx(error, rel=0.02)
+    # with a curve or without one
+    for drawn in (curve("static", "Q", (0.01, 0.9)), curve(ends=(0.25, 0.75))):
+        rope = state_of(249.9, drawn=drawn, of=loop(error=0.01))
+        assert rope.nearest == "T cycles"
+        assert rope.secant_spring_constant == pytest.approx(tested, rel=1e-3)
+        error = 1.96 * 0.01 * tested
+        assert rope.greatest_spring_constant - tested == pytest.approx(error, rel=0.02)
+
+
+def test_the_tested_cycle_goes_beyond_its_branches_to_their_turns():
+    tested = of_friction(2 * HALF) / (2 * HALF)
+    level = of_friction(2 * HALF) / 2
+    assert level == 250
+    # the load that is set is reached within 2 %
+    drawn = curve(ends=(0.32, 0.68))
+    state = state_of(1.01 * level, drawn=drawn)
+    assert not state.doubt
+    assert state.greatest_spring_constant == pytest.approx(tested, rel=0.01)
+    assert state.peak_length == pytest.approx(1 + MIDDLE + 1.01 * HALF, rel=2e-3)
+    with pytest.raises(DataError, match="beyond the curves"):
+        state_of(1.1 * level, drawn=drawn)
+
+
+def test_cycles_whose_mean_curve_has_a_hole_are_one_test():
+    """Readings in step with the machine leave bins that no window reaches."""
+    low, high = (curve(ends=ends).pieces for ends in ((0.32, 0.45), (0.55, 0.68)))
+    holed = _composite_curve((*low, *high), rule=CompositeRule())
+    tested = of_friction(2 * HALF) / (2 * HALF)
+    state = state_of(249.0, drawn=holed)
+    assert [one.words for one in state.used if one.covered] == ["T cycles"]
+    assert state.least_spring_constant == pytest.approx(tested)
 
 
 @pytest.mark.parametrize("stroke", [0.02, 0.05, 0.1, 0.2])
