@@ -89,7 +89,7 @@ def test_tape_readings_in_another_unit_are_refused_with_the_unit_that_fits(tethe
         assert status == 4
         # 19.37 ft, where the crosshead stood, typed as 232.4 under far_thimble_ft: 70.84 m
         assert tests["A"].endswith(
-            "In in all 3 stretched marks of the test fit: is the header far_thimble_in? (Or the "
+            "All 3 stretched marks of the test fit if their unit is in: is the header far_thimble_in? (Or the "
             "log's crosshead_position, stated 12 times too small.)"
         )
         assert "marks.csv:3 [far_thimble_ft]" in tests["A"]

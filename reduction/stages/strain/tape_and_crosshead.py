@@ -221,9 +221,9 @@ def _check_unit(
         is_told = (np.ptp(other) if other.size > 1 else other[0]) > allowance
         raise _contradiction(
             marks, row, f"the crosshead at {beside:.4g} m",
-            hint=f"In {unit} all {rows.size} stretched marks of the test fit: is the header "
-            f"far_thimble_{unit}? (Or the log's crosshead_position, stated {factor:.4g} times "
-            "too small.)" if is_told else _CORRECT,
+            hint=f"All {rows.size} stretched marks of the test fit if their unit is {unit}: is the "
+            f"header far_thimble_{unit}? (Or the log's crosshead_position, stated {factor:.4g} "
+            "times too small.)" if is_told else _CORRECT,
         )  # fmt: skip
     for stated, of_log in permutations(UNITS, 2):
         factor = UNITS[stated] / UNITS[of_log]
