@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Collection, Iterable, Mapping
 from contextlib import ExitStack
 from pathlib import Path
@@ -10,7 +11,7 @@ from typing import Any
 import xarray as xr
 
 from reduction.archive.open import Chunks, open_archive
-from reduction.archive.product_files import OF_CAMPAIGN, archives_of_tests
+from reduction.archive.product_files import OF_CAMPAIGN, archives_of_tests, earlier_run_words
 from reduction.record.errors import ArchiveError, SettingsError
 
 # attributes of a single archive: excluded even for a campaign with one archive
@@ -64,6 +65,7 @@ def open_campaign(path: str | Path, *, chunks: Chunks | None = None) -> xr.DataT
         with ExitStack() as opened:
             archive = opened.enter_context(open_archive(path, chunks=chunks))
             _refuse_unknown(chunks, [archive])
+            _warn_of_earlier_runs([path])
             opened.pop_all()
         return archive
     if not path.is_dir():
@@ -82,6 +84,7 @@ def open_campaign(path: str | Path, *, chunks: Chunks | None = None) -> xr.DataT
         }
         _refuse_unknown(chunks, nodes.values())
         _refuse_several({name: one.attrs.get("campaign", "") for name, one in nodes.items()})
+        _warn_of_earlier_runs(archives)
         root = xr.Dataset(attrs=_in_common(one.attrs for one in nodes.values()))
         tree = xr.DataTree.from_dict({"/": root} | nodes, name=root.attrs.get("campaign"))
         # from here on each node closes its own file
@@ -89,6 +92,12 @@ def open_campaign(path: str | Path, *, chunks: Chunks | None = None) -> xr.DataT
             tree[name].set_close(one.close)
         opened.pop_all()
     return tree
+
+
+def _warn_of_earlier_runs(archives: Iterable[Path]) -> None:
+    for path in archives:
+        for text in earlier_run_words(path):
+            warnings.warn(text, stacklevel=3)
 
 
 def _without_archives(folder: Path) -> ArchiveError:

@@ -25,7 +25,8 @@ def folder(archives, tmp_path):
     for path in archives:
         shutil.copy(path, tmp_path)
     shutil.copy(archives[0], tmp_path / "surfaces.nc")
-    (tmp_path / "status.csv").write_text("test,status\n", encoding="utf-8")
+    rows = "".join(f"{path.stem},reduced\n" for path in archives)
+    (tmp_path / "status.csv").write_text(f"test,status\n{rows}", encoding="utf-8")
     return tmp_path
 
 
@@ -46,6 +47,14 @@ def test_a_folder_gives_one_node_a_test_and_one_a_product_of_the_campaign(folder
         for path in archives:
             with open_archive(path) as archive:
                 xr.testing.assert_identical(campaign[path.stem].to_dataset(), archive)
+
+
+def test_an_archive_of_an_earlier_run_is_told(folder, archives):
+    shutil.copy(archives[0], folder / "T-0.nc")
+    with pytest.warns(UserWarning, match="T-0 has no row in status.csv"):
+        reduction.open_campaign(folder).close()
+    with pytest.warns(UserWarning, match="T-0 has no row in status.csv"):
+        reduction.open_campaign(folder / "T-0.nc").close()
 
 
 @pytest.mark.parametrize("name", OF_CAMPAIGN)
