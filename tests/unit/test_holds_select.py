@@ -105,6 +105,14 @@ def test_samples_without_tension_or_out_of_time_are_left_out():
     assert not {TIME[30], TIME[40]} & set(one.time)
 
 
+@pytest.mark.parametrize("channel", ["position", "tension"])
+def test_a_hold_without_usable_readings_is_empty(channel):
+    # as where a channel that is printed coarsely counts as stuck throughout the hold
+    series = {"position": POSITION.copy(), "tension": TENSION.copy()}
+    series[channel][24:80] = np.nan
+    assert select(**series).time.size == 0
+
+
 def test_where_the_machine_keeps_the_tension_the_ramp_is_that_of_tension():
     # the length follows 1 s behind the tension and does not date the ramp
     position = np.interp(TIME, [0, 11, 13, 100], [0, 0, 4, 4])

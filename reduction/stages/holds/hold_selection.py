@@ -492,7 +492,7 @@ def select_hold(
     seconds, place, load, stretch = select_samples(
         _is_finite_and_later(*held[:3]).__getitem__, *held
     )
-    if last + 1 < time.size:
+    if seconds.size and last + 1 < time.size:
         n_held = _before_way_out(seconds, place if moved is tension else load)
         last -= seconds.size - n_held
         seconds, place, load, stretch = (one[:n_held] for one in (seconds, place, load, stretch))
