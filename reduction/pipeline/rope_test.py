@@ -271,6 +271,11 @@ def rope_step(
         )
         if kind == "tensile":  # a slow pull need not end in a break
             notes += _of_pull(pull, tension, names)
+        notes += [
+            note("no-strain-at-failure", name)
+            for name, reached in zip(names, pull.strain_at_peak, strict=True)
+            if np.isnan(reached)
+        ]
         step = replace(step, tensile=pull)
     if step == RopeStep(step.name):
         return None
@@ -442,6 +447,4 @@ def _of_pull(pull: TensilePull, tension: Floats, names: Sequence[str]) -> list[N
         if not pull.is_break[row]:
             peak = float(pull.peak_tension[row])
             notes.append(note("no-break", name, how=pull.how[row], tension=peak))
-        elif np.isnan(pull.strain_at_peak[row]):
-            notes.append(note("no-strain-at-failure", name))
     return notes

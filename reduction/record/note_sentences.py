@@ -1468,8 +1468,8 @@ _OF_LINE: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "no-strain-at-failure": (
         "refusal",
-        "strain at failure not given: the strain at the peak is not known, or did not grow while"
-        " the load rose to it: an extensometer was taken off, or the position counts the other way"
+        "strain at the greatest load not given: it is not known, or did not grow while the load"
+        " rose to it: an extensometer was taken off, or the position counts the other way"
         " (sign = -1)",
     ),
     "no-break-strength": (

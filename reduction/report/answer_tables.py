@@ -322,7 +322,7 @@ def _pull_rows(view: TestView, *, is_of_lines: bool) -> Iterator[list[TableCell]
             strain, load, stiffness, is_modulus = curve
             at_end = int(np.nanargmax(load.values))
             reached = known[0].values[0] if known[0] else strain[at_end]
-            if not is_break:  # its own strain is unknown where it is not given
+            if known[1] is None:  # else the strain at that load is unknown where it is not given
                 ends = [_Series.known(strain).cell(at_end, strain_unit), load.cell(at_end, force)]
             usable = np.flatnonzero(np.isfinite(stiffness.values))
             if usable.size:
@@ -499,8 +499,10 @@ def _longest_holds(view: TestView) -> Iterator[tuple[str, int]]:
             yield name, max(own, key=lambda one: float(lasted[one]))
 
 
-def holds_without_answer(view: TestView) -> str:
-    """Why the longest hold of a relaxation or creep test has no answer; empty where it has one."""
+def lacking_answer(view: TestView) -> str:
+    """Why a pull has no strain, or the longest hold no answer; empty where they are given."""
+    if view.kind in _PULLS:
+        return "; ".join(str(one) for one in view.notes if one.code == "no-strain-at-failure")
     key = {"relaxation": "relaxation_drop", "creep": "creep_rate_per_decade"}.get(view.kind)
     found, reasons = view.array(key) if key else None, view.texts("hold_refusal")
     if found is None or not reasons:

@@ -20,7 +20,7 @@ from reduction.record.plain_text import bare_cell, natural_order
 from reduction.report.answer_tables import (
     design_modulus_table,
     hold_table,
-    holds_without_answer,
+    lacking_answer,
     pull_table,
     unlike_tests_table,
 )
@@ -360,7 +360,7 @@ def _answers(
         doubts=tuple(doubts),
         answered=answered,
         withheld={
-            view.id: holds_without_answer(view) if view.id in answered else _withheld(view)
+            view.id: lacking_answer(view) if view.id in answered else _withheld(view)
             for view in tests
         },
     )

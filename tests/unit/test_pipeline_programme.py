@@ -190,10 +190,25 @@ def test_a_pull_without_strain_has_a_strength_alone():
     )  # fmt: skip
     assert found.tensile.is_break.tolist() == [True]
     assert tuple(map(str, found.notes)) == (
-        "line: strain at failure not given: the strain at the peak is not known, or did not"
-        " grow while the load rose to it: an extensometer was taken off, or the position counts"
-        " the other way (sign = -1)",
+        "line: strain at the greatest load not given: it is not known, or did not grow while the"
+        " load rose to it: an extensometer was taken off, or the position counts the other way"
+        " (sign = -1)",
     )
+
+
+@pytest.mark.parametrize("kind", ["tensile", "quasi-static"])
+def test_a_pull_whose_extensometer_comes_off_has_no_strain_and_says_so(kind):
+    # 1 % at 500 N, where the extensometer falls off; the pull is stopped at 900 N
+    load = np.linspace(0, 900, 200)
+    strain = np.where(load < 500, load / 5e4, -0.03)
+    one = record(load, position=10 + np.arange(200) / 100)
+    located = locate(one, kind=kind, settings=ReductionSettings())
+    found = rope_step(
+        located, strain[None], located.tension, kind=kind, specimens=(ROPE,),
+        loops=None, holds=(), failed=None, settings=RopeSettings(),
+    )  # fmt: skip
+    assert np.isnan(found.tensile.strain_at_peak).all()
+    assert [one.code for one in found.notes].count("no-strain-at-failure") == 1
 
 
 def test_a_test_in_compression_is_told_that_it_is_no_pull():

@@ -13,7 +13,7 @@ from reduction.report.answer_tables import (
     _Series,
     design_modulus_table,
     hold_table,
-    holds_without_answer,
+    lacking_answer,
     pull_table,
     unlike_tests_table,
 )
@@ -255,12 +255,21 @@ def test_a_break_without_a_curve_before_it_has_its_load_and_strain():
     assert row == ["new", "P-1", "break", "45.0 ± 2.0", "600 ± 20", NOT_GIVEN, "reduced"]
 
 
-def test_a_break_whose_strain_is_not_known_has_not_that_of_its_curve():
+@pytest.mark.parametrize(("is_break", "end"), [(1, "break"), (0, "peak load")])
+def test_a_pull_whose_strain_is_not_known_has_not_that_of_its_curve(is_break, end):
+    # an extensometer was taken off at 40 %, and the load rose on to 600 N
     more = {name: (S, [value]) for name, value in {
-        "pull_is_break": 1, "pull_peak_strain": NAN, "pull_peak_tension": 600.0,
+        "pull_is_break": is_break, "pull_peak_strain": NAN, "pull_peak_tension": 600.0,
     }.items()}  # fmt: skip
-    (row,) = texts(pull_table([pulled("tensile", of="rope", **more)]))
-    assert row[2:5] == ["break", NOT_GIVEN, "600.0"]
+    told = {
+        "note": ("note", ["new: strain at the greatest load not given"]),
+        "note_stage": ("note", ["tensile strength"]), "note_severity": ("note", ["refusal"]),
+        "note_code": ("note", ["no-strain-at-failure"]), "note_effect": ("note", [NAN]),
+    }  # fmt: skip
+    view = pulled("tensile", of="rope", **more, **told)
+    (row,) = texts(pull_table([view]))
+    assert row[2:5] == [end, NOT_GIVEN, "600.0"]
+    assert "strain at the greatest load not given" in lacking_answer(view)
 
 
 def test_breaks_of_one_kind_have_their_mean_deviation_and_least():
@@ -377,10 +386,10 @@ def test_a_hold_without_its_drop_says_why():
         "creep_rate_per_decade": [NAN, NAN],
     }  # fmt: skip
     view = pulled("relaxation", **{name: ("hold", value) for name, value in hold.items()})
-    assert holds_without_answer(view) == "new: tension steps"
+    assert lacking_answer(view) == "new: tension steps"
     hold["relaxation_drop"] = [NAN, 0.05]
     view = pulled("relaxation", **{name: ("hold", value) for name, value in hold.items()})
-    assert holds_without_answer(view) == "" == holds_without_answer(make_view())
+    assert lacking_answer(view) == "" == lacking_answer(make_view())
 
 
 def test_a_warning_of_one_specimen_leaves_the_other_as_it_is():
