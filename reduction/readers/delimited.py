@@ -169,11 +169,18 @@ def _fields(head: _Head, rows: TextRows) -> Fields:
 
 
 def _tidy(text: memoryview, layout: Layout) -> memoryview:
-    """Rows without quotes around the whole of each; single blanks between fields parted by them."""
+    """Rows without quotes around the whole of each; single blanks between fields parted by them.
+
+    Blanks before a quoted field (`"Time", "Load (N)"`) are left out: after them a quote does not
+    open a field.
+    """
     if layout.quote:
         text = without_outer_quotes(text, layout.quote)
     if layout.delimiter != " ":
-        return text
+        mark, quote = layout.delimiter.encode(), layout.quote.encode()
+        blanks = re.compile(b"%b +%b" % (re.escape(mark), re.escape(quote)))
+        is_found = layout.quote and blanks.search(text)
+        return memoryview(blanks.sub(mark + quote, text)) if is_found else text
     single = re.sub(rb"[ \t]+", b" ", text)
     return memoryview(re.sub(rb"(?m)^ | (?=\r?$)", b"", single).rstrip(b"\r\n"))
 

@@ -347,7 +347,10 @@ def _split(lines: Sequence[str], delimiter: str) -> list[list[str]]:
         return [re.split(r"[ \t]+", line.strip()) for line in lines]
     short = ("" if len(line) > csv.field_size_limit() else line for line in lines)
     return [
-        [text.strip() for text in next(csv.reader([line], delimiter=delimiter), [])]
+        [
+            text.strip()
+            for text in next(csv.reader([line], delimiter=delimiter, skipinitialspace=True), [])
+        ]
         for line in short
     ]
 

@@ -182,6 +182,16 @@ def test_a_log_cut_off_in_its_last_line_says_so(read):
         read("t,x,F\n0,1,2\n1,2")
 
 
+@pytest.mark.parametrize("mark", [", ", ",   ", "\t ", "; "])
+def test_blanks_before_a_quoted_field_are_left_out(read, mark):
+    rows = [["t", "x", "F, left"], ["0.0", "1.5", "2"], ["1", "2", "3"]]
+    quoted = "\n".join(mark.join(f'"{one}"' for one in row) for row in rows)
+    channels = {**CHANNELS, "tension.1": {"column": "F, left", "unit": "N"}}
+    log = read(quoted, channels, delimiter=mark[0])
+    assert log.columns["crosshead_position"].tolist() == [1.5, 2.0]
+    assert log.columns["tension.1"].tolist() == [2.0, 3.0]
+
+
 def test_a_quoted_line_end_is_refused(read):
     with pytest.raises(
         LogError,

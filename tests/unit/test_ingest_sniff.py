@@ -348,6 +348,22 @@ def test_rows_quoted_as_a_whole_are_drafted_and_read(tmp_path):
     assert read_log(path, filled(found), name="x").n_rows_read == 9
 
 
+def test_names_quoted_after_a_blank_have_their_units(tmp_path):
+    rows = "\n".join(f"{k / 10}, {10 + k % 7}, {k}" for k in range(60))
+    path = write(tmp_path, f'"Time (s)", "Position (mm)", "Load (N)"\n{rows}\n')
+    settings = proposed(path)
+    assert columns(settings) == {
+        "time": ("Time (s)", "s"), "crosshead_position": ("Position (mm)", "mm"),
+        "tension.1": ("Load (N)", "N"),
+    }  # fmt: skip
+    assert read_log(path, filled(settings), name="log.csv").n_rows_read == 60
+    with pytest.raises(LogError, match="kN"):
+        read_log(
+            path, filled(settings, tension={"1": {"column": "Load (N)", "unit": "kN"}}),
+            name="log.csv",
+        )  # fmt: skip
+
+
 def test_a_table_of_extremes_is_no_log_of_loops(tmp_path):
     rows = [f"{one},{900 + one},{300 - one},{20 + one / 9:.2f},{10:.2f}" for one in range(1, 30)]
     text = "Cycle,Max Load (N),Min Load (N),Max Position (mm),Min Position (mm)\n"
