@@ -312,7 +312,7 @@ def _of_statements(campaign: Campaign, survey: Survey, models: Models) -> Iterat
         if not 1 / _TARGET <= strain / target <= _TARGET and np.isfinite(strain / target):
             yield note(
                 "target-strain-missed", name, reached=strain, target=target,
-                ratio=strain / target, like=words_of_ratio(strain / target),
+                ratio=strain / target, like=words_of_ratio(strain / target, "length"),
                 method=model.method if model is not None else "",
             )  # fmt: skip
         else:
@@ -410,7 +410,7 @@ def _of_stated_levels(campaign: Campaign, survey: Survey) -> Iterator[Note]:
                 yield note(
                     "level-not-as-stated", level=key, stated=text, found=value,
                     unit="Hz" if key == "frequency" else "N", ratio=ratio,
-                    like=words_of_ratio(ratio),
+                    like=words_of_ratio(ratio, "time" if key == "frequency" else "force"),
                 )  # fmt: skip
 
 
@@ -437,16 +437,17 @@ def _of_rate(survey: Survey) -> Iterator[Note]:
     match = _NUMBER.match(survey.plan.attributes.get("rate", ""))
     if match is None or levels is None or "%" in match[2]:  # a strain rate is neither
         return
-    shown: tuple[tuple[Dimension, float, str], ...] = (
-        ("velocity", levels.speed, "m/s"), ("frequency", levels.frequency, "Hz"),
-    )  # fmt: skip
-    for dimension, found, unit in shown:
+    shown: tuple[tuple[Dimension, float, str, tuple[str, ...]], ...] = (
+        ("velocity", levels.speed, "m/s", ("time", "length")),
+        ("frequency", levels.frequency, "Hz", ("time",)),
+    )
+    for dimension, found, unit, made_of in shown:
         stated = _stated_level(float(match[1]), match[2], dimension, None)
         ratio = found / stated if stated else np.nan
         if np.isfinite(ratio) and not 1 / _RATE <= ratio <= _RATE:
             yield note(
                 "rate-not-as-stated", stated=survey.plan.attributes["rate"], found=found,
-                unit=unit, ratio=ratio, like=words_of_ratio(ratio),
+                unit=unit, ratio=ratio, like=words_of_ratio(ratio, *made_of),
             )  # fmt: skip
 
 
@@ -469,7 +470,7 @@ def _of_length(
         is_hose = campaign.specimens[name].kind == "stretch hose"  # measured from flange to flange
         if gauge > _LONGER * length or gauge < (_OF_HOSE if is_hose else 1 / 3) * length:
             yield note("gauge-against-length", name, gauge=gauge, length=length,
-                       like=words_of_ratio(gauge / length))  # fmt: skip
+                       like=words_of_ratio(gauge / length, "length"))  # fmt: skip
     at_slack = float(levels.slack_strain[index])
     if model.method == "extensometer" and abs(at_slack) > _AT_SLACK:
         yield note("extensometer-off-at-slack", name, strain=at_slack)
@@ -477,7 +478,7 @@ def _of_length(
         ratio = slope * length
         if not 1 / _STROKE <= ratio <= _STROKE:
             yield note("extensometer-against-stroke", name, ratio=ratio,
-                       like=words_of_ratio(abs(ratio)))  # fmt: skip
+                       like=words_of_ratio(abs(ratio), "length"))  # fmt: skip
 
 
 def _of_extensometers(surveys: Sequence[Survey], models: Models) -> Iterator[tuple[str, Note]]:
@@ -500,7 +501,8 @@ def _of_extensometers(surveys: Sequence[Survey], models: Models) -> Iterator[tup
             ratio = slope / float(np.median(others))
             if not 1 / _OTHER_RATIO <= ratio <= _OTHER_RATIO:
                 yield test, note("extensometer-unlike-others", name, ratio=ratio,
-                                 n_others=others.size, like=words_of_ratio(ratio))  # fmt: skip
+                                 n_others=others.size,
+                                 like=words_of_ratio(ratio, "length"))  # fmt: skip
 
 
 def _of_columns(campaign: Campaign, survey: Survey) -> Iterator[Note]:
@@ -1085,8 +1087,9 @@ def _of_predictions(
             continue
         length = hose.length / gauge
         if np.isfinite(length) and not 1 / _BY_LENGTH <= length <= _BY_LENGTH:
+            like = words_of_ratio(length, "length")
             yield plan.measured, note("hose-length-not-tested", plan.specimen, hose=hose.name,
-                                      ratio=length, like=words_of_ratio(length))  # fmt: skip
+                                      ratio=length, like=like)  # fmt: skip
         samples = survey.extremes.all_over.get(plan.specimen)
         model = models.get((plan.measured, plan.specimen))
         if samples is None or model is None or model.method == "extensometer":

@@ -193,28 +193,48 @@ def readings_that_fit(
     )  # fmt: skip
 
 
-_RATIOS: Mapping[str, float] = {
-    "minutes for seconds": 60.0, "seconds for minutes": 1 / 60, "milliseconds for seconds": 1e-3,
-    "seconds for milliseconds": 1e3, "hertz for radians a second": 2 * pi,
-    "radians a second for hertz": 1 / (2 * pi), "m for ft": 3.2808, "ft for m": 0.3048,
-    "in for ft": 1 / 12, "ft for in": 12.0, "in for mm": 25.4, "mm for in": 1 / 25.4,
-    "kN for lbf": 224.8, "lbf for N": 4.4482, "N for lbf": 0.2248, "lbf for kgf": 0.4536,
-    "kgf for lbf": 2.2046, "range for amplitude": 0.5, "a gain of 2": 2.0, "a factor of 10": 10.0,
-    "a factor of 0.1": 0.1, "a factor of 100": 100.0, "a factor of 0.01": 0.01,
-    "a factor of 1000": 1e3, "kN for N": 1e-3,
+_RATIOS: Mapping[str, Mapping[str, float]] = {
+    "time": {
+        "minutes for seconds": 60.0, "seconds for minutes": 1 / 60,
+        "milliseconds for seconds": 1e-3, "seconds for milliseconds": 1e3,
+        "hertz for radians a second": 2 * pi, "radians a second for hertz": 1 / (2 * pi),
+    },
+    "length": {
+        "m for ft": 3.2808, "ft for m": 0.3048, "in for ft": 1 / 12, "ft for in": 12.0,
+        "in for mm": 25.4, "mm for in": 1 / 25.4,
+    },
+    "force": {
+        "kN for lbf": 224.8, "lbf for N": 4.4482, "N for lbf": 0.2248, "lbf for kgf": 0.4536,
+        "kgf for lbf": 2.2046, "kN for N": 1e-3,
+    },
+    "any": {
+        "range for amplitude": 0.5, "a gain of 2": 2.0, "a factor of 10": 10.0,
+        "a factor of 0.1": 0.1, "a factor of 100": 100.0, "a factor of 0.01": 0.01,
+        "a factor of 1000": 1e3,
+    },
 }  # fmt: skip
 
 _NEAR = 0.08
 
 
-def words_of_ratio(ratio: float) -> str:
+def words_of_ratio(ratio: float, *dimensions: str) -> str:
     """What a ratio of found over stated resembles, in words; empty where it resembles nothing.
+
+    ``dimensions`` are those whose units the number is made of: ``time``, ``length``, ``force``; all
+    if none is named.
 
     Examples
     --------
     >>> words_of_ratio(59.0)
     'minutes for seconds'
+    >>> words_of_ratio(0.46), words_of_ratio(0.46, "time", "length")
+    ('lbf for kgf, range for amplitude', 'range for amplitude')
     >>> words_of_ratio(1.37)
     ''
     """
-    return ", ".join(words for words, known in _RATIOS.items() if abs(ratio / known - 1) < _NEAR)
+    return ", ".join(
+        words
+        for dimension in ((*dimensions, "any") if dimensions else _RATIOS)
+        for words, known in _RATIOS[dimension].items()
+        if abs(ratio / known - 1) < _NEAR
+    )
