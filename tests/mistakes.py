@@ -1365,6 +1365,9 @@ def _(folder: Path) -> None:
     each(folder, lambda log: log.map("load_lbf", lambda v: min(v, 3000.0), "{:.1f}"))
 
 
+add("hose-time-days", H, "data", "The time column holds dates of a spreadsheet, which count days, and the layout says seconds.",
+    say(TIME, ("counts days", "faster than any")), bare,
+    do(each, lambda log: log.map("time", lambda v: 46000 + v / 86400, "{:.10f}")))
 add("hose-files-swapped", H, "statement", "The files of S-64 and S-68 were swapped: L-64 and both designs contradict them.",
     say(("s-64", "s-68"), (*SWAP, "stiff", "jump", "wrap_angle", "l-64", "h68", "h64"), (*SWAP, "jump", "factor", "ratio", "times", "angle", "file", "differ", "stiff")), do(swap_lines, 'file = "S-64.csv"', 'file = "S-68.csv"'))
 add("hose-same-log-twice", H, "statement", "S-68 names the file of S-64.", say(("s-64", "s-68"), SAME), do(sub, 'file = "S-68.csv"', 'file = "S-64.csv"', times=1))

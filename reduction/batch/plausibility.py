@@ -281,11 +281,16 @@ def _load_unit(campaign: Campaign, survey: Survey, name: str) -> str:
     return "" if channel is None else channel.unit
 
 
+_FASTEST = 10.0  # m/s, from valley to peak: dampers are cycled at up to 6
+
+
 def _of_statements(campaign: Campaign, survey: Survey, models: Models) -> Iterator[Note]:
     """Compare the statements about a test with its log."""
     levels, plan = survey.levels, survey.plan
     if levels is None:
         return
+    if survey.n_cycles and levels.speed > _FASTEST:
+        yield note("faster-than-machines", speed=levels.speed)
     yield from _of_rate(survey)
     yield from _of_stated_levels(campaign, survey)
     # a break test may start with the bedding-in of a new rope

@@ -333,6 +333,11 @@ class _Limit:
     unit: str
     what: str
 
+    @property
+    def channel(self) -> str:
+        """Channel whose unit, if wrong, makes the limit too small."""
+        return "time" if self.key == "lag" else self.key.partition(".")[0]
+
 
 def check_stated_errors(
     located: Located, instruments: Sequence[InstrumentErrors], *, place: str
@@ -346,6 +351,7 @@ def check_stated_errors(
                     f"'{located.record.test_id}'",
                     found=f"{limit.stated:.4g} {limit.unit}",
                     needed=f"at most {limit.most:.4g} {limit.unit}, {limit.what}",
+                    hint=f"Correct it, or the unit of {limit.channel} in the layout.",
                 )
     notes = list(_not_used(located.record, instruments))
     period = _periods(located)

@@ -1986,6 +1986,12 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             " Check them for an error"
         ),
     ),
+    "faster-than-machines": (
+        "warning",
+        "the crosshead moves at {speed:.3g} m/s, faster than any test machine. Check the unit of"
+        " time (a date of a spreadsheet counts days), the sampling interval and the unit of"
+        " position",
+    ),
     "rate-not-as-stated": (
         "warning",
         lambda stated, found, unit, ratio, like: (
@@ -2281,7 +2287,7 @@ CAUSES = (
     "channels-alike", "specimens-swapped", "date-against-order",
     "column-of-another", "diameter-readings-apart", "stretched-diameters-apart",
     "cycles-in-other-kind", "hold-of-position", "cycles-unlike",
-    "rate-not-as-stated", "level-not-as-stated",
+    "faster-than-machines", "rate-not-as-stated", "level-not-as-stated",
     "load-never-falls", "load-zero-drifts", "load-zero-wrong", "load-negative",
     "load-steps", "load-falls-with-stretch", "pushed-in-cycles", "pushed-in-pull",
     "reference-length-under-preload",

@@ -54,7 +54,11 @@ def check(cycles=True, record=(), **stated):
             {"lag": 3600.0},
             r"uncertainty.lag: .*found 3600 s; needed at most 20 s, the longest cycle",
         ),
-        ({"lag": 20.1}, r"uncertainty.lag: .*needed at most 20 s, the longest cycle"),
+        (
+            {"lag": 20.1},
+            r"uncertainty.lag: .*needed at most 20 s, the longest cycle. Correct it, or the unit"
+            r" of time in the layout",
+        ),
     ],
 )
 def test_what_the_log_makes_impossible_is_refused_with_its_key(stated, words):
