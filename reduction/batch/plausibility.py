@@ -473,7 +473,10 @@ def _of_length(
     is_bent = zero is not None and zero.bent_at is not None
     if model.method == "gauge-length" and survey.extremes.position_is_length and not is_bent:
         is_hose = campaign.specimens[name].kind == "stretch hose"  # measured from flange to flange
-        if gauge > _LONGER * length or gauge < (_OF_HOSE if is_hose else 1 / 3) * length:
+        least, most = _OF_HOSE if is_hose else 1 / 3, _LONGER
+        if np.isnan(length):  # no rest: displacement zero, where a specimen may hang bent
+            length, least, most = survey.reference_length or np.nan, 0.1, 3.0
+        if gauge > most * length or gauge < least * length:
             yield note("gauge-against-length", name, gauge=gauge, length=length,
                        like=words_of_ratio(gauge / length, "length"))  # fmt: skip
     at_slack = float(levels.slack_strain[index])
