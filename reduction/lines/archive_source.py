@@ -518,7 +518,7 @@ def lines_of_archive(path: Path) -> list[LineSource]:
     if not any(line.surfaces for line in lines):
         return lines
     tests = [line for one in archives_of_tests(path.parent) for line in _lines_at(one, opener)]
-    return [_with_runs(line, tests) if line.surfaces else line for line in lines]
+    return [with_runs(line, tests) if line.surfaces else line for line in lines]
 
 
 def _lines_at(path: Path, opener: Opener) -> list[LineSource]:
@@ -679,14 +679,14 @@ def lines_of_folder(folder: Path) -> list[LineSource]:
     lines = []
     for line in named:
         if line.surfaces:
-            lines.append(_with_runs(line, named))
+            lines.append(with_runs(line, named))
         else:
             is_pooled = line.specimens[0] in pooled
             lines.append(_without_pooled(line, ropes) if is_pooled else line)
     return [*ropes, *(line for line in lines if line.surfaces or line.curves or line.levels)]
 
 
-def _with_runs(line: LineSource, tests: Sequence[LineSource]) -> LineSource:
+def with_runs(line: LineSource, tests: Sequence[LineSource]) -> LineSource:
     """Surfaces with the conditions of their runs, and why runs have the status `check`."""
     runs = [
         one

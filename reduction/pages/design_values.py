@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cache
 from hashlib import file_digest, sha256
@@ -22,7 +23,12 @@ from reduction.archive.atomic_write import write_text_atomically
 from reduction.archive.open import Opener, reading
 from reduction.archive.product_files import DESIGN_PAGE_NAME, STATUS_NAME
 from reduction.experiments.surface_points import ABOVE_LEVERAGE
-from reduction.lines.archive_source import archives_of_lines, lines_of_open_archive, unique_names
+from reduction.lines.archive_source import (
+    archives_of_lines,
+    lines_of_open_archive,
+    unique_names,
+    with_runs,
+)
 from reduction.lines.deck_formats import FORMS
 from reduction.lines.line_consistency import SOLVED, column_warnings, refitted_surfaces
 from reduction.lines.line_search import joined_conditions
@@ -320,7 +326,7 @@ class _Reading:
             self._files[path] = dict(before)
         else:
             try:
-                self._files[path] = {"state": state, "lines": _lines(path, self._opener)}
+                self._files[path] = {"state": state, "lines": _lines(path, rests_on, self._opener)}
             except _FAULTS as error:
                 text = str(error) if isinstance(error, ReductionError) else repr(error)
                 self._faults[path.name] = text.replace(str(path), path.name)
@@ -380,9 +386,17 @@ def _stamp(path: Path) -> str:
     return f"{found.st_mtime_ns} {found.st_size} {found.st_ino}"
 
 
-def _lines(path: Path, opener: Opener) -> list[dict[str, Any]]:
+def _lines(path: Path, rests_on: Sequence[Path], opener: Opener) -> list[dict[str, Any]]:
     with opener(path) as archive:
-        return [_line_data(line) for line in lines_of_open_archive(archive, path, opener)]
+        lines = lines_of_open_archive(archive, path, opener)
+    if path.stem == _SURFACES:
+        tests: list[LineSource] = []
+        for other in rests_on:
+            # an archive that cannot be read is named at its own place
+            with suppress(*_FAULTS), opener(other) as archive:
+                tests += lines_of_open_archive(archive, other, opener)
+        lines = [with_runs(line, tests) if line.surfaces else line for line in lines]
+    return [_line_data(line) for line in lines]
 
 
 MOST_BYTES = 2_500_000
