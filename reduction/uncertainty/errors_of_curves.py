@@ -100,7 +100,7 @@ def _logged_rates(
     for part in sample_blocks(time.size, time, strain, overlap=1):
         step, seconds, sides = np.diff(strain[part]), np.diff(time[part]), branch[part][:-1]
         here = np.flatnonzero((sides > 0) & np.isfinite(step))
-        place = np.searchsorted(edges, strain[part][here]) + n_bins * (sides[here] - 1)
+        place = np.searchsorted(edges, strain[part][here]) + np.where(sides[here] > 1, n_bins, 0)
         moved += np.bincount(place, step[here], 2 * n_bins)
         lasted += np.bincount(place, seconds[here], 2 * n_bins)
     rates = np.zeros((2, n_bins))

@@ -20,6 +20,7 @@ from reduction.uncertainty.effects_on_answers import load_train_notes
 from reduction.uncertainty.error_field import _load_parts, coefficient_errors, error_field
 from reduction.uncertainty.errors_of_curves import (
     _friction_on_branches,
+    _logged_rates,
     _of_slack,
     _reversibility_on_branches,
     errors_of_material,
@@ -635,3 +636,12 @@ def test_no_error_gives_no_row():
         parameters={"shear_modulus": 2e5},
     )
     assert found.shape == (0, 1)
+
+
+def test_the_rates_of_a_wave_have_a_grid_of_any_size():
+    """On more than 127 bins, the number of a bin of the descending branch exceeds eight bits."""
+    time = np.arange(0, 1.5, 0.001)
+    strain = np.interp(time, [0, 0.5, 1.5], [0, 2, 0])
+    branch = np.where(time < 0.5, 1, 2).astype(np.int8)
+    rates = _logged_rates(time, strain, branch, np.arange(0.005, 2, 0.01))
+    np.testing.assert_allclose(rates, np.outer([4, -2], np.ones(200)))
