@@ -860,6 +860,31 @@ def _dither_range(values: Floats) -> float:
     return max(_WIDER * float(np.median(np.ptp(windows, axis=1))), _QUANTA * quantum)
 
 
+def _slow_noise_range(values: Floats, time: Floats, minimum_duration: float) -> float:
+    """Greatest `noise_range` of every nth reading of a record of ramps and holds.
+
+    Noise behind a filter, and mains hum at nearly a multiple of the sampling rate, are alike in
+    neighbouring readings, whose differences hide them.  The seven readings of the longest
+    difference lie within the shortest hold.
+
+    Examples
+    --------
+    Hum of 1 N with a period of 33 readings:
+
+    >>> hum = np.sin(0.19 * np.arange(4000))
+    >>> time = 0.06 * np.arange(4000)
+    >>> print(round(noise_range(hum), 3), round(_slow_noise_range(hum, time, 3.0), 1))
+    0.0 2.8
+    """
+    spans = minimum_duration / (_ORDERS[-1] * median_step(time))
+    fewest = _STRETCHES * _ORDERS[-1]
+    ranges, step = [0.0], 2
+    while step <= spans and values.size >= step * fewest:
+        ranges.append(noise_range(values[::step]))
+        step *= 2
+    return max(ranges)
+
+
 def _code_of_advance(values: Floats) -> float:
     """Step of a channel that stands between its codes more often than not; 0 for others.
 
@@ -1265,7 +1290,8 @@ def find_tension_stands(
     -----
     *Holds* are intervals above the slack tension in which the tension of the machine stands still
     (`_still_intervals`): the mean over the specimens, which pull at one
-    crosshead.  Tolerance, where not stated: its `noise_range`, or `_dither_range` if less.
+    crosshead.  Tolerance, where not stated: its `noise_range`, or `_dither_range` if less; in a
+    held record, `_slow_noise_range` instead of the former.
     *Rests* are those of `find_standstills`, since a slack specimen has the same tension at any
     position of the crosshead.  Where the two overlap, the rest is shortened.
 
@@ -1286,6 +1312,8 @@ def find_tension_stands(
     mean = mean_of_rows(loads)
     tolerance, noise = _tolerances(mean, seconds, settings.tension_tolerance)
     if settings.tension_tolerance is None:
+        if is_held:
+            noise = max(noise, _slow_noise_range(mean, seconds, settings.minimum_duration))
         tolerance = noise = min(noise, _dither_range(mean))
     first, last = _stands(
         seconds, mean, tolerance=tolerance, noise=noise, settings=settings, is_held=is_held,

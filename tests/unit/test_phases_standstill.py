@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
 from reduction.record.errors import DataError
 from reduction.record.settings import PhaseSettings
@@ -647,3 +648,20 @@ def test_four_readings_at_rest_that_rise_by_chance_have_a_level():
         position_tolerance=1.5e-5, slack_tension=5.0,
     )  # fmt: skip
     assert level_of_standstill(position, stand, 0) == pytest.approx(0.05, abs=3e-6)
+
+
+@pytest.mark.parametrize("source", ["filter", "hum"])
+def test_noise_alike_in_neighbouring_readings_does_not_cut_a_creep_hold(source):
+    """Synthetic: 240 N held for 700 s; differences of neighbours hide most of this noise of 2 N."""
+    time = np.arange(0, 710.0, 0.0606)
+    white = np.random.default_rng(3).normal(0, 1, time.size)
+    if source == "filter":
+        noise = lfilter([1.0], [1.0, -0.8], white)
+    else:  # 50.03 Hz, aliased to a period of 31 readings
+        noise = 2 * np.sqrt(2) * np.sin(2 * np.pi * 50.03 * time) + 0.5 * white
+    load = np.interp(time, [4, 9], [0, 240]) + noise
+    place = np.interp(time, [4, 9], [0, 1]) + 0.01 * np.log1p(np.maximum(time - 9, 0))
+    found = find_tension_stands(time, place, [load], settings=PhaseSettings(), is_held=True)
+    held = ~found.is_rest
+    assert found.start_time[held] == pytest.approx([9], abs=0.2)
+    assert found.end_time[held] == pytest.approx([710], abs=0.2)
