@@ -684,7 +684,19 @@ def _comes_from_afar(tension: Floats, runs: _Runs) -> Bools:
 _SETTLING = 0.2  # of the fewest readings of a channel that is stuck
 
 
-def _find_stuck_position(position: Floats, tension: Floats, *, samples: int) -> Bools:
+def _without_spikes(load: Floats, flags: _Flags) -> Floats:
+    """The load with NaN for its spikes, which are not a rise."""
+    parts = sample_blocks(flags.size, flags)
+    rows = [part.start + np.flatnonzero(flags[part] & Quality.SPIKE) for part in parts]
+    spikes = np.concatenate(rows)
+    if not spikes.size:
+        return load
+    kept = copied(load)
+    kept[spikes] = np.nan
+    return kept
+
+
+def _find_stuck_position(position: Floats, tension: Sequence[Floats], *, samples: int) -> Bools:
     """Where position is constant although tension rises, which a hold does not cause."""
     runs = _constant_runs(position, samples)
     if not runs.start.size:
@@ -1086,7 +1098,8 @@ def flag_record(
     for (index, start, stop), (low, high) in (verified or {}).items():
         outside = _find_outside_range(record.tension[index, start:stop], low, high)
         _set(tension_flag[index, start:stop], outside, Quality.OUTSIDE_VERIFIED_RANGE)
-    stuck = _find_stuck_position(position, record.tension, samples=settings.stuck_samples)
+    loads = [_without_spikes(*one) for one in zip(record.tension, tension_flag, strict=True)]
+    stuck = _find_stuck_position(position, loads, samples=settings.stuck_samples)
     _set(position_flag, stuck, Quality.STUCK)
     flagged = replace(
         record, quality_flag=tension_flag, crosshead_position_quality_flag=position_flag

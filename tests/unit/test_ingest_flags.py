@@ -147,6 +147,15 @@ def test_a_saturated_run_is_not_called_stuck_as_well():
     assert not where(result.quality_flag[0], Quality.STUCK)
 
 
+def test_a_spike_of_the_load_does_not_make_a_resting_crosshead_stuck():
+    place = np.maximum(6.0 + 0.1 * WAVE, 6.3)  # stands for six seconds in every twenty
+    load = 200 + 1000 * (place - 6.0) + RANDOM.normal(0, 0.3, TIME.size)
+    load[500] += 600
+    result = flagged(record(position=place, load=load))
+    assert where(result.quality_flag[0], Quality.SPIKE) == [500]
+    assert not where(result.crosshead_position_quality_flag, Quality.STUCK)
+
+
 def test_an_uneven_rate_is_a_note():
     time = np.cumsum(np.tile(6 * [0.1] + 2 * [0.15], TIME.size // 8))
     (note,) = map(str, flagged(record(time=time)).notes)
