@@ -384,6 +384,8 @@ def _on_one_time_of_day(
 
 _ROWS_OF_A_TICK = 1.5  # from this average on, the clock is coarser than the log
 
+_ROWS_AT_AN_EVEN_RATE = 1.02  # the same if all times agree with an even rate
+
 _LOOKED_AT = 4096  # rows examined to decide whether it can be
 
 _FEWEST_TICKS = 8
@@ -403,11 +405,19 @@ def _between_ticks(
     >>> spread, told = _between_ticks(clock, {"tension.1": np.sin(np.arange(80.0))})
     >>> print(np.diff(spread).round(6).max(), [one.code for one in told])
     0.25 ['clock-coarse']
+
+    A step of 1 s and a reading every 0.83 s:
+
+    >>> clock = np.floor(np.arange(0.0, 100.0, 0.83))
+    >>> spread, told = _between_ticks(clock, {"tension.1": np.sin(np.arange(clock.size))})
+    >>> print(np.diff(spread).round(2).max(), [one.code for one in told])
+    0.83 ['clock-coarse']
     """
     if time is None or time.size < 2:
         return time, ()
     look = np.diff(time[:_LOOKED_AT])
-    if not np.isfinite(look).all() or np.count_nonzero(look > 0) * _ROWS_OF_A_TICK > look.size:
+    n_ahead = np.count_nonzero(look > 0)
+    if not np.isfinite(look).all() or n_ahead * _ROWS_AT_AN_EVEN_RATE > look.size:
         return time, ()
     steps = np.diff(time)
     ahead = np.flatnonzero(steps > 0)
@@ -428,6 +438,8 @@ def _between_ticks(
     said = {"tick": tick, "rows": time.size / (ahead.size + 1)}
     if np.ptp(time - even) < 1.5 * tick:
         return even, (note("clock-coarse", **said),)
+    if n_ahead * _ROWS_OF_A_TICK > look.size:
+        return time, ()
     first = np.concatenate([[0], ahead + 1])
     count = np.diff(first, append=time.size)
     share = (place - np.repeat(first, count) + 0.5) / np.repeat(count, count)

@@ -276,9 +276,18 @@ _OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "rows-flagged": (
         "warning",
-        "flagged, of {n_kept} rows: {flags}. Saturated and stuck readings and spikes are not used,"
-        " and a cycle that loses its peak or valley has no EA. Look at them (quality_flag of the"
-        " archive): where they are sound, raise reduction.quality.spike_factor or stuck_samples",
+        lambda n_read, n_kept, flags, of_clock=False: (
+            f"flagged, of {n_kept} rows: {flags}. "
+            + (
+                "The clock of the log stands still or goes back there, and rates and frequencies"
+                " use its times. If the rows are evenly spaced, state sample_interval in the layout"
+                " instead of the channel time"
+                if of_clock
+                else "Saturated and stuck readings and spikes are not used, and a cycle that loses"
+                " its peak or valley has no EA. Look at them (quality_flag of the archive): where"
+                " they are sound, raise reduction.quality.spike_factor or stuck_samples"
+            )
+        ),
     ),
     "rows-set-aside": (
         "note", "{n_read} rows read, {n_kept} kept, flagged: {flags}",

@@ -68,4 +68,5 @@ def notes_on_rows(record: Record) -> list[Note]:
     )
     is_harmless = masks <= _HARMLESS and out_of_order <= _OUT_OF_ORDER * account.n_kept
     code = ROWS_FLAGGED[0 if masks <= {"resampled"} else 1 if is_harmless else 2]
-    return [note(code, n_read=account.n_read, n_kept=account.n_kept, flags=listed)]
+    counts = {"n_read": account.n_read, "n_kept": account.n_kept}
+    return [note(code, **counts, flags=listed, of_clock=masks <= _HARMLESS)]

@@ -143,6 +143,18 @@ def test_rows_of_one_second_are_spread_evenly_where_the_clock_agrees():
     assert (np.diff(spread) > 0).all()
 
 
+def test_a_clock_little_coarser_than_the_log_is_spread_evenly():
+    true = 12.3 + 0.0802 * np.arange(900)
+    load = {"tension.1": np.sin(true)}
+    spread, [told] = _between_ticks(np.floor(10 * true) / 10, load)
+    assert told.code == "clock-coarse"
+    assert np.ptp(spread - true) < 0.01
+    # a clock that loses steps in one part of the log is not
+    lost = np.round(0.1 * (np.arange(900) - np.minimum(np.arange(900) // 15, 20)), 1)
+    kept, told = _between_ticks(lost, load)
+    assert kept is lost and told == ()
+
+
 def test_rows_that_are_written_twice_and_fine_clocks_are_left_alone():
     twice = np.repeat(np.arange(400.0), 2)
     load = np.repeat(np.sin(np.arange(400.0)), 2)

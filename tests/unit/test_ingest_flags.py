@@ -348,3 +348,12 @@ def test_ramps_from_turn_to_turn_were_not_interpolated(readings, rest):
     # the same wave, read every third row and interpolated, is told
     rows = wave[::3] + 1e-3 * rng.normal(size=2000)
     assert _is_interpolated(np.interp(np.arange(5998), 3.0 * np.arange(2000), rows))
+
+
+def test_a_clock_that_stands_still_is_named_as_the_cause():
+    time = np.repeat(np.unique(np.round(TIME[::2] ** 1.001, 1)), 2)[: TIME.size]
+    (note, *_) = (
+        str(one) for one in flagged(record(time=time)).notes if one.code == "rows-flagged"
+    )
+    assert "The clock of the log stands still" in note and "state sample_interval" in note
+    assert "spike_factor" not in note
