@@ -46,6 +46,7 @@ from reduction.stages.moduli.secant_modulus import (
     compare_cycles,
     end_moduli,
     fit_peak_trend,
+    slip_of_turns,
     summarise_amplitude,
 )
 from reduction.stages.moduli.segments import find_segments
@@ -239,19 +240,20 @@ def parts_of_cycles(
         close_loops, record.time, tension, strain, cycles, control=settings.cycles.control,
         driven=control_channel(located.position, tension, settings.cycles),
     )  # fmt: skip
+    is_sine = settings.cycles.waveform == "sinusoidal"
     loops = close(waveform=settings.cycles.waveform)
-    if settings.cycles.waveform == "sinusoidal" and contradicts_sine(loops).any():
-        loops = close(waveform="other")
+    if is_sine and contradicts_sine(loops).any():
+        loops, is_sine = close(waveform="other"), False
     loops = without_backward_loops(loops)
     if is_open:
         loops = without_loss(loops)
+    known, every = loops.frequency[loops.frequency > 0], median_step(record.time)
     # both channels have the turn of the machine, separated by the stated lag
     alike = np.zeros(len(specimens))
     if settings.cycles.waveform != "sinusoidal" and np.any(lag):
         late = np.array(lag)
-        known = loops.frequency[loops.frequency > 0]
         both = turns_alike(
-            late, median_step(record.time),
+            late, every,
             period=float(np.mean(1 / known)) if known.size else 0.0,
             n_cycles=cycles.n_cycles - break_in,
         )  # fmt: skip
@@ -263,6 +265,8 @@ def parts_of_cycles(
     trend = fit_peak_trend(
         loops, area=area, break_in_cycles=break_in, cycles=cycles,
         of_zero=[0.0 if rest is None else rest.drift_within(lasts) for rest in rests],
+        # the fit of a sine misses no turn
+        of_turns=0.0 if is_sine or not known.size else slip_of_turns(known, every, cycles.n_cycles),
     )  # fmt: skip
     if np.isnan(area).any():
         # a rope without a diameter has spring constants, and creeps, but has no modulus

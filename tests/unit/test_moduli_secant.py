@@ -8,7 +8,10 @@ import pytest
 from refusals import refusals
 
 from reduction.record.errors import DataError
+from reduction.record.settings import CycleSettings, PhaseSettings
 from reduction.stages.cycles.cycle_product import Loops, turns_alike
+from reduction.stages.cycles.cycle_search import find_cycles
+from reduction.stages.cycles.loops import close_loops
 from reduction.stages.moduli.modulus_product import ModulusCurves
 from reduction.stages.moduli.secant_modulus import (
     _change_of_ends,
@@ -19,9 +22,11 @@ from reduction.stages.moduli.secant_modulus import (
     end_moduli,
     fit_peak_trend,
     late_change,
+    slip_of_turns,
     slope_per_decade,
     summarise_amplitude,
 )
+from reduction.stages.standstills import find_standstills
 
 
 def test_secant_of_a_straight_line_is_its_slope():
@@ -390,6 +395,30 @@ def test_a_zero_that_moves_over_the_cycles_is_in_the_interval_of_the_trend():
         off = abs(getattr(found, name) - getattr(true, name))
         spread = getattr(found, f"{name}_standard_uncertainty")
         assert 0.5 * spread < off < 1.96 * spread
+
+
+@pytest.mark.parametrize("readings", [29, 30])
+def test_turns_that_slip_between_the_readings_are_in_the_interval_of_a_trend(readings):
+    """Synthetic: a spring that does not change, whose turns pass half a reading in 45 cycles."""
+    for slip in (0.5, 0.0):
+        step, n_cycles = 0.1, 45
+        period = step * (readings + slip / n_cycles)
+        time = np.arange(0, n_cycles * period, step)
+        strain = 0.2 + 0.1 * np.abs(2 * (time / period % 1) - 1)
+        load = 1e4 * strain**2
+        stands = find_standstills(time, strain, load[None], settings=PhaseSettings())
+        cycles = find_cycles(time, strain, load[None], stands, settings=CycleSettings())
+        loops = close_loops(time, load[None], strain[None], cycles, driven=strain)
+        share = slip_of_turns(loops.frequency, step, cycles.n_cycles)
+        trend = fit_peak_trend(loops, area=[1e-4], of_turns=share)
+        for name in ("peak_tension_change", "mean_strain_drift", "mean_strain_per_decade"):
+            value, spread = (float(getattr(trend, f"{name}{u}")[0]) for u in UNCERTAIN)
+            assert abs(value) <= 2.5 * spread + 1e-9
+            # a log in step with the machine misses the same of every turn
+            assert slip or spread < 1e-4
+
+
+UNCERTAIN = "", "_standard_uncertainty"
 
 
 def test_change_is_last_over_first():

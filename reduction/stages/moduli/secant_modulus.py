@@ -801,6 +801,42 @@ def _change_of_ends(values: ArrayLike, drift: ArrayLike = 0.0) -> tuple[Floats, 
         return last / first - 1, spread
 
 
+def slip_of_turns(frequency: Floats, step: float, n_cycles: int) -> float:
+    """Share of the missed parts of its turns by which a log out of step with them may drift.
+
+    Turns that pass half of a sampling interval go from a reading to the middle of two.
+
+    Examples
+    --------
+    A hundred cycles with a reading every 0.1 s, in step and nearly so:
+
+    >>> [slip_of_turns(np.array([0.25]), step, 100) for step in (0.1, 0.09998)]
+    [0.0, 1.0]
+    """
+    readings = 1 / (float(np.mean(frequency)) * step)
+    return min(1.0, 2 * n_cycles * abs(readings - round(readings)))
+
+
+def _unseen_in_steps(loops: Loops, name: str) -> Floats:
+    """Part of the uncertainty of single cycles that the steps from cycle to cycle do not show.
+
+    A log nearly in step with the machine misses a little more, or less, of each turn than of the
+    one before: its extremes drift as those of a specimen do.
+
+    Examples
+    --------
+    >>> peak = np.linspace(100, 98, 50)[None]
+    >>> loops = Loops(*[peak] * 21, uncertainty={"peak_tension": 0 * peak + 1.0})
+    >>> print(_unseen_in_steps(loops, "peak_tension").round(2))
+    [1.]
+    """
+    values = np.atleast_2d(getattr(loops, name))
+    own = np.atleast_2d(loops.uncertainty.get(name, np.zeros(values.shape)))
+    steps = np.diff(values, axis=1, append=values[:, -1:])
+    hidden = np.nan_to_num(own) ** 2 - np.nan_to_num(steps) ** 2 / 2
+    return np.sqrt(np.fmax(hidden.mean(axis=1), 0.0))
+
+
 def fit_peak_trend(
     loops: Loops,
     *,
@@ -808,6 +844,7 @@ def fit_peak_trend(
     break_in_cycles: int = 0,
     cycles: Cycles | None = None,
     of_zero: ArrayLike = 0.0,
+    of_turns: float = 0.0,
 ) -> PeakTrend:
     """Decay of the peak and change of the dynamic modulus over the cycles of a test.
 
@@ -823,6 +860,8 @@ def fit_peak_trend(
         With their numbers, where the log lacks some; by default 1, 2, 3, ...
     of_zero : array_like, shape (n_specimens,), optional
         Standard uncertainty of the change of the zero of the load cell over the cycles. [N]
+    of_turns : float, optional
+        Share of the missed parts of the turns that may drift (`slip_of_turns`). [1]
 
     Returns
     -------
@@ -868,11 +907,17 @@ def fit_peak_trend(
     if strain.shape[1] >= 2 * _LATER:
         later, _ = slope_of(strain, _LATER)
         strain_uncertainty = np.hypot(strain_uncertainty, (later - strain_slope) / 2)
-    drift = np.asarray(of_zero, dtype=np.float64)
+    of_peaks, of_modulus, of_strain = (
+        np.sqrt(2) * of_turns * _unseen_in_steps(loops, name) if of_turns else 0.0
+        for name in ("peak_tension", "apparent_spring_constant", "mean_strain")
+    )
+    drift = np.hypot(np.asarray(of_zero, dtype=np.float64), of_peaks)
     change, change_uncertainty = _change_of_ends(peaks, drift)
     # an even drift is mostly in the last decade
     decades = max(float(np.log10(peaks.shape[1])), 1.0)
     peak_uncertainty = np.hypot(peak_uncertainty, drift / decades)
+    modulus_uncertainty = np.hypot(modulus_uncertainty, of_modulus / areas / decades)
+    strain_uncertainty = np.hypot(strain_uncertainty, of_strain / decades)
     first_strain, last_strain, strain_scatter = _means_at_ends(strain)
     return PeakTrend(
         peak_tension_per_decade=peak_slope,
@@ -884,5 +929,5 @@ def fit_peak_trend(
         mean_strain_per_decade=strain_slope,
         mean_strain_per_decade_standard_uncertainty=strain_uncertainty,
         mean_strain_drift=last_strain - first_strain,
-        mean_strain_drift_standard_uncertainty=np.sqrt(2) * strain_scatter,
+        mean_strain_drift_standard_uncertainty=np.hypot(np.sqrt(2) * strain_scatter, of_strain),
     )
