@@ -393,7 +393,14 @@ def _best_of(
             if table is None or (has_labels and len(table.rows) < _LABELLED):
                 continue
             counted = _without_labels(table.rows, decimal) if has_labels else table.rows
-            fields = [text for row in counted for text in row if text]
+            # a date that a blank parts from its time is one field with it
+            parted = delimiter == " "
+            fields = [
+                text
+                for row in counted
+                for text in row
+                if text and not (parted and _DATE.fullmatch(text))
+            ]
             if has_labels and len(fields) < 2 * len(counted):
                 continue
             numbers = sum(_is_number(text, decimal) or _is_time(text) for text in fields)

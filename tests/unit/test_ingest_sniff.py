@@ -463,6 +463,18 @@ def test_a_clock_is_seen(tmp_path):
         assert columns(found)["time"] == ("time_est", "clock")
 
 
+@pytest.mark.parametrize("date", ["2026-03-05", "05.03.2026", "13/3/2026"])
+def test_the_blank_between_date_and_time_parts_no_columns_of_a_log_with_tabs(tmp_path, date):
+    rows = "".join(f"{date} 13:20:{i / 10:06.3f}\t{i / 8}\t{i / 4}\n" for i in range(200))
+    found = proposed(write(tmp_path, "Time\tCrosshead [mm]\tLoad [kN]\n" + rows))
+    assert found["delimiter"] == "\t"
+    assert columns(found) == {
+        "time": ("Time", "clock"),
+        "crosshead_position": ("Crosshead [mm]", "mm"),
+        "tension.1": ("Load [kN]", "kN"),
+    }
+
+
 @pytest.mark.parametrize(
     ("last", "order"), [("05/31/2005 9:45:02 AM", "month first"), ("05/06/2005 9:45:02 AM", "?")]
 )
