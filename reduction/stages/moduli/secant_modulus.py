@@ -834,7 +834,7 @@ def _unseen_in_steps(loops: Loops, name: str) -> Floats:
     own = np.atleast_2d(loops.uncertainty.get(name, np.zeros(values.shape)))
     steps = np.diff(values, axis=1, append=values[:, -1:])
     hidden = np.nan_to_num(own) ** 2 - np.nan_to_num(steps) ** 2 / 2
-    return np.sqrt(np.fmax(hidden.mean(axis=1), 0.0))
+    return np.asarray(np.sqrt(np.fmax(hidden.mean(axis=1), 0.0)))
 
 
 def fit_peak_trend(
