@@ -60,6 +60,7 @@ from reduction.stages.strain.zero_strain import (
     zero_at_slack,
     zero_at_start,
     zero_at_tension,
+    zero_before_a_move,
     zero_of_bent,
 )
 from reduction.stages.test_levels import TestLevels, levels_of_test
@@ -342,6 +343,14 @@ def _find_zero_strain(survey: Survey, located: Located, campaign: Campaign, plan
         at_slack = start or at_slack
         if located.standstills.is_rest.any():  # shows how far the specimen is slack
             at_slack = replace(at_slack, stated_position=None)
+    has_marks = any(name in campaign.marks for name in plan.specimens)
+    if at_slack.position is None and not (has_marks or _is_measured(located, campaign, plan)):
+        start = zero_before_a_move(
+            located.record.time, located.position, located.tension,
+            slack_tension=located.standstills.slack_tension,
+            minimum_duration=plan.settings.phases.minimum_duration,
+        )  # fmt: skip
+        at_slack = start or at_slack
     for name, tension in zip(plan.specimens, located.tension, strict=True):
         reference = campaign.specimens[name].reference_tension or tension_of_layout
         if not reference:

@@ -43,11 +43,11 @@ def creep_strain(time, start, ramp, load):
     return strain
 
 
-def run(command, folder, time, position, tension, *lines):
+def run(command, folder, time, position, tension, *lines, interpolated=False):
     noise = np.random.default_rng(7)
     columns = [
         time,
-        position + noise.normal(0, 0.0002, time.size),
+        position if interpolated else position + noise.normal(0, 0.0002, time.size),
         tension + noise.normal(0, 0.3, time.size),
     ]
     np.savetxt(
@@ -174,3 +174,14 @@ def test_cycles_of_tension_keep_their_holds_of_tension(command, tmp_path):
     assert hold["hold_kind"] == "creep"
     assert float(hold["hold_start_time [s]"]) == pytest.approx(240, abs=0.5)
     assert float(hold["hold_duration [s]"]) == pytest.approx(120, abs=1)
+
+
+def test_a_position_that_a_logger_interpolated_has_its_zero_at_the_first_rest(command, tmp_path):
+    """Synthetic: read every 0.6 s with a noise of 0.2 mm, written every 0.1 s."""
+    time = np.arange(0, 140, 0.1)
+    place = 1 + 0.4 * np.abs((np.clip(time - 10, 0, 120) / 20 + 0.5) % 1 - 0.5)
+    read = place[::6] + np.random.default_rng(2).normal(0, 2e-4, place[::6].size)
+    logged = np.interp(time, time[::6], read)
+    tables = run(command, tmp_path, time, logged, 1000 * (place - 1), interpolated=True)
+    (row,) = csv_rows(tables / "amplitude.csv")
+    assert float(row["test_mean_strain [1]"]) == pytest.approx(0.1, abs=0.004)

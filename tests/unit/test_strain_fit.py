@@ -23,7 +23,12 @@ from reduction.stages.strain.strain_model import (
     strain_by_model,
     strain_sensitivity_of,
 )
-from reduction.stages.strain.zero_strain import ZeroStrain, zero_at_slack, zero_at_start
+from reduction.stages.strain.zero_strain import (
+    ZeroStrain,
+    zero_at_slack,
+    zero_at_start,
+    zero_before_a_move,
+)
 from reduction.uncertainty.error_field import error_field
 
 L0, LS = 2.55, 1.18
@@ -327,6 +332,25 @@ def test_a_slow_ramp_among_the_first_readings_is_in_the_interval_of_their_zero(r
         if zero is not None:
             off.append((zero.position - 7) / zero.standard_uncertainty)
     assert np.sqrt(np.mean(np.square(off))) < 2.5
+
+
+@pytest.mark.parametrize("slack", [True, False])
+def test_a_rest_whose_noise_an_interpolation_hides_gives_the_zero_of_strain(slack):
+    """Synthetic: 5 s at 7 m, read every 0.15 s with a noise of 0.3 mm, logged every 0.05 s."""
+    time = np.arange(0, 40, 0.05)
+    place = 7 + 0.2 * np.clip(time - 5, 0, None) % 4
+    read = place[::3] + np.random.default_rng(1).normal(0, 3e-4, place[::3].size)
+    logged = np.interp(time, time[::3], read)
+    load = 1e3 * (place - (7 if slack else 6))[None]
+    stands = find_standstills(time, logged, load, settings=PhaseSettings())
+    assert not stands.is_rest.any()
+    zero = zero_before_a_move(
+        time, logged, load, slack_tension=stands.slack_tension, minimum_duration=3.0
+    )
+    if slack:
+        assert abs(zero.position - 7) < 2 * zero.standard_uncertainty < 1e-3
+    else:
+        assert zero is None
 
 
 def test_noise_of_one_reading_does_not_make_a_log_slack_that_begins_on_its_way():

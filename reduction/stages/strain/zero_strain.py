@@ -143,6 +143,40 @@ def zero_at_start(
     return ZeroStrain(float(np.median(first)), float(spread), is_logged=True, stated_position=place)
 
 
+def zero_before_a_move(
+    time: Floats,
+    position: Floats,
+    tension: Floats,
+    *,
+    slack_tension: float,
+    minimum_duration: float,
+) -> ZeroStrain | None:
+    """Level of a log that begins slack and hardly moves for as long as the shortest rest.
+
+    Where a logger interpolates or filters the position, neighbouring readings hide its noise, and
+    the readings of a rest wander by more than it.  ``tension`` has the shape (n_specimens,
+    n_samples).  The level is uncertain by the scatter of the readings.
+
+    Examples
+    --------
+    >>> time = np.arange(0, 60, 0.1)
+    >>> wanders = 0.001 * np.sin(time)
+    >>> place = 7 + wanders + 0.02 * np.clip(time - 5, 0, None)
+    >>> found = zero_before_a_move(
+    ...     time, place, 1e4 * (place[None] - 7), slack_tension=200.0, minimum_duration=3.0)
+    >>> print(round(found.position, 3))
+    7.001
+    """
+    count = int(np.searchsorted(time, time[0] + minimum_duration))
+    first, (low, high) = position[:count], finite_extremes(position)
+    loads = np.nanmedian(tension[:, :count], axis=1) if count >= _FEWEST else np.inf
+    if not (np.all(loads <= slack_tension) and np.ptp(first) <= _HARDLY * (high - low)):
+        return None
+    return ZeroStrain(float(np.median(first)), float(np.std(first)), is_logged=True)
+
+
+_HARDLY = 0.005  # of the range of the record
+
 _TOLD = 3.0  # standard deviations of the noise
 
 _STILL_SLACK = 0.1  # of the load at twice the displacement; a cubic curve has an eighth
