@@ -960,6 +960,8 @@ _FEWEST_BENDS = 500
 
 _BLOCK, _OF_BLOCK = 64, 4  # block length; rows required both on and off lines
 
+_MOST_BLOCKS = 0.9  # the first ones may be on a straight ramp
+
 
 def _is_interpolated(values: Floats) -> bool:
     """Whether a channel was linearly interpolated before it was logged.
@@ -1000,7 +1002,7 @@ def _is_interpolated(values: Floats) -> bool:
     lines, bends = (one[:whole].reshape(-1, _BLOCK).sum(axis=1) for one in (is_line, is_bent))
     full = moves[:whole].reshape(-1, _BLOCK).all(axis=1)
     mixed = (lines >= _OF_BLOCK) & (bends >= _OF_BLOCK)
-    return bool(full.any()) and bool(np.mean(mixed[full]) >= _REGULAR)
+    return bool(full.any()) and bool(np.mean(mixed[full]) >= _MOST_BLOCKS)
 
 
 def _at_turns(step: Floats) -> Bools:

@@ -350,6 +350,14 @@ def test_ramps_from_turn_to_turn_were_not_interpolated(readings, rest):
     assert _is_interpolated(np.interp(np.arange(5998), 3.0 * np.arange(2000), rows))
 
 
+def test_a_ramp_before_the_cycles_does_not_hide_that_a_logger_interpolated():
+    """Synthetic: a ramp, then twelve readings per cycle, written three times as often."""
+    own = np.arange(0, 900.0)
+    wave = np.where(own < 40, own / 80, 0.5 + np.sin(2 * np.pi * (own - 40) / 12.3) / 2)
+    rows = np.interp(np.arange(0, 899, 1 / 3), own, wave)
+    assert _is_interpolated(np.round(rows, 5))
+
+
 def test_a_clock_that_stands_still_is_named_as_the_cause():
     time = np.repeat(np.unique(np.round(TIME[::2] ** 1.001, 1)), 2)[: TIME.size]
     (note, *_) = (
