@@ -409,7 +409,10 @@ def _with_load_at_slack(
             near = np.abs(stands.mean_position - length) <= _AT_SLACK_LENGTH
             is_slack |= near & (stands.mean_tension[number - 1] < most)
         can_push = campaign.specimens[name].can_push
-        if not can_push and rises_with_stretch(whole.position, tension):
+        if can_push:  # loaded once, it may stand pushed
+            is_low = np.abs(stands.mean_tension[number - 1]) <= stands.slack_tension
+            is_slack &= is_low | (stands.first == 0)
+        elif rises_with_stretch(whole.position, tension):
             is_slack = stands_at_slack_length(stands, is_slack)
         reference = campaign.specimens[name].reference_tension or tension_of_layout
         if reference:

@@ -168,6 +168,30 @@ def test_a_small_zero_that_a_rest_shows_is_in_the_interval_of_tensions(tmp_path,
     assert any("Until then the interval of every tension includes it" in one for one in notes)
 
 
+def test_a_damper_that_stands_pushed_after_its_cycles_is_not_slack_there(tmp_path, command):
+    # friction of 1 kN behind a spring: it stays under -1 kN when the machine stops
+    time = np.arange(0, 260, 0.1)
+    place = 0.01 * np.interp(time, np.r_[0:20:2j, 25:226:10, 230, 260], np.r_[
+        0, 0, np.tile([1.0, -1.0], 11)[:21], 0.6, 0.6])  # fmt: skip
+    load = np.zeros(time.size)
+    for row in range(1, time.size):
+        load[row] = np.clip(load[row - 1] + 5e5 * (place[row] - place[row - 1]), -1000, 1000)
+    noise = np.random.default_rng(4).normal(0, 1.0, time.size)
+    rows = zip(time, place, load + noise, strict=True)
+    text = "t,x,F\n" + "".join(f"{t:.1f},{x:.5f},{f:.2f}\n" for t, x, f in rows)
+    (tmp_path / "A.csv").write_text(text)
+    campaign = CORD.replace("KEYS", ', reference_length = "1 m"')
+    campaign = campaign.replace("SPECIMEN", 'gauge_length = "1 m"').replace('"rope"', '"other"')
+    (tmp_path / "campaign.toml").write_text(campaign)
+    command("run", tmp_path / "campaign.toml", cwd=tmp_path)
+    with open_archive(tmp_path / "processed" / "cord" / "A.nc") as archive:
+        mean, spread = (
+            float(archive[f"test_mean_tension{kind}"].item())
+            for kind in ("", "_standard_uncertainty")
+        )
+    assert abs(mean) < 4 * spread < 40
+
+
 @pytest.mark.parametrize(("lag", "is_told"), [("0.05 s", True), ("0.2 s", False)])
 def test_a_late_load_is_told_unless_the_stated_lag_explains_it(tmp_path, command, lag, is_told):
     write_cord(tmp_path, first=0.0, keys=', reference_length = "1 m"', rest=True)
