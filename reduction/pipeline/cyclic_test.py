@@ -248,16 +248,14 @@ def parts_of_cycles(
     if is_open:
         loops = without_loss(loops)
     known, every = loops.frequency[loops.frequency > 0], median_step(record.time)
-    # both channels have the turn of the machine, separated by the stated lag
+    # both channels have the turn of the machine, separated by the stated lag, or by one not known
     alike = np.zeros(len(specimens))
-    if settings.cycles.waveform != "sinusoidal" and np.any(lag):
-        late = np.array(lag)
-        both = turns_alike(
-            late, every,
+    if settings.cycles.waveform != "sinusoidal":
+        alike = turns_alike(
+            np.where(np.array(lag) > 0, lag, every), every,
             period=float(np.mean(1 / known)) if known.size else 0.0,
             n_cycles=cycles.n_cycles - break_in,
         )  # fmt: skip
-        alike = np.where(late > 0, both, 0.0)
     amplitude = summarise_amplitude(loops, area=area, break_in_cycles=break_in, turns_alike=alike)
     loops.release_pages()
     lasts = float(record.time[cycles.last[-1]] - record.time[cycles.first[0]])

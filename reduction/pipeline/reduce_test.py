@@ -842,7 +842,7 @@ def reduce_test(
     stated = replace(located, record=_with_readings(record, readings))
     cycle_parts = parts_of_cycles(
         located, strain, tension, specimens=specimens, history=history, settings=settings,
-        lag=[one.lag for one in instruments], is_open=unlike > OPEN,
+        lag=[one.lag for one in instruments] or [0.0] * len(specimens), is_open=unlike > OPEN,
     )  # fmt: skip
     of_first_rise, first_rise_notes = parts_of_first_loading(
         located, strain, tension, specimens, settings, history, kind=description.kind,

@@ -145,6 +145,32 @@ def test_cycles_of_two_sines_say_so_and_have_no_loss():
     np.testing.assert_allclose(test.amplitude.apparent_spring_constant, [400], rtol=0.01)
 
 
+@pytest.mark.parametrize(("late", "most"), [(0.0, 1.0), (0.7, 3.0)])
+def test_corners_out_of_step_cancel_in_a_spring_constant_whatever_the_lag(late, most):
+    """A linear cord, ten readings a ramp, no stated lag: corners lie anywhere between readings."""
+    at = np.arange(800.0)
+    both = (1 - 4 * np.abs((at - on) / 20.3 % 1 - 0.5) for on in (0.0, late))
+    position, tension = (1.3 + 0.1 * next(both)), 400 * (0.3 + 0.1 * next(both))
+    zeros = np.zeros((1, at.size), dtype=np.uint16)
+    settings = ReductionSettings()
+    test = reduce_test(
+        locate(
+            Record("C-1", ("cord",), at / 10, position, tension[None], zeros, zeros[0]),
+            kind="cyclic", settings=settings,
+        ),
+        description=TestDescription("c", "C-1", "cyclic", "position", "triangular", 1, {}),
+        specimens=(Specimen("cord", kind="elastomer", diameter=(DIAMETER,)),),
+        models=(
+            StrainModel("cord", "gauge-length", {"gauge_length": 1.0, "reference_position": 1.0}),
+        ),
+        history=None, sources=(), settings=settings, settings_json="{}",
+    )  # fmt: skip
+    (error,) = test.amplitude.apparent_spring_constant - 400
+    (stated,) = test.amplitude.uncertainty["apparent_spring_constant"]
+    # 10.3 and 10.6 N were stated
+    assert abs(error) < 2 * stated < 2 * most
+
+
 @pytest.mark.parametrize("step", [0.0, 20.0, -20.0])
 def test_a_zero_that_moves_while_the_machine_stands_is_told_and_in_the_mean_tension(step):
     """Sixteen cycles of 4 s, 6 s at the valley, sixteen more: 400 N a unit strain, 120 +- 60 N."""
