@@ -602,7 +602,7 @@ def test_relaxation_over_decades_is_covered_at_the_end_of_its_ramp(step, ramp, s
         since = rng.uniform(0, step) + np.arange(0, 120, step)
         read = 3000 + np.exp(-since[:, np.newaxis] / times) @ size
         read += rng.normal(0, true / 1000, since.size)
-        level = level_at_end(since, read, noise=true / 1000, shortest=ramp / 20)
+        level = level_at_end(since, read, noise=true / 1000, shortest=ramp / 20, relaxes=True)
         away.append((level.value - true) / level.standard_uncertainty)
     assert abs(np.mean(away)) < 0.8
     assert np.mean(np.abs(away) < 1.96) > 0.92
@@ -617,10 +617,28 @@ def test_noise_that_hides_a_fast_term_leaves_the_initial_tension_without_much_of
     away = []
     for seed in range(200):
         read = true - fall + np.random.default_rng(seed).normal(0, 4, since.size)
-        level = level_at_end(since, read, noise=4.0, shortest=0.25)
+        level = level_at_end(since, read, noise=4.0, shortest=0.25, relaxes=True)
         away.append((level.value - true) / level.standard_uncertainty)
     assert abs(np.mean(away)) < 0.25
     assert np.mean(np.abs(away) < 1.96) > 0.93
+
+
+@pytest.mark.parametrize("noise", [1e-3, 5e-3])
+def test_the_interval_of_an_initial_tension_is_no_wider_than_its_errors(noise):
+    """Losses of 2 to 5 % per decade of time from 0.1 to 3 s on, at the end of ramps of 2 to 8 s."""
+    away = []
+    for seed in range(200):
+        rng = np.random.default_rng(seed)
+        loss, begin, ramp = rng.uniform(0.01, 0.02), 10 ** rng.uniform(-1, 0.5), rng.uniform(2, 8)
+
+        def summed(time, loss=loss, begin=begin):
+            return time - loss * ((time + begin) * np.log1p(time / begin) - time)
+
+        since = rng.uniform(0, 0.1) + np.arange(0, 80, 0.1)
+        read = (summed(since + ramp) - summed(since)) / ramp + rng.normal(0, noise, since.size)
+        level = level_at_end(since, read, noise=noise, shortest=ramp / 20, relaxes=True)
+        away.append((level.value - summed(ramp) / ramp) / level.standard_uncertainty)
+    assert 1 < 1.96 / np.quantile(np.abs(away), 0.95) < 1.5
 
 
 @pytest.mark.parametrize("onward", [-1, 1])

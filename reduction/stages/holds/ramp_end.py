@@ -151,7 +151,13 @@ class _LevelAtEnd:
 
 
 def level_at_end(
-    since: Floats, values: Floats, *, noise: float, shortest: float = 0.0, step: float = 0.0
+    since: Floats,
+    values: Floats,
+    *,
+    noise: float,
+    shortest: float = 0.0,
+    step: float = 0.0,
+    relaxes: bool = False,
 ) -> _LevelAtEnd:
     """Value of a series at time zero, by the longest line that its first samples follow.
 
@@ -168,6 +174,9 @@ def level_at_end(
     step : float, optional
         Step of a converter, if noise does not spread readings over several of its codes.
         [unit of the series]
+    relaxes : bool, optional
+        Whether the series bends over decades of time, as tension at constant length does, and not
+        within seconds, as a position that settles. [-]
 
     Returns
     -------
@@ -179,13 +188,14 @@ def level_at_end(
     Method of [1]_: lines through 3, 5, 7, 10, ... samples, each 1.4 times as long, until the
     value at zero of one differs from that of any before by more than twice the sum of their
     standard uncertainties.  Of the line before that and the one with a third as many samples, the
-    shorter is used, corrected by half of their difference, all of which counts as uncertainty.  Its
-    bias is an eighth of the difference if the curvature is uniform, and as much or more if it is
-    largest at the beginning, as in a relaxation over decades of time.  A machine that rings
-    scatters its first samples more than their noise: the scatter about a line is used if greater.
-    Readings of one code have equal rounding errors: the rounding error of a line is that of one
-    reading, or of as many as the codes it passes; the end of a line has four times the variance of
-    their mean.
+    shorter is used, corrected by half of their difference, all of which counts as uncertainty: of a
+    series that ``relaxes`` as the half width of a uniform distribution, unless the shorter line has
+    only three readings.  Its bias is an eighth of the difference if the curvature is uniform, and
+    as much or more if it is largest at the beginning, as in a relaxation over decades of time.  A
+    machine that rings scatters its first samples more than their noise: the scatter about a line is
+    used if greater.  Readings of one code have equal rounding errors: the rounding error of a line
+    is that of one reading, or of as many as the codes it passes; the end of a line has four times
+    the variance of their mean.
 
     Examples
     --------
@@ -230,9 +240,11 @@ def level_at_end(
             break
         count = min(int(np.ceil(_GROWTH * count)), n_samples)
     bias = found[-1].value - chosen.value
+    # the first three readings, bent already, do not show what happened before them
+    share = 1 / sqrt(3) if relaxes and chosen.n_samples > FEWEST_ON_LINE else 1.0
     return _LevelAtEnd(
         origin + chosen.value - bias / 2,
-        float(np.hypot(chosen.standard_uncertainty, bias)),
+        float(np.hypot(chosen.standard_uncertainty, share * bias)),
         chosen.slope,
         chosen.n_samples,
     )

@@ -133,6 +133,7 @@ def _hold_ends(hold: Hold) -> _Ends:
         noise=reading_noise(hold.tension),
         shortest=0.0 if hold.ramp is None else min(BESIDE * hold.ramp.length, _RINGING),
         step=hold.tension_step,
+        relaxes=not hold.motion.greatest,  # a crosshead that settles bends it within seconds
     )
     u_initial = first.standard_uncertainty
     if hold.ramp is not None:
