@@ -42,6 +42,11 @@ _RATE = 1.3  # ratio of found to stated rate, or its inverse
 
 _TARGET = 1.17
 
+# s; a machine for low-frequency tests of ropes takes minutes. Ropes at 0.1 Hz in ms take 2.8 h
+_SLOWEST = 1800.0
+
+_FASTEST = 10.0  # m/s, from valley to peak: dampers are cycled at up to 6
+
 _LONGER = 1.05  # ratio of gauge length to length at slack
 
 _OF_HOSE = 0.75  # ratio of a hose's gauge length to the length between its flanges
@@ -100,6 +105,8 @@ _DRIFT = 0.05  # of the mean tension
 _RAMP = 0.1  # of the mean tension
 
 _STEADY = 0.7  # drop in the second half of the cycles relative to that in the first half
+
+_WITHOUT_CYCLES = ("tensile", "quasi-static", "relaxation", "creep")
 
 _MOST_STROKES = 5  # in a pull or a hold, including its set-up
 
@@ -281,9 +288,6 @@ def _load_unit(campaign: Campaign, survey: Survey, name: str) -> str:
     return "" if channel is None else channel.unit
 
 
-_FASTEST = 10.0  # m/s, from valley to peak: dampers are cycled at up to 6
-
-
 def _of_statements(campaign: Campaign, survey: Survey, models: Models) -> Iterator[Note]:
     """Compare the statements about a test with its log."""
     levels, plan = survey.levels, survey.plan
@@ -291,13 +295,15 @@ def _of_statements(campaign: Campaign, survey: Survey, models: Models) -> Iterat
         return
     if survey.n_cycles and levels.speed > _FASTEST:
         yield note("faster-than-machines", speed=levels.speed)
+    stated = (plan.attributes.get(key, "") for key in ("frequency", "rate"))
+    if plan.kind not in _WITHOUT_CYCLES and not any(map(_NUMBER.match, stated)):
+        if levels.frequency < 1 / _SLOWEST:
+            yield note("slower-than-machines", period=1 / levels.frequency)
     yield from _of_rate(survey)
     yield from _of_stated_levels(campaign, survey)
     # a break test may start with the bedding-in of a new rope
     is_set_up = plan.kind == "tensile" and levels.ends_in_pull
-    if plan.kind in ("tensile", "quasi-static", "relaxation", "creep") and (
-        levels.n_strokes > _MOST_STROKES and not is_set_up
-    ):
+    if plan.kind in _WITHOUT_CYCLES and (levels.n_strokes > _MOST_STROKES and not is_set_up):
         yield note("cycles-in-other-kind", n_cycles=levels.n_strokes // 2, kind=plan.kind)
     at_stop, held = levels.stood_tension
     if np.isfinite(held):

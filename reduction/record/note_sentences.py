@@ -2009,6 +2009,13 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             " position and the rate"
         ),
     ),
+    "slower-than-machines": (
+        "warning",
+        lambda period: (
+            f"a cycle takes {period / 3600:.3g} h (in ms: {period / 1000:.3g} s). Check the unit of"
+            " time and the sampling interval; if they are right, state frequency"
+        ),
+    ),
     "target-strain-missed": (
         "warning",
         lambda reached, target, ratio, like, method: (
@@ -2296,7 +2303,7 @@ CAUSES = (
     "channels-alike", "specimens-swapped", "date-against-order",
     "column-of-another", "diameter-readings-apart", "stretched-diameters-apart",
     "cycles-in-other-kind", "hold-of-position", "cycles-unlike",
-    "faster-than-machines", "rate-not-as-stated", "level-not-as-stated",
+    "faster-than-machines", "slower-than-machines", "rate-not-as-stated", "level-not-as-stated",
     "load-never-falls", "load-zero-drifts", "load-zero-wrong", "load-negative",
     "load-steps", "load-falls-with-stretch", "pushed-in-cycles", "pushed-in-pull",
     "reference-length-under-preload",

@@ -396,3 +396,24 @@ def test_errors_stand_once_in_one_file_and_a_run_that_failed_names_no_products(t
     assert done.returncode == 3
     assert sum("A.csv" in line for line in done.stdout.splitlines()) == 1
     assert "archives: none; all tests failed\n" in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("factor", "keys", "words"),
+    [
+        (1000, "", "a cycle takes 2."),  # 9 s, in ms
+        (1e-3, "", "the crosshead moves at 2"),  # 1 ft/s: 305 m/s, less at its turns
+        (1, "", None),
+        (1000, 'frequency = "0.00005 Hz"', None),  # compared with the log instead
+    ],
+)
+def test_a_time_in_another_unit_is_named_where_no_rate_is_stated(
+    factor, keys, words, tethers, command
+):
+    folder, rewrite = tethers
+    rewrite(lambda time, *others: (factor * time, *others))
+    (folder / "campaign.toml").write_text(CAMPAIGN + keys + "\n" + TESTS)
+    done = command("check", folder / "campaign.toml", "--json", cwd=folder)
+    message = json.loads(done.stdout)["tests"][0]["message"]
+    assert ("unit of time" in message) == (words is not None), message
+    assert words is None or words in message, message
