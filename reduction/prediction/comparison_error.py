@@ -41,6 +41,7 @@ from reduction.prediction.hose_uncertainty import EventUncertainty, propagate_ho
 from reduction.prediction.measured_curve import CurveName, Loading, MeasuredCurve
 from reduction.quantities.digits import places_of
 from reduction.record.arrays import as_finite, as_same_shape
+from reduction.record.contributions import FROM_READINGS
 from reduction.record.errors import DataError
 from reduction.record.measurement import Floats, Integers, read_only_arrays
 from reduction.record.notes import Note, note
@@ -1182,9 +1183,10 @@ def _notes(
     notes = []
     if not inputs.any():
         notes.append(note("prediction-counts-as-exact"))
-    if not measured.contribution.any():
+    sources = {one.source for one in measured.component} - FROM_READINGS
+    if not sources:
         notes.append(note("test-counts-as-unbiased"))
-    elif not any(one.source.startswith("tension_") for one in measured.component):
+    elif not any(one.startswith("tension_") for one in sources):
         notes.append(note("load-cell-counts-as-exact"))
     if agrees and judged.probability < LEAST_PROBABILITY:
         notes.append(note("shape-differs", probability=_probability_words(judged.probability)))

@@ -190,6 +190,23 @@ def within(component: Component, campaign: str) -> Component:
     return replace(component, of=f"{component.of} of {campaign}")
 
 
+FROM_READINGS = frozenset(
+    {
+        "strain_calibration",
+        "splice_method",
+        "splice_law",
+        "splice_friction",
+        "splice_slip",
+        "window",
+        "quasi_static_fit",
+        "pull_rate",
+        "drift_place",
+        "gauge_length",
+    }
+)
+"""Sources that follow from readings of the tests, not from stated instrument errors."""
+
+
 @dataclass(frozen=True)
 @read_only_arrays
 class Contributions:

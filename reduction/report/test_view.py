@@ -27,6 +27,7 @@ from reduction.quantities.flags import LINE_METHODS
 from reduction.quantities.row import COMPONENT
 from reduction.quantities.units import UnitSystem
 from reduction.record.contributions import (
+    FROM_READINGS,
     StatedErrors,
     coverage_factor,
     effective_degrees_of_freedom,
@@ -34,7 +35,6 @@ from reduction.record.contributions import (
 from reduction.record.measurement import Floats, Integers
 from reduction.record.notes import Note
 from reduction.report.text_style import (
-    FROM_READINGS,
     PageTable,
     Shown,
     in_order,

@@ -532,22 +532,6 @@ _LOOKS: dict[str, tuple[str, str]] = {
 
 _UNKNOWN = (_GREY, "x")
 
-FROM_READINGS = frozenset(
-    {
-        "strain_calibration",
-        "splice_method",
-        "splice_law",
-        "splice_friction",
-        "splice_slip",
-        "window",
-        "quasi_static_fit",
-        "pull_rate",
-        "drift_place",
-        "gauge_length",
-    }
-)
-"""Sources that follow from readings of the tests, not from stated instrument errors."""
-
 _NAMES = {"window": "regression window", "quasi_static_fit": "fit of the slow pull"}
 
 _MEANINGS = {

@@ -1181,8 +1181,13 @@ def _describe_standstills(
     )
 
 
-def level_of_standstill(position: Floats, standstills: Standstills, index: int) -> float:
-    """Mean position of a standstill without the ramps at its ends.
+def level_of_standstill(
+    position: Floats, standstills: Standstills, index: int
+) -> tuple[float, float]:
+    """Mean position of a standstill without the ramps at its ends, and its standard uncertainty.
+
+    The latter is from the noise of the readings about a line and the correlation of neighbours.
+    A drift beyond this counts as a uniform distribution.
 
     Examples
     --------
@@ -1193,17 +1198,29 @@ def level_of_standstill(position: Floats, standstills: Standstills, index: int) 
     >>> rest = Standstills(
     ...     one(0), one(62), one(0.0), one(62.0), one(0.0), np.array([[0.0]]), one(True), 0.05, 5.0)
     >>> level_of_standstill(position, rest, 0)
-    0.0
+    (0.0, 0.0)
     """
     first, last = standstills.first[index : index + 1], standstills.last[index : index + 1]
     stride = max(int(last[0] + 1 - first[0]) // _LEVEL_SAMPLES, 1)
-    level = np.nanmedian(take_samples(position, np.arange(first[0], last[0] + 1, stride)))
-    first, last = _without_ramps(
+    readings = take_samples(position, np.arange(first[0], last[0] + 1, stride))
+    level = float(np.nanmedian(readings))
+    begin, end = _without_ramps(
         position, first.copy(), last.copy(), np.array([level]), standstills.position_tolerance
     )
-    if first[0] > last[0]:  # a few readings that rise by chance: each half is a ramp
-        return float(level)
-    return float(_interval_means(position, first, last)[0])
+    if begin[0] <= end[0]:  # otherwise a few readings that rise by chance: each half is a ramp
+        level = float(_interval_means(position, begin, end)[0])
+        readings = take_samples(position, np.arange(begin[0], end[0] + 1, stride))
+    readings = readings[np.isfinite(readings)]
+    place = np.linspace(-0.5, 0.5, readings.size)
+    slope = float(place @ readings / max(place @ place, _TINY))
+    left = readings - readings.mean() - slope * place
+    scatter = float(left @ left)
+    alike = float(np.clip(left[1:] @ left[:-1] / max(scatter, _TINY**2), 0.0, 0.99))
+    # a few readings scatter less than the channel by chance
+    of_one = max(scatter / max(readings.size - 2, 1), estimate_noise(position)[0] ** 2)
+    variance = of_one / readings.size * (1 + alike) / (1 - alike)
+    drift = max(slope**2 - 12 * variance, 0.0)
+    return level, float(np.sqrt(variance + drift / 12))
 
 
 def find_standstills(

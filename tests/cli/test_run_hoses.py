@@ -268,11 +268,12 @@ def test_the_uncertainty_of_the_length_scales_every_strain_of_a_comparison(run):
     # what the layout says of a reading of 0.02 in or 5 lbf is no error that samples share
     assert [one.source for one in measured.component] == ["strain_calibration"] * 2
     assert {one.of for one in measured.component} == {"hose-64, gauge-length"}
-    # a length that is 0.05 in of 96 in too great makes every strain too small, and a zero that is
-    # logged to 0.001 in shifts them all
+    # a length that is 0.05 in of 96 in too great makes every strain too small; a zero that is the
+    # mean of 100 readings with a noise of 0.015 in, logged to 0.001 in, shifts them all
     shift, scale = sorted(np.abs(measured.strain_error), key=lambda one: one[-1])
     np.testing.assert_allclose(scale, 0.05 / 96 * measured.strain, rtol=1e-6, atol=1e-12)
-    np.testing.assert_allclose(shift, 0.001 / np.sqrt(12) / 96, rtol=1e-6)
+    of_zero = np.hypot(0.001 / np.sqrt(12), 0.015 / np.sqrt(100))
+    np.testing.assert_allclose(shift, of_zero / 96, rtol=0.3)
 
 
 @pytest.mark.nightly

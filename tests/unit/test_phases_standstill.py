@@ -641,7 +641,7 @@ def test_a_coarse_encoder_with_missing_readings_is_not_without_noise():
 
 def test_four_readings_at_rest_that_rise_by_chance_have_a_level():
     """Each half of the rest lies off its middle as the beginning of a ramp does."""
-    position = 0.05 + np.array([-2e-6, 0, 2e-6, 3e-6, 1e-3, 2e-3])
+    position = 0.05 + np.array([-2e-6, 0, 2e-6, 3e-6, 1e-3, 2e-3, 3e-3, 4e-3])
     first, last, rest = np.array([0]), np.array([3]), np.array([True])
     stand = Standstills(
         first, last, 1.0 * first, 1.0 * last, np.array([0.05]), np.zeros((1, 1)), rest,
@@ -665,3 +665,4 @@ def test_noise_alike_in_neighbouring_readings_does_not_cut_a_creep_hold(source):
     held = ~found.is_rest
     assert found.start_time[held] == pytest.approx([9], abs=0.2)
     assert found.end_time[held] == pytest.approx([710], abs=0.2)
+    assert level_of_standstill(position, stand, 0)[0] == pytest.approx(0.05, abs=3e-6)

@@ -321,6 +321,22 @@ def test_zero_strain_of_a_coarse_position_is_uncertain_by_a_code():
     assert zero.standard_uncertainty == pytest.approx(0.5e-3 / np.sqrt(3), rel=0.05)
 
 
+def test_zero_strain_at_a_rest_is_uncertain_by_its_noise_and_its_drift():
+    stands = dataclasses.replace(rests([0.1], [True]), last=np.array([99]))
+    for drift, least in ((0.0, 1e-3), (5e-3, 5e-3 / np.sqrt(12))):
+        off = []
+        for seed in range(200):
+            place = 0.1 + np.clip(0.003 * (np.arange(1000.0) - 99), 0, None)
+            place[:100] += np.linspace(-0.5, 0.5, 100) * drift
+            place += np.random.default_rng(seed).normal(0, 0.01, 1000)
+            stand = dataclasses.replace(stands, position_tolerance=0.12)
+            zero = zero_at_slack(stand, place, np.zeros((1, 1000)), position_is_length=True)
+            off.append([zero.position - 0.1, zero.standard_uncertainty])
+        error, spread = np.transpose(off)
+        assert 0.5 < np.sqrt(np.mean((error / spread) ** 2)) < 1.2
+        assert np.median(spread) == pytest.approx(least, rel=0.3)
+
+
 @pytest.mark.parametrize("rate", [0.5, 1.0, 2.0])  # deviations of the noise per reading
 @pytest.mark.parametrize("standing", [1, 3, 4, 6])
 def test_a_slow_ramp_among_the_first_readings_is_in_the_interval_of_their_zero(rate, standing):

@@ -130,6 +130,19 @@ class TestZeroAtTension:
         assert abs(np.mean(found)) < 0.5
         assert np.std(found) == pytest.approx(1.0, abs=0.25)
 
+    @pytest.mark.parametrize("noise", [2.0, 20.0, 100.0])
+    def test_a_slow_rise_places_it_within_its_noise(self, noise):
+        """Four readings in the band, or noise that reaches slack: 1 mm or 20 N to a reading."""
+        generator, off = np.random.default_rng(3), []
+        load = 2e4 * np.maximum(self.PLACE - 0.1, 0)
+        for _ in range(200):
+            noisy = load + generator.normal(0, noise, load.size)
+            place = self.PLACE + generator.normal(0, 5e-5, load.size)
+            zero = zero_at_tension(place, noisy, reference_tension=250.0)
+            off.append((zero.position - 0.1125) / zero.standard_uncertainty)
+        # 10 u before, always too short, at 100 N
+        assert np.sqrt(np.mean(np.square(off))) < 1.5
+
     def test_a_log_that_begins_at_the_tension_begins_at_zero_strain(self):
         place = np.concatenate([np.full(100, 0.3), np.linspace(0.3, 1, 701)])
         zero = zero_at_tension(place, 1e4 * (place - 0.2), reference_tension=1000.0)

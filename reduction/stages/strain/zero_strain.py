@@ -13,6 +13,7 @@ References
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import ceil
 
 import numpy as np
 
@@ -67,9 +68,9 @@ def zero_at_slack(
 ) -> ZeroStrain:
     """Position of the first rest, else that at which the layout states that the specimen is slack.
 
-    A position that is written in coarse codes is uncertain by one of them.  ``tension`` has the
-    shape (n_specimens, n_samples): at a rest behind the loading a specimen is longer than before
-    it, so the stated position counts unless the rest is shorter.
+    It is uncertain by what the rest shows, and by one of the codes in which positions are written.
+    ``tension`` has the shape (n_specimens, n_samples): at a rest behind the loading a specimen is
+    longer than before it, so the stated position counts unless the rest is shorter.
 
     Examples
     --------
@@ -83,7 +84,7 @@ def zero_at_slack(
     stated = ZeroStrain(length_at_slack if position_is_length else 0.0)
     if not rests.size:
         return stated
-    level = level_of_standstill(position, standstills, int(rests[0]))
+    level, spread = level_of_standstill(position, standstills, int(rests[0]))
     first = int(standstills.first[rests[0]])
     is_behind_load = any(
         finite_extremes(load[:first])[1] > _LOADED * finite_extremes(load)[1] for load in tension
@@ -91,7 +92,7 @@ def zero_at_slack(
     if is_behind_load and stated.position is not None:
         if level > stated.position - standstills.position_tolerance:
             return stated
-    spread = step_of_codes(position) / float(np.sqrt(12))
+    spread = float(np.hypot(spread, step_of_codes(position) / 12**0.5))
     return ZeroStrain(level, spread, is_logged=True, is_behind_load=is_behind_load)
 
 
@@ -265,8 +266,9 @@ def zero_at_tension(
     Notes
     -----
     The first rise of the log through the reference tension is used, or the hold at it with which
-    the log begins: a line of position on tension over a fifth of that tension to either side, or
+    the log begins: a line of position over tension, a fifth of that tension to either side or
     over the noise if that is wider; through the two nearest samples if too few are in that range.
+    Consecutive readings are averaged until their noise is within half of the reference tension.
     The difference in a later cycle at that tension is creep and hysteresis, and counts as strain.
 
     Examples
@@ -284,6 +286,16 @@ def zero_at_tension(
             needed="the tension under which the gauge length was read",
         )  # fmt: skip
     stated = ZeroStrain(stated_position, reference_tension=reference_tension)
+    if np.count_nonzero(np.isfinite(tension)) < 2 * _FEWEST:
+        return stated
+    # readings whose noise reaches slack are averaged until it does not
+    wide = float(noise_range(tension)) / 2 / (_WIDEST * reference_tension)
+    if wide > 1:
+        together = ceil(wide**2)
+        whole = tension.size // together * together
+        position, tension = (
+            one[:whole].reshape(-1, together).mean(axis=1) for one in (position, tension)
+        )
     if np.count_nonzero(np.isfinite(tension)) < 2 * _FEWEST:
         return stated
     half = half_band_of(reference_tension, tension)
@@ -312,15 +324,38 @@ def zero_at_tension(
         return ZeroStrain(
             between, spread, compliance, True, reference_tension, stated_position
         )  # fmt: skip
-    place, load = place[near], load[near]
-    design = np.stack([np.ones_like(load), load - load.mean()], axis=1)
-    (middle, compliance), *_ = np.linalg.lstsq(design, place)
-    residual = place - design @ [middle, compliance]
-    spread = float(np.sqrt(residual @ residual / (load.size - 2) / load.size))
-    return ZeroStrain(
-        float(middle - compliance * load.mean()), spread, float(compliance), True,
-        reference_tension, stated_position,
-    )  # fmt: skip
+    noises = estimate_noise(position)[0], estimate_noise(tension)[0]
+    found, compliance, spread = _at_no_load(place[near], load[near], noises)
+    # a bend of the curve moves the line through half of the band by three quarters less
+    inner = np.abs(load) <= half / 2
+    if inner.sum() >= _FEWEST:
+        moved = (_at_no_load(place[inner], load[inner], noises)[0] - found) ** 2 - spread**2
+        spread = float(np.sqrt(spread**2 + max(moved, 0.0) * 16 / 9))
+    return ZeroStrain(found, spread, compliance, True, reference_tension, stated_position)
+
+
+def _at_no_load(place: Floats, load: Floats, noises: tuple[float, float]) -> tuple[float, ...]:
+    """Place where a rising load is zero, on a line; its slope, and the standard uncertainty.
+
+    The order of the readings places the line, since noise of the load would flatten that of least
+    squares; at a hold, where the load does not rise with it, least squares do.
+    """
+    offset = load - load.mean()
+    by = np.linspace(-1.0, 1.0, load.size)
+    if np.corrcoef(by, offset)[0, 1] < _RISES:
+        by = offset
+    reach = float(by @ offset)
+    slope = float(by @ place) / reach if reach else 0.0
+    left = place - place.mean() - slope * offset
+    of_one = max(left @ left / (load.size - 2), noises[0] ** 2 + (slope * noises[1]) ** 2)
+    away = load.mean() ** 2 * (by @ by) / reach**2 if reach else 0.0
+    spread = float(np.sqrt(of_one * (1 / load.size + away)))
+    return float(place.mean() - slope * load.mean()), slope, spread
+
+
+_WIDEST = 0.5  # of the reference tension: the band of a noisy load on either side of it
+
+_RISES = 0.7  # correlation with the order of the readings
 
 
 # readings on each side of a jump of length, and its size compared with their own steps
