@@ -24,6 +24,7 @@ from reduction.readers.columns import (
     stated_scale,
 )
 from reduction.readers.layout import CLOCK, UNKNOWN
+from reduction.record.arrays import MAD_TO_DEVIATION
 from reduction.record.errors import SettingsError
 from reduction.record.measurement import Floats
 from reduction.record.plain_text import toml_comment, toml_text
@@ -564,6 +565,12 @@ _LEAST_REST = 5  # samples
 
 _TOLD = 0.005  # of the sampled range of a load: smallest reading at rest that is reported
 
+_EXACT = 0.0002  # the same: standard uncertainty up to which such a reading is taken as the zero
+
+_OF_MEDIAN = 1.25  # standard error of a median over that of a mean
+
+_NOISE = 5.0  # standard deviations
+
 _FAR, _MANY_VALUES = 12.0, 10  # minimum range over the scatter of its steps, and number of values
 
 _OPPOSED = -0.7  # correlation of load and position below which one sign is wrong
@@ -599,8 +606,13 @@ class _Start:
         if not np.isfinite(channels).all() or not _has_moved(position):
             return None
         away = np.abs(channels - np.median(channels[:, :_LEAST_REST], axis=1)[:, None])
+        # in steps of two readings, which the motion of a ramp hardly widens
+        noise = (
+            MAD_TO_DEVIATION * np.median(np.abs(np.diff(channels, n=2, axis=1)), axis=1) / 6**0.5
+        )
+        still = np.maximum(_STILL * np.ptp(channels, axis=1), _NOISE * noise)
         # a load that is only noise has no range to compare with
-        moves = np.flatnonzero(np.any(away > _STILL * np.ptp(channels, axis=1)[:, None], axis=0))
+        moves = np.flatnonzero(np.any(away > still[:, None], axis=0))
         n_samples = _still_samples(channels, int(moves[0]))
         words = f"the first {n_samples} samples"
         time, unit = chosen.get("time", (None, UNKNOWN))
@@ -680,24 +692,28 @@ class _Start:
     def _zero(self, key: str, unit: str) -> tuple[str, list[str]]:
         load = self.loads[key]
         rest = load[: self.n_samples]
-        reading, scatter = float(np.median(rest)), float(np.std(rest))
-        noise = 4 * scatter / math.sqrt(rest.size)
+        reading = float(np.median(rest))
+        # the first readings of a slow ramp scatter too, and move no median
+        scatter = MAD_TO_DEVIATION * float(np.median(np.abs(rest - reading)))
+        spread = _OF_MEDIAN * scatter / math.sqrt(rest.size)
         shown = f'"{_round(reading, scatter)} {unit}"'
         at_rest = f"in the first rest ({self.words}) {key} reads {shown}"
-        if abs(reading) <= noise:
+        if abs(reading) <= 4 * spread:
             return "", [f"guess: no zero is needed: {at_rest}, which is within its noise"]
         if abs(reading) <= _TOLD * float(np.ptp(load)):
             return "", [
                 f"guess: no zero is written: {at_rest}, less than {100 * _TOLD:g} % of the range of"
                 f" the load; if the specimen was slack there, zero = {shown} is more accurate"
             ]
-        if reading < 0 and load.max() > -load.min():
+        is_pulled = reading < 0 and load.max() > -load.min()
+        if is_pulled and spread <= _EXACT * float(np.ptp(load)):
             return f", zero = {shown}", [
                 f"guess: zero {shown}: {at_rest}, and a slack line cannot push"
             ]
         return f', zero = "{UNKNOWN}"', [
-            f"unknown: zero: {at_rest}: that is the zero if the specimen was slack there, and"
-            f' "0 {unit}" if it was under load'
+            f"unknown: zero: {at_rest}: that is the zero if the specimen was slack there (then its"
+            f' noise is offset = "{spread:.2g} {unit}" in [uncertainty.tension])'
+            + ("" if is_pulled else f', and "0 {unit}" if it was under load')
         ]
 
 

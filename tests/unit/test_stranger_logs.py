@@ -307,6 +307,25 @@ def test_a_load_below_zero_at_rest_is_proposed_as_the_zero(tmp_path):
     assert "guess: zero" in text and "a slack line cannot push" in text
 
 
+@pytest.mark.parametrize(("resting", "noise"), [(5, 5.0), (30, 20.0), (200, 2.0)])
+def test_a_zero_is_proposed_only_where_the_rest_shows_it_to_a_fraction_of_the_load(
+    tmp_path, resting, noise
+):
+    """Synthetic: 3 kN of range, a zero of -60 N; five readings of 5 N gave zeros 5 N off."""
+    time = np.arange(resting + 400) / 10
+    travel = 100 * (1 - np.cos(np.clip(time - resting / 10, 0, None) / 2))
+    zeros = []
+    for seed in range(8):
+        load = 15 * travel - 60 + np.random.default_rng(seed).normal(0, noise, time.size)
+        log = "Time (s),Stroke (mm),Load (N)\n" + table([time, travel, load])
+        text, layout = draft(tmp_path, "log.csv", log.encode())
+        zeros.append(layout["channels"]["tension"]["1"].get("zero"))
+        assert zeros[-1] != "?" or "[uncertainty.tension]" in text
+    stated = [float(zero.split()[0]) for zero in zeros if zero not in (None, "?")]
+    assert len(stated) == (8 if resting == 200 else 0)
+    assert np.abs(np.array(stated) + 60).max(initial=0.0) < 1
+
+
 def test_a_load_that_is_next_to_nothing_at_rest_needs_no_zero(tmp_path):
     text, layout = draft(tmp_path, "log.csv", text_log(LOAD - 3.5))
     assert "zero" not in layout["channels"]["tension"]["1"]
