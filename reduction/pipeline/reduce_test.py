@@ -66,6 +66,7 @@ from reduction.stages.cycles.cycle_search import control_channel, label_phases
 from reduction.stages.cycles.loop_sense import (
     OPEN,
     change_of_wave,
+    missed_between_changes,
     notes_of_loops,
     unlike_neighbours,
     waveform_of_log,
@@ -783,13 +784,17 @@ def _with_waveform_of_log(
 
 
 def _unlike_waves(
-    time: Floats, driven: Floats, cycles: Cycles | None, unlike: float
+    time: Floats, driven: Floats, cycles: Cycles | None, unlike: float, *, is_sine: bool
 ) -> tuple[Note, ...]:
-    """Waves that differ from cycle to cycle, or from one part of the cycles to the other."""
+    """Waves that differ from cycle to cycle or between parts of the log, or lack their turns."""
     if unlike:
         return (note("wave-not-periodic", share=unlike, is_open=unlike > OPEN),)
-    changed = None if cycles is None else change_of_wave(time, driven, cycles)
-    if changed is None or cycles is None:
+    if cycles is None:
+        return ()
+    if missed := 0.0 if is_sine else missed_between_changes(time, driven, cycles):
+        return (note("changes-alone-logged", share=missed),)
+    changed = change_of_wave(time, driven, cycles)
+    if changed is None:
         return ()
     share, last, first = changed
     number, begin = cycles.number, float(time[cycles.first[first]])
@@ -820,6 +825,7 @@ def reduce_test(
     record, standstills, cycles = located.record, located.standstills, located.cycles
     position, tension = located.position, located.tension
     settings, of_wave = _with_waveform_of_log(settings, located)
+    is_sine = settings.cycles.waveform == "sinusoidal"
     driven = control_channel(position, tension, settings.cycles)
     unlike = 0.0 if cycles is None else unlike_neighbours(record.time, driven, cycles, standstills)
     phase = label_phases(record.time, standstills=standstills, cycles=cycles)
@@ -879,11 +885,11 @@ def reduce_test(
         (
             *of_wave,
             *of_zero,
-            *_unlike_waves(record.time, driven, cycles, unlike),
+            *_unlike_waves(record.time, driven, cycles, unlike, is_sine=is_sine),
             *notes_of_loops(
                 cycle_parts["loops"], names=record.specimens, time_step=median_step(record.time),
                 lag=[one.lag for one in instruments] or [0.0] * len(specimens),
-                is_sinusoidal=settings.cycles.waveform == "sinusoidal",
+                is_sinusoidal=is_sine,
             ),
             *_tones(record, tension, cycles, cycle_parts["loops"], settings.cycles.waveform),
             *notes_on_jumps(

@@ -829,6 +829,11 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             + ". Test each frequency separately, and declare each amplitude as a step of its own"
         ),
     ),
+    "changes-alone-logged": (
+        "warning",
+        "the log has no small steps and waits at its turns: the logger seems to store changes"
+        " alone. Amplitudes may be up to {share:.1%} too small. Log at a constant rate",
+    ),
     "wave-changes": (
         "warning",
         lambda share, last, first, begin: (
@@ -2324,7 +2329,8 @@ CAUSES = (
     "extensometer-off-at-slack", "reference-tension-elsewhere", "slack-beyond-zero",
     "length-jumps",
     "slipped-in-earlier-step", "strain-below-zero",
-    "zero-moves-at-stop", "wave-not-periodic", "wave-changes", "tension-hums", "tension-late",
+    "zero-moves-at-stop", "wave-not-periodic", "changes-alone-logged", "wave-changes",
+    "tension-hums", "tension-late",
     "tension-filtered", "tension-behind-position",
     "loops-give-work", "loops-not-of-a-sine", "hold-load-late",
 )  # fmt: skip

@@ -13,6 +13,7 @@ from reduction.stages.cycles.loop_sense import (
     OPEN,
     change_of_wave,
     contradicts_sine,
+    missed_between_changes,
     notes_of_loops,
     unlike_neighbours,
     waveform_of_log,
@@ -390,3 +391,35 @@ def test_cycles_that_are_no_closed_loops_keep_their_amplitudes_and_have_no_loss(
     for name in ("hysteresis_energy", "closed_loop_energy", "loss_factor"):
         assert np.isnan(getattr(kept, name)).all() and np.isnan(kept.uncertainty[name]).all()
     assert np.isfinite(kept.apparent_spring_constant).all()
+
+
+@pytest.mark.parametrize(
+    ("kept", "least"),
+    [
+        (lambda wave, random: changes(wave, 0.12), 0.11),
+        (lambda wave, random: changes(wave, 0.022), 0.02),
+        (lambda wave, random: np.arange(0, wave.size, 37), 0.0),
+        (lambda wave, random: np.cumsum(random.integers(5, 40, wave.size // 40)), 0.0),
+        (lambda wave, random: np.flatnonzero(random.random(wave.size) < 0.05), 0.0),
+    ],
+    ids=["changes", "small changes", "even", "uneven", "rows missing"],
+)
+def test_a_log_of_changes_alone_is_told_from_rows_at_any_times(kept, least):
+    time = np.arange(0, 120, 0.01)
+    wave = 1 - 2 * np.abs(time / 6 % 2 - 1)
+    rows = kept(wave, np.random.default_rng(4))
+    t, x = time[rows], wave[rows]
+    stands = find_standstills(t, x, x[None], settings=PhaseSettings())
+    found = missed_between_changes(
+        t, x, find_cycles(t, x, x[None], stands, settings=CycleSettings())
+    )
+    assert (found > 0) == (least > 0) and found >= least
+
+
+def changes(wave, band):
+    """Places of a series that a logger stores: a band away from the last one."""
+    kept = [0]
+    for place, value in enumerate(wave):
+        if abs(value - wave[kept[-1]]) >= band:
+            kept.append(place)
+    return kept

@@ -294,6 +294,49 @@ def change_of_wave(time: Floats, driven: Floats, cycles: Cycles) -> tuple[float,
     return (share, at[stop - 1], at[stop]) if share > least else None
 
 
+def missed_between_changes(time: Floats, driven: Floats, cycles: Cycles) -> float:
+    """Share of half the range that a log of changes may miss at its turns; 0 for other logs. [1].
+
+    A logger that stores a reading only after a change stores no smaller step, and waits longest at
+    the turns: lines beside them, through evenly counted readings, do not lead to the turn.
+
+    Examples
+    --------
+    >>> from reduction.record.settings import CycleSettings, PhaseSettings
+    >>> from reduction.stages.cycles.cycle_search import find_cycles
+    >>> from reduction.stages.standstills import find_standstills
+    >>> time = np.arange(0, 60, 0.01)
+    >>> wave = 1 - 2 * np.abs(time / 6 % 2 - 1)
+    >>> kept = [0]
+    >>> for place, value in enumerate(wave):
+    ...     if abs(value - wave[kept[-1]]) > 0.12:
+    ...         kept.append(place)
+    >>> t, x = time[kept], wave[kept]
+    >>> stands = find_standstills(t, x, x[None], settings=PhaseSettings())
+    >>> cycles = find_cycles(t, x, x[None], stands, settings=CycleSettings())
+    >>> print(round(missed_between_changes(t, x, cycles), 2))
+    0.13
+    """
+    some = _spread(np.arange(cycles.n_cycles))
+    first, last, peak = cycles.first[some], cycles.last[some], cycles.branch_last[some, 0]
+    # a turn is beside its extreme reading, before it or after it; one may be near a reading
+    waits = np.diff(time[first[0] : last[-1] + 1], prepend=np.nan, append=np.nan)
+    waits = np.fmax(waits[:-1], waits[1:])
+    longest = max(np.median(waits[at - first[0]]) for at in (peak, last))
+    if not longest > _LONGER_WAIT * np.median(waits):
+        return 0.0
+    part = driven[first[0] : last[-1] + 1]
+    steps = np.abs(np.diff(part))
+    least, middle = np.nanquantile(steps, [_RARE, 0.5])
+    reach = np.median(np.abs(driven[peak] - driven[first])) / 2
+    return float(least / reach) if least > _ALL_ALIKE * middle else 0.0
+
+
+_LONGER_WAIT = 1.2  # times the usual time between readings
+
+_RARE, _ALL_ALIKE = 0.05, 0.7  # share of smaller steps, and their size over the usual one
+
+
 def _of_parts(middle: Callable[..., Floats], shapes: Floats, stop: int, phase: Floats) -> float:
     """Root mean square between the mean or median shapes before and from a cycle on."""
     one, other = middle(shapes[:stop], axis=0), middle(shapes[stop:], axis=0)
