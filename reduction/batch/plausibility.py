@@ -11,6 +11,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import combinations, repeat
+from typing import NamedTuple
 
 import numpy as np
 
@@ -66,9 +67,12 @@ _LIKE_STRAIN, _LIKE_RATE = 1.3, 2.2
 
 _FEWEST_ON_CURVE = 3  # tests, including the one compared with the others
 
-_SPREAD, _BEYOND = 1.1, 1.5  # strain range of the other tests as a ratio, and how far beyond it
-
 _OFF_CURVE = 1.7  # ratio of peak tension to that of the others at the same strain
+
+# in the scatter of others, with so many more of the usual scatter: of peaks about their curve, and
+# of the ratio of two specimens; exponent of a rope and its scatter
+_OFF_SCATTER, _AS_IF = 4.0, 2
+_OF_PEAKS, _OF_RATIOS, _OF_SLOPES = 0.1, 0.05, (1.7, 0.4)
 
 _SOFTENED = 3.0  # softening of rubber after a larger stretch: half in WHOI-2005-10, more in others
 
@@ -612,11 +616,21 @@ def _of_pairs(
             yield from _off_the_others(name, compared, models, softens=softens)
 
 
+class _OfBatch(NamedTuple):
+    """A test of one of several specimens of a kind: peak strain [1] and stress [Pa], and past."""
+
+    survey: Survey
+    specimen: str
+    strain: float
+    stress: float
+    past: str
+
+
 def _off_other_specimens(
     campaign: Campaign, by_specimen: Mapping[str, Sequence[Survey]], models: Models
 ) -> Iterator[tuple[str, Note]]:
     """Find tests whose modulus differs from that of most other specimens of the same kind."""
-    groups: dict[tuple[str, ...], list[tuple[Survey, str, float, float, str]]] = {}
+    groups: dict[tuple[str, ...], list[_OfBatch]] = {}
     for name, several in by_specimen.items():
         made = campaign.specimens[name]
         # a hose is as stiff as its cords and their angle make it
@@ -630,25 +644,26 @@ def _off_other_specimens(
         is_first = before <= _GREATER * strain
         is_first |= _loads_set(several) & (_before(several, stress) <= _GREATER * stress)
         past = _past_and_conditions(several, made.earlier_cycles)
-        for row in zip(several, repeat(name), strain, stress, past, is_first, strict=False):
-            if row[2] > 0 and row[3] > 0 and row[5]:
-                rows.append(row[:5])
+        every = map(_OfBatch, several, repeat(name), strain, stress, past)
+        is_kept = is_first & (strain > 0) & (stress > 0)
+        rows += [row for row, is_one in zip(every, is_kept, strict=True) if is_one]
     for rows in groups.values():
-        if len({name for _, name, *_ in rows}) <= _FEWEST_LIKE:
-            continue
-        kind = np.array([survey.plan.kind for survey, *_ in rows])
-        rate = np.array([
-            np.nan if survey.levels is None else survey.levels.frequency for survey, *_ in rows
-        ])  # fmt: skip
-        names = np.array([name for _, name, *_ in rows])
+        names = np.array([row.specimen for row in rows])
         known, specimen = np.unique(names, return_inverse=True)
-        strain, stress = np.array([row[2:4] for row in rows]).T
-        pasts = np.array([row[4] for row in rows])
+        if known.size < 2:
+            continue
+        kind = np.array([row.survey.plan.kind for row in rows])
+        rate = np.array([
+            np.nan if row.survey.levels is None else row.survey.levels.frequency for row in rows
+        ])  # fmt: skip
+        strain, stress = np.array([(row.strain, row.stress) for row in rows]).T
+        pasts = np.array([row.past for row in rows])
         modulus = stress / strain
-        load_set = _loads_set([survey for survey, *_ in rows])
-        size, of_others = np.log(modulus), np.full((len(rows), known.size), np.nan)
+        load_set = _loads_set([row.survey for row in rows])
+        size = np.log(modulus)
+        of_others, at_place = np.full((2, len(rows), known.size), np.nan)
         told: set[int] = set()
-        for place, (survey, name, *_) in enumerate(rows):
+        for place, (survey, name) in enumerate(row[:2] for row in rows):
             apart, of_stress, of_rate = (
                 np.abs(np.log(values / values[place])) for values in (strain, stress, rate)
             )
@@ -658,9 +673,8 @@ def _off_other_specimens(
             like = ones & (apart < np.log(_LIKE_STRAIN)) & (of_rate < np.log(_LIKE_RATE))
             batch = ones & (np.maximum(apart, of_rate) < np.log(_ONE_LEVEL))
             batch &= pasts == pasts[place]
-            count = np.bincount(specimen[batch], minlength=known.size)
-            total = np.bincount(specimen[batch], size[batch], minlength=known.size)
-            np.divide(total, count, out=of_others[place], where=count > 0)
+            at_place[place], _ = _means(size, specimen, like & (pasts == pasts[place]), known.size)
+            of_others[place], count = _means(size, specimen, batch, known.size)
             limit = _JUMP
             if np.count_nonzero(count) >= _FEWEST_OF_BATCH:
                 limit = min(np.exp(_most_off(size[batch], _LEAST_OFF)), _JUMP)
@@ -678,10 +692,17 @@ def _off_other_specimens(
                         n_others=int(unlike.size), n_like=int(others.size),
                         like=", ".join(words),
                     )  # fmt: skip
-        for place, ratio, n_others in _off_own_tests(specimen, size, of_others, told):
-            survey, name, *_ = rows[place]
+        for place, ratio, n_others in _off_own_tests(specimen, size, of_others, at_place, told):
+            name = rows[place].specimen
             off = note("stiffness-off-own-tests", name, ratio=ratio, n_others=n_others)
-            yield survey.plan.id, off
+            yield rows[place].survey.plan.id, off
+
+
+def _means(size: Floats, specimen: Integers, chosen: Bools, n: int) -> tuple[Floats, Integers]:
+    """Mean of each of n specimens over the chosen tests, NaN without one, and their number."""
+    count = np.bincount(specimen[chosen], minlength=n)
+    total = np.bincount(specimen[chosen], size[chosen], minlength=n)
+    return np.divide(total, count, out=np.full(n, np.nan), where=count > 0), count
 
 
 def _past_and_conditions(several: Sequence[Survey], earlier_cycles: int | None) -> list[str]:
@@ -702,12 +723,13 @@ def _past_and_conditions(several: Sequence[Survey], earlier_cycles: int | None) 
 
 
 def _off_own_tests(
-    specimen: Integers, size: Floats, of_others: Floats, told: set[int]
+    specimen: Integers, size: Floats, of_others: Floats, at_place: Floats, told: set[int]
 ) -> Iterator[tuple[int, float, int]]:
     """Find tests whose ratio to the other tests of the specimen is not that of the others.
 
     Specimens of a batch scatter more than the ratio of one specimen at two levels does.
-    ``of_others`` has, for each test, the mean of each other specimen at its level, or NaN.
+    ``of_others`` has, for each test, the mean of each other specimen at its level, or NaN;
+    ``at_place`` that of each at its place in the programme, where levels may differ by a gain.
     """
     for place in sorted(set(range(size.size)) - told):
         own = set(np.flatnonzero(specimen == specimen[place]).tolist()) - told - {place}
@@ -720,9 +742,37 @@ def _off_own_tests(
                 off = float(size[place] - size[one] - np.median(usual))
                 away.append(off if abs(off) > _most_off(usual, _LEAST_OFF_OWN) else 0.0)
                 n_others = usual.size
+        if not away:
+            away = list(_off_its_ratio(size - at_place.T, place, sorted(own)))
+            n_others = len(away)
         far = [one for one in away if one]
         if 2 * len(far) > len(away):
             yield place, float(np.exp(np.median(far))), n_others
+
+
+def _off_its_ratio(ratios: Floats, place: int, own: Sequence[int]) -> Iterator[float]:
+    """How far a test is off the ratio to each other specimen that its own other tests have.
+
+    For few specimens, whose scatter is not known: that of the tests counts.  ``ratios``: by other
+    specimen and test, NaN without one of the other specimen at this place.
+    """
+    for at_levels in ratios:
+        others = at_levels[list(own)]
+        others = others[np.isfinite(others)]
+        if others.size < _FEWEST_OF_PAIR - 1 or not np.isfinite(at_levels[place]):
+            continue
+        off = float(at_levels[place] - others.mean())
+        most = _most_beside(others - others.mean(), 1, 1 / others.size, usual=_OF_RATIOS)
+        yield off if abs(off) > max(most, np.log(_LEAST_OFF_OWN)) else 0.0
+
+
+def _most_beside(left: Floats, n_fitted: int, leverage: float, *, usual: float) -> float:
+    """How far a sound value may lie off what is fitted to a few others, by what these leave.
+
+    The ``usual`` scatter counts as two more of them.
+    """
+    scatter = (left @ left + _AS_IF * usual**2) / (left.size - n_fitted + _AS_IF)
+    return _OFF_SCATTER * float(np.sqrt(scatter * (1 + leverage)))
 
 
 def _most_off(size: Floats, least: float) -> float:
@@ -878,29 +928,49 @@ def _off_the_others(
         return
     strain, tension = np.log([row[1:3] for row in rows]).T
     softened = np.array([row[3] for row in rows])
-    off = np.full(len(rows), np.nan)
-    for place in range(len(rows)):
+    found: list[tuple[float, float, str]] = []  # distance over the limit, distance, test
+    for place, (test, *_) in enumerate(rows):
         of_others = np.arange(len(rows)) != place
         alike = of_others & (softened == softened[place])
         is_alone = alike.sum() < _FEWEST_ON_CURVE - 1
-        x, y = strain[of_others if is_alone else alike], tension[of_others if is_alone else alike]
-        beyond = max(x.min() - strain[place], strain[place] - x.max())
-        if np.ptp(x) > np.log(_SPREAD) and beyond < np.log(_BEYOND):
-            slope, start = np.polyfit(x, y, 1)
-            if slope <= 0:  # the others contradict each other
-                continue
-            away = tension[place] - (start + slope * strain[place])
-            if not (is_alone and softened[place] and -np.log(_SOFTENED) < away < 0):
-                off[place] = away
-            elif away < -np.log(_OFF_CURVE):
-                yield rows[place][0], note("softer-by-stretch", name, ratio=float(np.exp(away)))
-    if np.isnan(off).all():
-        return
-    worst = int(np.nanargmax(np.abs(off)))
-    if abs(off[worst]) > np.log(_OFF_CURVE):
-        ratio = float(np.exp(off[worst]))
-        yield rows[worst][0], note("peak-off-others", name, ratio=ratio,
-                                   like=words_of_ratio(ratio))  # fmt: skip
+        near = of_others if is_alone else alike
+        away, limit = _off_power_law(strain[near], tension[near], strain[place], tension[place])
+        if not abs(away) > limit:
+            continue
+        if is_alone and softened[place] and -np.log(_SOFTENED) < away < 0:
+            yield test, note("softer-by-stretch", name, ratio=float(np.exp(away)))
+        else:
+            found.append((abs(away) / limit, away, test))
+    if found:
+        _, away, test = max(found)
+        ratio = float(np.exp(away))
+        yield test, note("peak-off-others", name, ratio=ratio, like=words_of_ratio(ratio))
+
+
+def _off_power_law(x: Floats, y: Floats, at: float, value: float) -> tuple[float, float]:
+    """Distance of a value from a line through others, and how far a sound one may lie off.
+
+    Logarithms of strain and tension: a few tests that are close together do not give the slope, so
+    that of ropes counts with its own scatter.
+
+    Examples
+    --------
+    Three on a line of slope 2, and a value that is a factor of two above it:
+
+    >>> x = np.log([1.0, 1.2, 1.4])
+    >>> away, limit = _off_power_law(x, 2 * x, np.log(1.3), np.log(2 * 1.3**2))
+    >>> print(round(np.exp(away), 2), round(np.exp(limit), 2))
+    2.03 1.7
+    """
+    from_middle = x - x.mean()
+    usual, scatter = _OF_SLOPES
+    weight = (_OF_PEAKS / scatter) ** 2
+    reach = from_middle @ from_middle + weight
+    slope = (from_middle @ y + weight * usual) / reach
+    left = y - y.mean() - slope * from_middle
+    beyond = at - x.mean()
+    limit = _most_beside(left, 2, 1 / x.size + beyond**2 / reach, usual=_OF_PEAKS)
+    return float(value - y.mean() - slope * beyond), max(limit, float(np.log(_OFF_CURVE)))
 
 
 def _stiffness_ratio(one: Survey, other: Survey, name: str, models: Models) -> tuple[float, float]:

@@ -2206,8 +2206,8 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "stiffness-off-own-tests": (
         "warning",
-        "relative to its other tests it is {ratio:.3g} times as stiff as {n_others} other specimens"
-        " of its kind are relative to theirs. Check the gain and factor of load and position, and"
+        "relative to its other tests it is {ratio:.3g} times as stiff as others of its kind"
+        " ({n_others}) are relative to theirs. Check the gain and factor of load and position, and"
         " whether the log is its own",
     ),
     "peak-off-others": (
