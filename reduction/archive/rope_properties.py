@@ -70,7 +70,18 @@ def properties_to_dataset(
         "property_remark": texts([one.reason for one in rows]),
     }
     of_rows = [component.get((specimen, one.step), ()) for specimen, one in listed]
-    axis = tuple(sorted({error for own in of_rows for error in own}))
+    # an error that moves none of these properties has no row
+    axis = tuple(
+        sorted(
+            {
+                error
+                for own, one in zip(of_rows, rows, strict=True)
+                for amounts in (one.contribution, one.over_strength_contribution)
+                for error, amount in zip(own, amounts, strict=False)
+                if amount
+            }
+        )
+    )
     value = numbers([one.value for one in rows])
     random = numbers([one.random_standard_uncertainty for one in rows])
     over = numbers([one.over_strength for one in rows])
@@ -114,8 +125,9 @@ def _on_axis(
     rows = np.zeros((len(axis), len(contribution)))
     for place, (own, amounts) in enumerate(zip(component, contribution, strict=True)):
         # a property without a value has no contributions
-        if amounts.size:
-            rows[[axis.index(one) for one in own], place] = amounts
+        for error, amount in zip(own, amounts, strict=False):
+            if amount:
+                rows[axis.index(error), place] = amount
     return rows
 
 

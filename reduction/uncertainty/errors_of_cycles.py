@@ -600,12 +600,19 @@ def _of_bedding(
         for name in ("apparent_spring_constant", "mean_strain", "strain_amplitude",
                      "valley_tension")
     }  # fmt: skip
-    first, last = rows["apparent_spring_constant"].T
     secant = np.array([bedding.first_stiffness[index], bedding.last_stiffness[index]])
+    # the first secant is that of its way up, which its loop without drift does not have: it moves
+    # by the same share
+    ends = [0, -1]
+    of_loops = loops.apparent_spring_constant[index, ends]
+    first, last = (rows["apparent_spring_constant"] * secant / of_loops).T
     share = np.array(
         [bedding.first_stiffness_over_strength[index], bedding.last_stiffness_over_strength[index]]
     )
-    foot = np.diff(rows["mean_strain"] - rows["strain_amplitude"], axis=1)[:, 0]
+    # nor does a foot lie an amplitude without drift below the mean
+    depth = loops.mean_strain[index, ends] - loops.foot_strain[index, ends]
+    below = rows["strain_amplitude"] * depth / loops.strain_amplitude[index, ends]
+    foot = np.diff(rows["mean_strain"] - below, axis=1)[:, 0]
     of_valley = np.diff(rows["valley_tension"], axis=1)[:, 0]
     valley = loops.valley_tension[index, -1] - loops.valley_tension[index, 0]
     values = {

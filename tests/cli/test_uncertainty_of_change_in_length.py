@@ -233,9 +233,5 @@ def test_the_page_and_the_table_show_what_is_shared(tmp_path):
 def test_without_stated_instruments_the_zero_of_strain_alone_is_shared(tmp_path):
     found = reduced(tmp_path / "bare", stated="")
     # the part of a cycle in which the rope drifts is shared by its tests, and changes none of these
-    others = found["uncertainty_source"].to_numpy() != "strain_calibration"
-    for name in ("property_stiffness", "property_strain"):
-        rows = found[f"{name}_uncertainty_contribution"].to_numpy()
-        assert not np.nan_to_num(rows[others]).any()
-        assert np.nan_to_num(rows).any()
+    assert set(found["uncertainty_source"].values.tolist()) == {"strain_calibration"}
     assert np.isfinite(found["property_stiffness_standard_uncertainty"].values).any()
