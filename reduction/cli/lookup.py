@@ -259,6 +259,21 @@ def _tested_rows(wanted: LookupRequest, line: LineSource) -> dict[str, Floats] |
     return {name: at[:, place].copy() for place, name in enumerate(levels.variables)}
 
 
+def _is_tested(
+    wanted: LookupRequest, lines: Sequence[LineSource], points: Mapping[str, Floats]
+) -> Bools:
+    """Mask of points at which each line has a test, for those that are known by single levels."""
+    at = np.stack(list(points.values()), axis=1)
+    common = np.ones(len(at), dtype=bool)
+    for line in lines:
+        rows = _tested_rows(wanted, line) if wanted.grid else None
+        if rows is not None and list(rows) == list(points):
+            own = np.stack(list(rows.values()), axis=1)
+            near = np.abs(at[:, None] - own) <= SAME_LEVEL * np.abs(at[:, None])
+            common &= near.all(axis=2).any(axis=1)
+    return common
+
+
 def _levels_of(line: LineSource, quantity: str) -> LineLevels | None:
     """Tests at single levels used to look up the quantity."""
     if quantity in line.surfaces or any(one.quantity == quantity for one in line.curves):
@@ -466,6 +481,10 @@ def look_up_population(
     form = _form_of(wanted.out)
     chosen = specimens_of_kind(lines_with(source, wanted), wanted.quantity, wanted.name)
     points, _ = _points_of(wanted, chosen[0], *chosen[1:])
+    is_common = _is_tested(wanted, chosen[1:], points[0])
+    if is_common.any() and not is_common.all():
+        points = [{name: one[is_common] for name, one in at.items()} for at in points]
+        output.say("levels at which not every specimen was tested are left out")
     every = [
         look_up(line, wanted.quantity, branch=wanted.branch, extrapolate=wanted.extrapolate, **at)
         for line, at in zip(chosen, points, strict=True)

@@ -154,6 +154,26 @@ def test_the_command_prints_factors_and_writes_every_specimen(monkeypatch, tmp_p
     assert both.exit_code == 2
 
 
+def test_a_table_has_the_levels_that_every_specimen_was_tested_at(monkeypatch):
+    lines = ropes(gain=5e4)
+    (whole,) = lines[2].levels
+    kept = replace(
+        whole, at=whole.at[:1], value=whole.value[:1], contribution=whole.contribution[:, :1],
+        random_standard_uncertainty=whole.random_standard_uncertainty[:1],
+        degrees_of_freedom=whole.degrees_of_freedom[:1], tests=whole.tests[:1],
+        conditions=whole.conditions[:1],
+    )  # fmt: skip
+    lines[2] = replace(lines[2], levels=(kept,))
+    for order in (lines, lines[::-1]):
+        monkeypatch.setattr(command, "lines_of_source", lambda source, order=order: order)
+        asked = ["lookup", "lab", "--quantity", "K_ap", "--population", "95 %", "--table"]
+        done = CliRunner().invoke(app, asked, catch_exceptions=False)
+        assert done.exit_code == 0, done.output
+        assert "not every specimen was tested are left out" in " ".join(done.output.split())
+        answer = CliRunner().invoke(app, [*asked, "--json"], catch_exceptions=False)
+        assert json.loads(answer.stdout)["population"]["specimens"]["rope-0"] == [VALUES[0]]
+
+
 def test_python_gives_the_population_of_the_command(monkeypatch):
     monkeypatch.setattr(command, "lines_of_source", lambda source: ropes(gain=5e4))
     options = [
