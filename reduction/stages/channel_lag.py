@@ -315,7 +315,8 @@ _MOST_STOPS = 20
 def delay_by_noise(position: Floats, tension: Floats, *, samples_per_cycle: float) -> float:
     r"""Delay of tension by a filter, in samples, from the remaining noise; 0 without a filter.
 
-    .. math:: r_j = e^{-j/\tau}, \qquad r_j = (1 + j/\tau)\,e^{-j/\tau}
+    .. math:: r_j = e^{-j/\tau}, \qquad r_j = (1 + j/\tau)\,e^{-j/\tau}, \qquad
+              r_j = \max(1 - j/m, 0)
 
     Parameters
     ----------
@@ -327,7 +328,8 @@ def delay_by_noise(position: Floats, tension: Floats, *, samples_per_cycle: floa
     Returns
     -------
     delay : float
-        In samples: the time constant of one pole, or the sum of two equal ones. [1]
+        In samples: the time constant of one pole, the sum of two equal ones, or half the length of
+        a moving mean. [1]
 
     Raises
     ------
@@ -338,9 +340,10 @@ def delay_by_noise(position: Floats, tension: Floats, *, samples_per_cycle: floa
     -----
     Independent noise is as large in every eighth sample as in all of them.
     After a filter it is smaller in all, since neighbours are alike: by their autocorrelation
-    :math:`r_j` after one pole and after two, in differences of sixth order.  Vibration would show
-    in position; where the noise of position is not white no result is given, nor where a step of
-    the converter hides noise.  A zero-phase filter applied to a record afterwards gives the same.
+    :math:`r_j` after one pole, two poles and a mean of m readings, in differences of sixth order.
+    Vibration would show in position; where the noise of position is not white no result is given,
+    nor where a step of the converter hides noise.  A zero-phase filter applied to a record
+    afterwards gives the same.
 
     Examples
     --------
@@ -365,23 +368,29 @@ def delay_by_noise(position: Floats, tension: Floats, *, samples_per_cycle: floa
     lag = np.arange(2 * _ORDER + 1) - _ORDER
     kernel = np.where(lag % 2, -1.0, 1.0) * scipy.special.comb(2 * _ORDER, lag + _ORDER)
     constant = np.geomspace(0.2, 20, 400)
-    apart = np.abs(lag) * np.array([1, *_STRIDES])[:, None, None] / constant[:, None]
-    misfits = []
-    for alike in (np.exp(-apart), (1 + apart) * np.exp(-apart)):
+    apart = np.abs(lag) * np.array([1, *_STRIDES])[:, None, None]
+    by_time = apart / constant[:, None]
+    mean_of = np.arange(2.0, _MOST_AVERAGED + 1)
+    misfits, delays = [], (constant, 2 * constant, (mean_of - 1) / 2)
+    for alike in (
+        np.exp(-by_time), (1 + by_time) * np.exp(-by_time),
+        np.maximum(1 - apart / mean_of[:, None], 0.0),
+    ):  # fmt: skip
         variance = (kernel * alike).sum(axis=-1)
         ratio = np.log(variance[1:] / variance[0]) / 2
         misfits.append(np.sqrt(np.mean((ratio - of_tension[:, None]) ** 2, axis=0)))
-    poles, best = np.unravel_index(np.argmin(misfits), (2, constant.size))
-    if not misfits[poles][best] < _MISFIT:
-        return 0.0
-    return float((poles + 1) * constant[best])
+    misfit, delay = np.concatenate(misfits), np.concatenate(delays)
+    best = int(np.argmin(misfit))
+    return float(delay[best]) if misfit[best] < _MISFIT else 0.0
 
 
-_ORDER, _STRIDES = 6, (2, 4, 8)
+_ORDER, _STRIDES = 6, (2, 3, 4, 6, 8)
 
 _LEAST_SAMPLES = 40 * _STRIDES[-1]  # a sixth difference leaves 1e-5 of a sine of 40 a cycle
 
 _LEAST_READINGS = 2000
+
+_MOST_AVERAGED = 41  # readings; of more, the differences of every eighth show no more
 
 _COLOURED, _WHITE, _MISFIT = 0.47, 0.25, 0.15  # logarithms; chance makes 0.1
 

@@ -249,3 +249,16 @@ def test_noise_of_both_channels_that_is_alike_is_vibration_and_no_filter():
     assert delay_by_noise(white[0], behind[1], samples_per_cycle=40) == 0
     coarse = np.round(behind[1] / 20) * 20
     assert delay_by_noise(white[0], coarse, samples_per_cycle=400) == 0
+
+
+@pytest.mark.parametrize(
+    ("readings", "low", "high"), [(3, 1, 1), (5, 2, 2), (10, 4, 5), (50, 9, 25)]
+)
+def test_a_moving_mean_of_the_load_alone_shows_by_its_noise(readings, low, high):
+    """Of five readings 20 samples were found, or none; of fifty readings the delay is a lower bound."""
+    found = []
+    for seed in range(12):
+        white = np.random.default_rng(seed).normal(size=(2, 6000))
+        mean = np.convolve(white[1], np.ones(readings) / readings, "same")
+        found.append(delay_by_noise(white[0], mean, samples_per_cycle=500))
+    assert low <= np.median(found) <= high
