@@ -263,14 +263,14 @@ def _is_tested(
     wanted: LookupRequest, lines: Sequence[LineSource], points: Mapping[str, Floats]
 ) -> Bools:
     """Mask of points at which each line has a test, for those that are known by single levels."""
-    at = np.stack(list(points.values()), axis=1)
+    at = np.array([*points.values()]).T
     common = np.ones(len(at), dtype=bool)
     for line in lines:
         rows = _tested_rows(wanted, line) if wanted.grid else None
         if rows is not None and list(rows) == list(points):
             own = np.stack(list(rows.values()), axis=1)
             near = np.abs(at[:, None] - own) <= SAME_LEVEL * np.abs(at[:, None])
-            common &= near.all(axis=2).any(axis=1)
+            common &= np.any(np.all(near, axis=2), axis=1)
     return common
 
 
