@@ -317,7 +317,7 @@ def missed_between_changes(time: Floats, driven: Floats, cycles: Cycles) -> floa
     >>> print(round(missed_between_changes(t, x, cycles), 2))
     0.13
     """
-    some = _spread(np.arange(cycles.n_cycles))
+    some = evenly_spread(np.arange(cycles.n_cycles), _MOST_CYCLES)
     first, last, peak = cycles.first[some], cycles.last[some], cycles.branch_last[some, 0]
     # a turn is beside its extreme reading, before it or after it; one may be near a reading
     waits = np.diff(time[first[0] : last[-1] + 1], prepend=np.nan, append=np.nan)
