@@ -299,8 +299,8 @@ def _of_statements(campaign: Campaign, survey: Survey, models: Models) -> Iterat
         return
     if survey.n_cycles and levels.speed > _FASTEST:
         yield note("faster-than-machines", speed=levels.speed)
-    stated = (plan.attributes.get(key, "") for key in ("frequency", "rate"))
-    if plan.kind not in _WITHOUT_CYCLES and not any(map(_NUMBER.match, stated)):
+    rates = (plan.attributes.get(key, "") for key in ("frequency", "rate"))
+    if plan.kind not in _WITHOUT_CYCLES and not any(map(_NUMBER.match, rates)):
         if levels.frequency < 1 / _SLOWEST:
             yield note("slower-than-machines", period=1 / levels.frequency)
     yield from _of_rate(survey)
