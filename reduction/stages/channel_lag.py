@@ -361,7 +361,10 @@ def delay_by_noise(position: Floats, tension: Floats, *, samples_per_cycle: floa
         noise, quantum = estimate_noise(series)
         if not noise > max(quantum, _TINY * float(np.nanmax(np.abs(series)))):
             return 0.0
-        found.append([np.log(estimate_noise(series[::one])[0] / noise) for one in _STRIDES])
+        of_some = np.array([estimate_noise(series[::one])[0] for one in _STRIDES])
+        if not of_some.min() > 0:  # a pattern that repeats itself is no noise
+            return 0.0
+        found.append(np.log(of_some / noise))
     of_position, of_tension = np.array(found)
     if np.abs(of_position).max() > _WHITE or not of_tension[-1] > _COLOURED:
         return 0.0

@@ -249,6 +249,8 @@ def test_noise_of_both_channels_that_is_alike_is_vibration_and_no_filter():
     assert delay_by_noise(white[0], behind[1], samples_per_cycle=40) == 0
     coarse = np.round(behind[1] / 20) * 20
     assert delay_by_noise(white[0], coarse, samples_per_cycle=400) == 0
+    # readings that alternate are no noise: every second one is alike
+    assert delay_by_noise(white[0], (-1.0) ** np.arange(white[0].size), samples_per_cycle=400) == 0
 
 
 @pytest.mark.parametrize(
