@@ -951,7 +951,7 @@ def _off_power_law(x: Floats, y: Floats, at: float, value: float) -> tuple[float
     """Distance of a value from a line through others, and how far a sound one may lie off.
 
     Logarithms of strain and tension: a few tests that are close together do not give the slope, so
-    that of ropes counts with its own scatter.
+    that of ropes counts with its own scatter.  Beyond the others a rope may follow another slope.
 
     Examples
     --------
@@ -969,7 +969,9 @@ def _off_power_law(x: Floats, y: Floats, at: float, value: float) -> tuple[float
     slope = (from_middle @ y + weight * usual) / reach
     left = y - y.mean() - slope * from_middle
     beyond = at - x.mean()
-    limit = _most_beside(left, 2, 1 / x.size + beyond**2 / reach, usual=_OF_PEAKS)
+    within = _most_beside(left, 2, 1 / x.size + beyond**2 / reach, usual=_OF_PEAKS)
+    outside = max(x.min() - at, at - x.max(), 0.0)
+    limit = float(np.hypot(within, _OFF_SCATTER * scatter * outside))
     return float(value - y.mean() - slope * beyond), max(limit, float(np.log(_OFF_CURVE)))
 
 
