@@ -69,8 +69,8 @@ def earlier_run_words(archive: Path) -> tuple[str, ...]:
         return (f"{name} is from an earlier run: the campaign no longer makes it",)
     try:
         text = (archive.parent / STATUS_NAME).read_text(encoding="utf-8")
-        has_row = name in OF_CAMPAIGN or f"\n{name}," in text
-        if has_row and "failed" not in text:  # of a thousand archives, not a thousand tables
+        is_listed = name in OF_CAMPAIGN or f"\n{name}," in text
+        if is_listed and "failed" not in text:  # of a thousand archives, not a thousand tables
             return ()
         rows = {row["test"]: row for row in csv.DictReader(io.StringIO(text, newline=""))}
     except (OSError, KeyError, ValueError, csv.Error):
@@ -78,7 +78,7 @@ def earlier_run_words(archive: Path) -> tuple[str, ...]:
     # of a log that could not be read, the archives of its steps are kept
     failed = [rows[one] for one in dict.fromkeys((name, test))
               if one in rows and rows[one]["status"] == "failed"]  # fmt: skip
-    if not failed and not has_row:
+    if not failed and name not in rows and name not in OF_CAMPAIGN:
         return (
             f"{name} has no row in {STATUS_NAME}: it is of a test that the campaign no longer has,"
             " of another campaign, or of a run that did not finish. Run the campaign again",

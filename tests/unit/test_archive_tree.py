@@ -1,5 +1,6 @@
 """A processed campaign opens as one tree, and what is no campaign is refused."""
 
+import csv
 import shutil
 from importlib.util import find_spec
 from pathlib import Path
@@ -12,7 +13,7 @@ import xarray as xr
 import reduction
 from reduction.archive import open as opening
 from reduction.archive.open import open_archive
-from reduction.archive.product_files import OF_CAMPAIGN
+from reduction.archive.product_files import OF_CAMPAIGN, STATUS_NAME, earlier_run_words
 from reduction.record.errors import ArchiveError, SettingsError
 
 needs_dask = pytest.mark.skipif(find_spec("dask") is None, reason="Dask is not installed")
@@ -55,6 +56,13 @@ def test_an_archive_of_an_earlier_run_is_told(folder, archives):
         reduction.open_campaign(folder).close()
     with pytest.warns(UserWarning, match="T-0 has no row in status.csv"):
         reduction.open_campaign(folder / "T-0.nc").close()
+
+
+def test_a_table_of_status_with_every_cell_quoted_has_its_rows(folder, archives):
+    rows = [["test", "status", "message"], *([path.stem, "reduced", ""] for path in archives)]
+    with (folder / STATUS_NAME).open("w", encoding="utf-8", newline="") as file:
+        csv.writer(file, quoting=csv.QUOTE_ALL).writerows(rows)
+    assert [earlier_run_words(path) for path in archives] == [()] * len(archives)
 
 
 @pytest.mark.parametrize("name", OF_CAMPAIGN)
