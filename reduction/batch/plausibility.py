@@ -26,7 +26,7 @@ from reduction.prediction.hose_prediction import doubts_of_design
 from reduction.prediction.hose_product import HoseDesign
 from reduction.prediction.hose_tension import predict_hose
 from reduction.quantities.units import Dimension, scale_to_si
-from reduction.readers.layout import Layout
+from reduction.readers.layout import CLOCK, Layout
 from reduction.record.arrays import MAD_TO_DEVIATION
 from reduction.record.errors import ReductionError, SettingsError
 from reduction.record.measurement import Bools, Floats, Integers, Specimen, SpliceMarks
@@ -300,7 +300,9 @@ def _of_statements(campaign: Campaign, survey: Survey, models: Models) -> Iterat
     if survey.n_cycles and levels.speed > _FASTEST:
         yield note("faster-than-machines", speed=levels.speed)
     rates = (plan.attributes.get(key, "") for key in ("frequency", "rate"))
-    if plan.kind not in _WITHOUT_CYCLES and not any(map(_NUMBER.match, rates)):
+    time = campaign.layouts[plan.files[0][1]].channels.get("time")
+    has_unit = time is None or time.unit != CLOCK  # dates and times of day have none to mistake
+    if has_unit and plan.kind not in _WITHOUT_CYCLES and not any(map(_NUMBER.match, rates)):
         if levels.frequency < 1 / _SLOWEST:
             yield note("slower-than-machines", period=1 / levels.frequency)
     yield from _of_rate(survey)
