@@ -397,25 +397,43 @@ def test_a_zero_that_moves_over_the_cycles_is_in_the_interval_of_the_trend():
         assert 0.5 * spread < off < 1.96 * spread
 
 
+def _trend_of_ramps(readings, n_cycles, *, start=0.0, slips=True):
+    """Trend of a spring that does not change, logged ``readings`` times per cycle (synthetic)."""
+    step = 0.1
+    period = step * readings
+    time = np.arange(0, n_cycles * period, step)
+    strain = 0.2 + 0.1 * np.abs(2 * ((time + start * step) / period % 1) - 1)
+    load = 1e4 * strain**2
+    stands = find_standstills(time, strain, load[None], settings=PhaseSettings())
+    cycles = find_cycles(time, strain, load[None], stands, settings=CycleSettings())
+    loops = close_loops(time, load[None], strain[None], cycles, driven=strain)
+    share = slip_of_turns(loops.frequency, step, cycles.n_cycles)
+    return fit_peak_trend(loops, area=[1e-4], of_turns=share if slips else 0.0)
+
+
 @pytest.mark.parametrize("readings", [29, 30])
 def test_turns_that_slip_between_the_readings_are_in_the_interval_of_a_trend(readings):
     """Synthetic: a spring that does not change, whose turns pass half a reading in 45 cycles."""
     for slip in (0.5, 0.0):
-        step, n_cycles = 0.1, 45
-        period = step * (readings + slip / n_cycles)
-        time = np.arange(0, n_cycles * period, step)
-        strain = 0.2 + 0.1 * np.abs(2 * (time / period % 1) - 1)
-        load = 1e4 * strain**2
-        stands = find_standstills(time, strain, load[None], settings=PhaseSettings())
-        cycles = find_cycles(time, strain, load[None], stands, settings=CycleSettings())
-        loops = close_loops(time, load[None], strain[None], cycles, driven=strain)
-        share = slip_of_turns(loops.frequency, step, cycles.n_cycles)
-        trend = fit_peak_trend(loops, area=[1e-4], of_turns=share)
+        trend = _trend_of_ramps(readings + slip / 45, 45)
         for name in ("peak_tension_change", "mean_strain_drift", "mean_strain_per_decade"):
             value, spread = (float(getattr(trend, f"{name}{u}")[0]) for u in UNCERTAIN)
             assert abs(value) <= 2.5 * spread + 1e-9
             # a log in step with the machine misses the same of every turn
             assert slip or spread < 1e-4
+
+
+@pytest.mark.parametrize("readings", [16.37, 23.31])
+def test_turns_that_are_anywhere_between_the_readings_are_no_drift(readings):
+    """Synthetic: the ends of 80 cycles far out of step miss as much of their turns as each other."""
+    for start in np.arange(0, 1, 0.1):
+        of_steps, trend = (
+            _trend_of_ramps(readings, 80, start=start, slips=slips) for slips in (False, True)
+        )
+        for name in ("peak_tension_change", "mean_strain_drift"):
+            value, spread = (float(getattr(trend, f"{name}{u}")[0]) for u in UNCERTAIN)
+            assert abs(value) <= 2.5 * spread + 1e-9
+            assert spread < 2 * float(getattr(of_steps, f"{name}{UNCERTAIN[1]}")[0])
 
 
 UNCERTAIN = "", "_standard_uncertainty"

@@ -42,7 +42,7 @@ from reduction.record.errors import DataError
 from reduction.record.measurement import Floats, Integers
 from reduction.record.notes import note
 from reduction.record.samples import take_samples
-from reduction.stages.cycles.cycle_product import Cycles, Loops
+from reduction.stages.cycles.cycle_product import Cycles, Loops, turns_alike
 from reduction.stages.cycles.fundamental import steady_cycles
 from reduction.stages.cycles.reading_noise import reading_noise
 from reduction.stages.moduli.least_squares import lag_one_inflation
@@ -804,17 +804,23 @@ def _change_of_ends(values: ArrayLike, drift: ArrayLike = 0.0) -> tuple[Floats, 
 def slip_of_turns(frequency: Floats, step: float, n_cycles: int) -> float:
     """Share of the missed parts of its turns by which a log out of step with them may drift.
 
-    Turns that pass half of a sampling interval go from a reading to the middle of two.
+    Turns that pass half of a sampling interval go from a reading to the middle of two.  Those that
+    pass whole intervals within the tenth of the cycles at either end are as good as even there.
 
     Examples
     --------
-    A hundred cycles with a reading every 0.1 s, in step and nearly so:
+    A hundred cycles with a reading every 0.1 s, in step, nearly so and far from it:
 
-    >>> [slip_of_turns(np.array([0.25]), step, 100) for step in (0.1, 0.09998)]
-    [0.0, 1.0]
+    >>> [round(slip_of_turns(np.array([0.25]), step, 100), 2) for step in (0.1, 0.09998, 0.0997)]
+    [0.0, 0.99, 0.16]
     """
-    readings = 1 / (float(np.mean(frequency)) * step)
-    return min(1.0, 2 * n_cycles * abs(readings - round(readings)))
+    period = 1 / float(np.mean(frequency))
+    readings = period / step
+    at_end = turns_alike(
+        np.array([np.inf]), step, period=period, n_cycles=cycles_at_an_end(n_cycles)
+    )
+    slip = min(1.0, 2 * n_cycles * abs(readings - round(readings)))
+    return slip * float(np.sqrt(1.5 * (1 - at_end[0])))
 
 
 def _unseen_in_steps(loops: Loops, name: str) -> Floats:
