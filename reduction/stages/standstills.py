@@ -1212,8 +1212,9 @@ def level_of_standstill(
         readings = take_samples(position, np.arange(begin[0], end[0] + 1, stride))
     readings = readings[np.isfinite(readings)]
     place = np.linspace(-0.5, 0.5, readings.size)
-    slope = float(place @ readings / max(place @ place, _TINY))
-    left = readings - readings.mean() - slope * place
+    apart = readings - readings.mean()  # of a single one zero, although its place is not centred
+    slope = float(place @ apart / max(place @ place, _TINY))
+    left = apart - slope * place
     scatter = float(left @ left)
     alike = float(np.clip(left[1:] @ left[:-1] / max(scatter, _TINY**2), 0.0, 0.99))
     # a few readings scatter less than the channel by chance

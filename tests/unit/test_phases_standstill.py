@@ -650,6 +650,18 @@ def test_four_readings_at_rest_that_rise_by_chance_have_a_level():
     assert level_of_standstill(position, stand, 0)[0] == pytest.approx(0.05, abs=3e-6)
 
 
+def test_a_rest_of_which_one_reading_is_no_ramp_is_known_as_well_as_that():
+    position = 5 + np.array([-6e-6, -3e-6, 0, 3e-6, 6e-6, 1e-3, 2e-3, 3e-3, 4e-3])
+    first, last, rest = np.array([0]), np.array([4]), np.array([True])
+    stand = Standstills(
+        first, last, 1.0 * first, 1.0 * last, np.array([5.0]), np.zeros((1, 1)), rest,
+        position_tolerance=1.5e-5, slack_tension=5.0,
+    )  # fmt: skip
+    level, spread = level_of_standstill(position, stand, 0)
+    assert level == pytest.approx(5, abs=3e-6)
+    assert spread < 1e-5
+
+
 @pytest.mark.parametrize("source", ["filter", "hum"])
 def test_noise_alike_in_neighbouring_readings_does_not_cut_a_creep_hold(source):
     """Synthetic: 240 N held for 700 s; differences of neighbours hide most of this noise of 2 N."""
