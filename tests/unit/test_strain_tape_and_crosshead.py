@@ -181,3 +181,21 @@ REFUSED = {
 
 
 test_refusals = refusals(REFUSED)
+
+
+@pytest.mark.parametrize("readings", [7, 12])
+def test_few_readings_per_cycle_are_no_noise_of_the_reference_tension(readings):
+    """Synthetic: a hold at 200 N, then cycles whose shape the readings hardly show."""
+    random = np.random.default_rng(1)
+    step = 10 / readings
+    hold, cycles = np.arange(0, 80, step), np.arange(0, 400, step)
+    at_hold, low, high = (0.5 * (load / 2e4) ** 0.6 for load in (200, 1000, 2e4))
+    place = np.r_[
+        np.interp(hold, [0, 40, 80], [at_hold, at_hold, low]),
+        low + (high - low) / 2 * (1 - np.cos(2 * np.pi * cycles / 10)),
+    ]
+    load = 2e4 * (place / 0.5) ** (1 / 0.6) + random.normal(0, 2, place.size)
+    place += random.normal(0, 1e-4, place.size)
+    found = zero_at_tension(place, load, reference_tension=200.0)
+    assert found.is_logged
+    assert abs(found.position - at_hold) < 2.5 * found.standard_uncertainty < 0.07

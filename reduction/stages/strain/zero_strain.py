@@ -289,13 +289,14 @@ def zero_at_tension(
     if np.count_nonzero(np.isfinite(tension)) < 2 * _FEWEST:
         return stated
     # readings whose noise reaches slack are averaged until it does not
-    wide = float(noise_range(tension)) / 2 / (_WIDEST * reference_tension)
-    if wide > 1:
-        together = ceil(wide**2)
-        whole = tension.size // together * together
-        position, tension = (
-            one[:whole].reshape(-1, together).mean(axis=1) for one in (position, tension)
-        )
+    noise = float(noise_range(tension))
+    together = ceil((noise / 2 / (_WIDEST * reference_tension)) ** 2)
+    whole = tension.size // max(together, 1) * together
+    if together > 1 and whole >= _FEWEST_MEANS * together:
+        means = [one[:whole].reshape(-1, together).mean(axis=1) for one in (position, tension)]
+        # of few readings per cycle, motion counts as noise, and their means have no less of it
+        if noise_range(means[1]) < _QUIETER * noise / together**0.5:
+            position, tension = means
     if np.count_nonzero(np.isfinite(tension)) < 2 * _FEWEST:
         return stated
     half = half_band_of(reference_tension, tension)
@@ -354,6 +355,8 @@ def _at_no_load(place: Floats, load: Floats, noises: tuple[float, float]) -> tup
 
 
 _WIDEST = 0.5  # of the reference tension: the band of a noisy load on either side of it
+
+_FEWEST_MEANS, _QUIETER = 32, 1.5  # of means, and their noise over that of white noise
 
 _RISES = 0.7  # correlation with the order of the readings
 
