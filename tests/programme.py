@@ -68,6 +68,14 @@ def level_stiffness(level, cycle):
 CREEP = 0.0012  # strain a decade
 
 
+def crept(since):
+    """Creep strain since the end of a ramp of 20 s at an even rate, by superposition."""
+    return CREEP * (
+        (since / 20 + 1) * np.log10(since / 20 + 1)
+        - since / 20 * np.log10(np.maximum(since, 1e-9) / 20)
+    )
+
+
 @dataclass
 class Log:
     """Time, tension and strain, piece by piece, and when each step began and ended."""
@@ -145,9 +153,7 @@ def programme_log():
 
     begin = log.now
     log.ramp(20, 0.4 * STRENGTH, 0.06)
-    log.go(
-        7200, lambda since: 0.4 * STRENGTH, lambda since: 0.06 + CREEP * np.log10(since / 10 + 1)
-    )
+    log.go(7200, lambda since: 0.4 * STRENGTH, lambda since: 0.06 + crept(since))
     log.step("creep", begin)
 
     begin = log.now

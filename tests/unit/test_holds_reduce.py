@@ -925,3 +925,26 @@ def test_creep_is_that_at_constant_tension_where_the_tension_drifts(drift):
     off = found.rate_per_decade - 0.02
     assert abs(off) < 2 * found.rate_per_decade_standard_uncertainty
     assert abs(off) < 0.02 * 0.02
+
+
+@pytest.mark.parametrize("power", [0.5, 1.0])
+def test_creep_in_proportion_to_load_or_to_strain_is_covered_after_a_ramp_at_constant_load_rate(
+    power,
+):
+    """Synthetic: strain as the root of load; 2 % of strain per decade, by superposition."""
+    time = np.arange(0, 700, 0.25)
+    share = np.clip((time - 20) / 15, 0, 1)
+    steps = np.linspace(0, 1, 1001)
+    starts = 20 + 15 * (steps[1:] + steps[:-1]) / 2
+    since = np.clip(time[:, None] - starts, 0, None)
+    creep = 0.02 * np.log10(1 + since / 0.01) @ np.diff(steps**power)
+    strain = 0.1 * np.sqrt(share) + creep
+    strain += np.random.default_rng(1).normal(0, 2e-6, time.size)
+    tension = 1000 * share
+    stands = find_tension_stands(time, strain, [tension], settings=PhaseSettings(), is_held=True)
+    found = reduce_holds(
+        time, strain, [tension], [strain], stands, specimens=("synthetic",),
+        settings=HoldSettings(), kind="creep",
+    )[-1]  # fmt: skip
+    off = found.rate_per_decade - 0.02
+    assert abs(off) < 2 * found.rate_per_decade_standard_uncertainty < 0.04 * 0.02

@@ -29,6 +29,14 @@ def test_a_logarithmic_relaxation_gives_its_rate():
     assert rate.elapsed_high > 950
 
 
+def test_the_rate_after_a_long_ramp_is_that_after_a_step():
+    # the mean of log10(time - s) over a ramp of 30 s, in closed form
+    late, early = TIME[89:] + 15, TIME[89:] - 15
+    logarithm = (late * np.log10(late) - early * np.log10(early)) / 30 - 1 / np.log(10)
+    rate = rate_per_decade(logarithmic_blocks(TIME[89:], -20 * logarithm), ramp_duration=30.0)
+    assert rate.value == pytest.approx(-20, rel=3e-4)
+
+
 def test_the_stated_uncertainty_is_the_scatter_of_repeated_holds():
     rng = np.random.default_rng(0)
     rates = [

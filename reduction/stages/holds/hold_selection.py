@@ -60,7 +60,8 @@ class _Ramp:
     """The ramp that led to a hold.
 
     ``stiffness`` is the slope at its end of the channel that answers: tension over position [N/m],
-    under load control strain over tension, a compliance [1/N].
+    under load control strain over tension, a compliance [1/N].  ``centre_time`` is that of what the
+    answering channel adds, ``driven_centre_time`` that of the channel that the machine moves. [s]
     """
 
     start_time: float
@@ -71,6 +72,7 @@ class _Ramp:
     end_uncertainty: float = 0.0
     # tension at even times up to the end, NaN after the last reading; empty if none is added [N]
     tension: Floats = field(default_factory=lambda: _EMPTY)
+    driven_centre_time: float = float("nan")
 
     @property
     def length(self) -> float:
@@ -134,10 +136,12 @@ def _find_ramp(
         # a machine that rings as it stops may read far below what the ramp has added
         highest = float(np.max(load[-1 - SAMPLES_BESIDE :])) - lowest
         rise = highest if highest - rise > _RINGS * highest else rise
-    before = square = 0.0
+    before = square = driven = 0.0
     for part in sample_blocks(seconds.size, seconds, adds, overlap=1):
         added, left = (adds[part] - lowest) / rise, end - seconds[part]
         before += float(np.trapezoid(added, seconds[part]))
+        way_made = (place[part] - place[0]) / (place[-1] - place[0])
+        driven += float(np.trapezoid(way_made, seconds[part]))
         # Exact where both factors are straight between samples: a ramp may have few of them.
         middle = (left[1:] + left[:-1]) * (added[1:] + added[:-1]) / 2
         both = left[1:] * added[1:] + left[:-1] * added[:-1] + 2 * middle
@@ -162,6 +166,7 @@ def _find_ramp(
         )
         if adds is load
         else _EMPTY,
+        driven_centre_time=end - driven,
     )
 
 

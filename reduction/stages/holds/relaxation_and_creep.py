@@ -567,13 +567,23 @@ def _creep(hold: Hold) -> Rate | None:
     if hold.ramp is None:
         hold.refusals.append(note("rate-without-ramp"))
         return None
-    since, strain = hold.since_centre, hold.strain
+    # a creep in proportion to load counts from the centre of the load, one in proportion to strain
+    # from that of the length: a hold does not show which of them it is
+    centres = [hold.ramp.centre_time]
+    if hold.on_tension:
+        centres.append(hold.ramp.driven_centre_time)
+    since, strain = shifted(hold.time, float(np.mean(centres))), hold.strain
     series = select_samples(
         lambda part: (since[part] > 0) & np.isfinite(strain[part]), since, strain, hold.tension
     )
     compliance = hold.ramp.stiffness if hold.on_tension else float("nan")
     try:
-        return creep_rate(*series, ramp_duration=hold.ramp_duration, compliance=compliance)
+        return creep_rate(
+            *series,
+            ramp_duration=hold.ramp_duration,
+            compliance=compliance,
+            centre_known_to=float(np.ptp(centres)) / 2,
+        )
     except DataError as error:
         hold.refusals.append(note("no-rate", reason=error.problem))
         return None
@@ -591,7 +601,8 @@ def _describe(hold: Hold, rate: Rate | None, *, follows_hold: bool) -> None:
     if rate is not None:
         hold.made.append(
             f"rate per decade from {rate.elapsed_low:.3g} to {rate.elapsed_high:.3g} s after "
-            "the centre of the ramp"
+            + ("the mean of the centres of length and load" if hold.on_tension else "the centre")
+            + " of the ramp"
         )
     left_out = hold.n_logged - hold.time.size
     if left_out > 0:

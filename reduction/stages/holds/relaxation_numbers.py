@@ -173,13 +173,15 @@ def at_last(since: Floats, values: Floats) -> tuple[float, float, int]:
 _FINAL_SHARE = 0.05
 
 
-def rate_per_decade(blocks: _LogBlocks, *, ramp_duration: float) -> Rate:
+def rate_per_decade(
+    blocks: _LogBlocks, *, ramp_duration: float, centre_known_to: float = 0.0
+) -> Rate:
     r"""Change of a series per decade of time, by regression on block means.
 
     Notes
     -----
-    After three ramp times the finite ramp changes the rate of a logarithmic relaxation by less
-    than half a percent (:math:`1/24 \cdot 1/9`).
+    The logarithm of time is its mean over the ramp, :math:`\ln t - (t_r / t)^2 / 24` at the time
+    :math:`t` since its centre. ``centre_known_to`` is the standard uncertainty of the centre [s].
 
     Examples
     --------
@@ -204,7 +206,7 @@ def rate_per_decade(blocks: _LogBlocks, *, ramp_duration: float) -> Rate:
                 f" {FEWEST_BLOCKS}"
             )
         )
-    x = np.log10(elapsed)
+    x = np.log10(elapsed) - (ramp_duration / elapsed) ** 2 / (24 * np.log(10))
     share = weight / weight.sum()
     x = x - share @ x
     y = value - share @ value
@@ -212,7 +214,10 @@ def rate_per_decade(blocks: _LogBlocks, *, ramp_duration: float) -> Rate:
     slope = float(share @ (x * y)) / power
     residual = np.sqrt(share) * (y - slope * x)
     variance = float(residual @ residual) / (x.size - 2) * lag_one_inflation(residual) / power
-    return Rate(slope, float(np.sqrt(variance)), float(elapsed[0]), float(elapsed[-1]))
+    # a centre that is late by one second moves every x by 1 / (t ln 10)
+    of_centre = slope * centre_known_to * float(share @ (x / elapsed)) / (power * np.log(10))
+    known_to = float(np.hypot(np.sqrt(variance), of_centre))
+    return Rate(slope, known_to, float(elapsed[0]), float(elapsed[-1]))
 
 
 def value_at_times(
@@ -332,6 +337,7 @@ def creep_rate(
     *,
     ramp_duration: float,
     compliance: float = float("nan"),
+    centre_known_to: float = 0.0,
 ) -> Rate:
     """Strain gained per decade of time at constant tension.
 
@@ -360,11 +366,12 @@ def creep_rate(
             needed=f"{100 * TENSION_TOLERANCE:.0f} % or less",
         )
     blocks = logarithmic_blocks(seconds, stretch)
-    rate = rate_per_decade(blocks, ramp_duration=ramp_duration)
+    of_ramp = {"ramp_duration": ramp_duration, "centre_known_to": centre_known_to}
+    rate = rate_per_decade(blocks, **of_ramp)
     if not np.isfinite(compliance):
         return rate
     less = blocks.value - compliance * logarithmic_blocks(seconds, load).value
-    steady = rate_per_decade(replace(blocks, value=less), ramp_duration=ramp_duration)
+    steady = rate_per_decade(replace(blocks, value=less), **of_ramp)
     if steady.standard_uncertainty > rate.standard_uncertainty:
         return rate
     left = MOTION_KNOWN_TO * abs(steady.value - rate.value)
