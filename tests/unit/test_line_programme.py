@@ -77,6 +77,18 @@ class TestDynamicStiffness:
         # evenly likely at either end: the range over the root of eight
         assert found.dynamic_stiffness_standard_uncertainty[0, 0] == pytest.approx(0.02 / 8**0.5)
 
+    @pytest.mark.parametrize(("missed", "is_drift"), [(0.02, False), (0.0, True)])
+    def test_a_missed_turn_that_moves_along_the_cycle_is_no_drift(self, missed, is_drift):
+        # readings that creep along the cycle: of a stroke that is 0 to 2 % short
+        scatter = 1e-4 * np.random.default_rng(1).standard_normal(10)
+        loops = loops_with(
+            (1, 10), strain_turn_missed=missed,
+            apparent_spring_constant=np.linspace(1.0, 1.02, 10) + scatter,
+        )  # fmt: skip
+        found = dynamic_stiffness(loops, last_cycles=10, rated_break_strength=[np.nan])
+        spread = found.drift_per_cycle_standard_uncertainty
+        assert (found.drift_per_cycle > 3 * spread).all() == is_drift
+
     def test_the_last_cycles_of_each_level_count(self):
         stiffness = [900, 100, 101, 99, 100, 800, 200, 202, 198, 200.0]
         loops = loops_with(

@@ -292,6 +292,9 @@ def dynamic_stiffness(
         # the error from a turn between two readings is common to all of them
         alike = loops.shared_by_cycles(cycles)
         numbers[1, :, column] = np.hypot(numbers[1, :, column], alike["apparent_spring_constant"])
+        # where the readings creep along the cycle, it moves from the first of them to the last
+        moves = np.sqrt(2) * alike["apparent_spring_constant"] / np.maximum(used[:, column] - 1, 1)
+        numbers[3, :, column] = np.hypot(numbers[3, :, column], moves)
         for row, quantity in ((1, "mean_tension"), (2, "tension_amplitude")):
             errors[row, :, column] = np.hypot(errors[row, :, column], alike[quantity])
     return DynamicStiffness(
