@@ -972,7 +972,8 @@ def _off_power_law(x: Floats, y: Floats, at: float, value: float) -> tuple[float
     left = y - y.mean() - slope * from_middle
     beyond = at - x.mean()
     within = _most_beside(left, 2, 1 / x.size + beyond**2 / reach, usual=_OF_PEAKS)
-    outside = max(x.min() - at, at - x.max(), 0.0)
+    # what the others tell of the slope holds between them; what they do not tell is in `within`
+    outside = max(x.min() - at, at - x.max(), 0.0) * np.sqrt(1 - weight / reach)
     limit = float(np.hypot(within, _OFF_SCATTER * scatter * outside))
     return float(value - y.mean() - slope * beyond), max(limit, float(np.log(_OFF_CURVE)))
 
