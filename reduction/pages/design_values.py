@@ -392,6 +392,8 @@ def _lines(path: Path, rests_on: Sequence[Path], opener: Opener) -> list[dict[st
     if path.stem == _SURFACES:
         tests: list[LineSource] = []
         for other in rests_on:
+            if other == path:
+                continue
             # an archive that cannot be read is named at its own place
             with suppress(*_FAULTS), opener(other) as archive:
                 tests += lines_of_open_archive(archive, other, opener)

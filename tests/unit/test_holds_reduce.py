@@ -903,6 +903,15 @@ def test_a_position_that_steps_back_at_the_end_of_a_ramp_leads_nowhere():
     assert np.isnan(there).all()
 
 
+def creep_of(time, strain, tension):
+    """The last hold at constant load of a synthetic log, reduced."""
+    stands = find_tension_stands(time, strain, [tension], settings=PhaseSettings(), is_held=True)
+    return reduce_holds(
+        time, strain, [tension], [strain], stands, specimens=("synthetic",),
+        settings=HoldSettings(), kind="creep",
+    )[-1]  # fmt: skip
+
+
 @pytest.mark.parametrize("drift", [0.006, -0.006, 0.0])
 def test_creep_is_that_at_constant_tension_where_the_tension_drifts(drift):
     """Synthetic: 2 % of strain per decade; the tension drifts by 0.6 % of itself, or hunts."""
@@ -917,11 +926,7 @@ def test_creep_is_that_at_constant_tension_where_the_tension_drifts(drift):
 
     strain = tension / 1000 + 0.02 * (since(time - 40) - since(time - 50)) / 10
     strain += np.random.default_rng(1).normal(0, 1e-5, time.size)
-    stands = find_tension_stands(time, strain, [tension], settings=PhaseSettings(), is_held=True)
-    found = reduce_holds(
-        time, strain, [tension], [strain], stands, specimens=("synthetic",),
-        settings=HoldSettings(), kind="creep",
-    )[-1]  # fmt: skip
+    found = creep_of(time, strain, tension)
     off = found.rate_per_decade - 0.02
     assert abs(off) < 2 * found.rate_per_decade_standard_uncertainty
     assert abs(off) < 0.02 * 0.02
@@ -941,10 +946,6 @@ def test_creep_in_proportion_to_load_or_to_strain_is_covered_after_a_ramp_at_con
     strain = 0.1 * np.sqrt(share) + creep
     strain += np.random.default_rng(1).normal(0, 2e-6, time.size)
     tension = 1000 * share
-    stands = find_tension_stands(time, strain, [tension], settings=PhaseSettings(), is_held=True)
-    found = reduce_holds(
-        time, strain, [tension], [strain], stands, specimens=("synthetic",),
-        settings=HoldSettings(), kind="creep",
-    )[-1]  # fmt: skip
+    found = creep_of(time, strain, tension)
     off = found.rate_per_decade - 0.02
     assert abs(off) < 2 * found.rate_per_decade_standard_uncertainty < 0.04 * 0.02

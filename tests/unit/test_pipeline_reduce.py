@@ -167,7 +167,7 @@ def test_corners_out_of_step_cancel_in_a_spring_constant_whatever_the_lag(late, 
     )  # fmt: skip
     (error,) = test.amplitude.apparent_spring_constant - 400
     (stated,) = test.amplitude.uncertainty["apparent_spring_constant"]
-    # 10.3 and 10.6 N were stated
+    # corners rounded apart from each other would make it 10 N
     assert abs(error) < 2 * stated < 2 * most
 
 
